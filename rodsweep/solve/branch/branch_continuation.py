@@ -21,7 +21,7 @@ from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_c
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
-from .special.special_point import EndReason, SpecialKind, SpecialPoint
+from .special.special_point import BranchEndReason, SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
@@ -60,7 +60,9 @@ def _follow_to_end(
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
+        curve.end(
+            BranchEnd(_end_without_cycle(curve, BranchEndReason.list_full), complete=False, list_full=True)
+        )
         return curve
     try:
         start, limits = first()
@@ -101,7 +103,7 @@ def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimit
     )
 
 
-def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
+def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
     born = curve.special_points[0]
     return replace(
@@ -130,7 +132,7 @@ def _append_next_cycle(
     is too long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
+        return BranchEnd(branch_end_point(start, BranchEndReason.list_full), complete=False, list_full=True)
     try:
         at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
         end = at_zero or next_cycle(start, limits.accuracy)

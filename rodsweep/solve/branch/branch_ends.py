@@ -13,7 +13,7 @@ from .branch_curve import BranchEnd
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .special.special_point import EndReason
+from .special.special_point import BranchEndReason
 from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_special_point
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
 
@@ -69,7 +69,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
                 return replace(start, next_arc_length=shorter)
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)
 
 
 def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart) -> bool:
@@ -91,4 +91,4 @@ def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits)
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
     why = "the cycles become symmetric, but no symmetry breaking is known there"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)

@@ -20,7 +20,7 @@ from .branch_curve import BranchCurve
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
-from .special.special_point import SPECIAL_POINT_SETTINGS, EndReason
+from .special.special_point import SPECIAL_POINT_SETTINGS, BranchEndReason
 from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
@@ -108,7 +108,7 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
             where = f"{request.along} = {crossing.value:.12g}"
             failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
     crushed = (low > request.start, high < request.stop)
-    reasons = [EndReason.crushed if end else EndReason.range_end for end in crushed]
+    reasons = [BranchEndReason.crushed if end else BranchEndReason.range_end for end in crushed]
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]

@@ -25,7 +25,7 @@ from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
 from rodsweep.solve.branch.branches import BranchesOfRod
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.detection import special_kinds_between
-from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, BranchEndReason, SpecialKind
 from rodsweep.solve.branch.start.first_asymmetric_cycle import first_asymmetric_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
@@ -51,7 +51,9 @@ def limits():
     hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
-        yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
+        yield BranchLimits(
+            [hopf], (0.0, STOP), (BranchEndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace()
+        )
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +92,7 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert abs(fold.at / turns_at - 1) < 1e-5
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
-    assert end.reason == EndReason.range_end
+    assert end.reason == BranchEndReason.range_end
     turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
@@ -166,7 +168,7 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
-    assert curve.special_points[-1].reason == EndReason.no_cycle_found
+    assert curve.special_points[-1].reason == BranchEndReason.no_cycle_found
     assert "no symmetry breaking is known there" in curve.special_points[-1].message
 
 

@@ -24,7 +24,7 @@ from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
 from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     SpecialPointCurve,
@@ -143,7 +143,7 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
     curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
-    assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
+    assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
     last = curve.points[-1]
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)

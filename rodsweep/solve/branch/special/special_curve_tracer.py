@@ -14,7 +14,7 @@ from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .solved_curve_point import SolvedPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     HalfCurveArrays,
@@ -120,7 +120,7 @@ class _CurvesOfKind:
             return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        on = half is not None and half.end is not CurveEnd.closed
+        on = half is not None and half.end is not CurveEndReason.closed
         return [behind] if on and behind not in self.results else []
 
     def possible_items(self, search: "CurveSearch[_TracedCurve]") -> list[int]:
@@ -137,7 +137,7 @@ class _CurvesOfKind:
         ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
-        closed = ahead.half.end is CurveEnd.closed
+        closed = ahead.half.end is CurveEndReason.closed
         behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None

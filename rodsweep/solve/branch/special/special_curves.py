@@ -56,7 +56,7 @@ HalfCurveArrays = dict[str, Array]
 """Stored result of following a half curve: arrays by name."""
 
 
-class CurveEnd(IntEnum):
+class CurveEndReason(IntEnum):
     """Reason for the end of a curve of special points, stored by value in the result file.
 
     none: the point is not an end. edge: edge of the parameter plane. crushed: F is near the crushing force.
@@ -118,7 +118,7 @@ class HalfCurve:
     curve."""
 
     points: tuple[CurvePoint, ...]
-    end: CurveEnd
+    end: CurveEndReason
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ class TracedHalfCurve:
 
     def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
+        the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
         special point."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
@@ -148,7 +148,7 @@ class TracedHalfCurve:
     def from_arrays(cls, arrays: HalfCurveArrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
-        half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
+        half = HalfCurve(points, CurveEndReason(int(arrays["end"][0]))) if points else None
         return cls(half, {int(index): float(distance) for index, distance in arrays["distances"]})
 
 
@@ -164,7 +164,7 @@ class SpecialPointCurve:
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
-    ends: tuple[CurveEnd, CurveEnd]
+    ends: tuple[CurveEndReason, CurveEndReason]
     hopf_ends: tuple[HopfEnd | None, HopfEnd | None]
 
     @classmethod
@@ -174,7 +174,7 @@ class SpecialPointCurve:
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
         points = (*before.points[:0:-1], *ahead.points)
         vanishing = [
-            extrapolated_hopf_end(side) if end is CurveEnd.hopf else None
+            extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
             for end, side in ((before.end, points[::-1]), (ahead.end, points))
         ]
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))

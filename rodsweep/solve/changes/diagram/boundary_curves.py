@@ -20,7 +20,7 @@ from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
     BOUNDARY_STEP_CONTROL,
     BoundaryCurveProblem,
-    BoundaryEnd,
+    BoundaryEndReason,
     BoundaryPoint,
 )
 
@@ -52,7 +52,7 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
-    end_reasons: tuple[BoundaryEnd, BoundaryEnd]
+    end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
     scaled_points: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
@@ -94,7 +94,7 @@ def trace_boundary(
 
 
 def _curve_with_folds(
-    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
+    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEndReason, BoundaryEndReason]
 ) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
     ends."""
