@@ -141,7 +141,7 @@ def _append_next_cycle(
             return end_at_mirror_image(start, end, limits)
         end, outside = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
-        if range_end is not None and _step_hides_corner(start, end):
+        if range_end is not None and _step_has_unresolved_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
@@ -170,7 +170,7 @@ def _add_special_points(
     curve.add_special_points(*special_points_between(start, end, cycle_at, limits.accuracy))
 
 
-def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
+def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""

@@ -22,7 +22,7 @@ class BranchEndSettings:
     lost_asymmetry_ratio: float = 0.1
     """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
     asymmetry at its start is less than this number."""
-    asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    allowed_asymmetry_ratios: tuple[float, float] = 0.5, 2.0
     """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
     cycle."""
     extrapolation_tolerance: float = 0.3

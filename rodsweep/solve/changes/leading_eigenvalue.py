@@ -159,7 +159,7 @@ class LeaderExchangeSearch:
                 )
         min_part_ratio = LEADING_EIGENVALUE_SETTINGS.min_part_ratio
         middle = a + min(max(share, min_part_ratio), 1 - min_part_ratio) * (b - a)
-        intervals.add_parts((a, middle), (middle, b))
+        intervals.add_subintervals((a, middle), (middle, b))
         return []
 
     def _exchange_if_alone(
@@ -178,7 +178,7 @@ class LeaderExchangeSearch:
         p = self.path.coordinate(change.value)
         beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
         places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
-        intervals.add_parts(*pairwise(places))
+        intervals.add_subintervals(*pairwise(places))
         return []
 
     def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:

@@ -86,7 +86,7 @@ class IntervalQueue:
         if self.end.reason and self.end.p <= self.start_p:
             raise Unsolvable(self.end.reason)
 
-    def add_parts(self, *intervals: tuple[float, float]) -> None:
+    def add_subintervals(self, *intervals: tuple[float, float]) -> None:
         """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
         self._queue += intervals[::-1]
 

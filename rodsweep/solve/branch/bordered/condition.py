@@ -58,7 +58,7 @@ class BorderCondition:
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-            if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
+            if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
                 raise Unsolvable("Newton's method finds no cycle of the branch near the prediction")
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             off = off + change

@@ -225,7 +225,7 @@ def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], o
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _near_chord(problem, a, b, one):
+        if not low <= row_coordinate <= high or not _may_be_near(problem, a, b, one):
             continue
         try:
             crossing = problem.point_on_row(a, b, row_coordinate)
@@ -239,7 +239,7 @@ def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], o
     return best
 
 
-def _near_chord(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _may_be_near(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = problem.line_axis.coordinate(one.at)
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))

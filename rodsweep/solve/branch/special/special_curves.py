@@ -180,7 +180,7 @@ class SpecialPointCurve:
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
-def with_located_ends(
+def with_generalised_hopf_ends(
     curve: SpecialPointCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in

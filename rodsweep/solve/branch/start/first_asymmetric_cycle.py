@@ -96,7 +96,7 @@ def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     expected = asymmetry(predicted)
     other = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
     found = float(asymmetry(other) @ expected) / float(expected @ expected)
-    least, largest = BRANCH_END_SETTINGS.asymmetry_ratios
+    least, largest = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
     if not least < found < largest:
         raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
 

@@ -84,7 +84,7 @@ class CrossingSearch:
                 intervals.stop_at(a, f"more than {max_crossings:g} crossings; raise the option crossings")
                 continue
             if self._must_be_halved(a, b, max_crossings, intervals.length):
-                intervals.add_parts((a, (a + b) / 2), ((a + b) / 2, b))
+                intervals.add_subintervals((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
                 self._search_interval(a, b, intervals)
@@ -133,13 +133,13 @@ class CrossingSearch:
                 self.crossings_by_p.update(
                     (self.problem.path.coordinate(crossing.value), crossing) for crossing in crossings
                 )
-                intervals.add_parts(*parts)
+                intervals.add_subintervals(*parts)
                 return
             if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 where = self.problem.path.text_at(a)
                 raise Unsolvable(f"the crossing of the imaginary axis near {where} could not be located")
         middle = a + share * (b - a)
-        intervals.add_parts((a, middle), (middle, b))
+        intervals.add_subintervals((a, middle), (middle, b))
 
     def _intervals_between_crossings(
         self, crossings: list[Threshold], left: AxisModes, right: AxisModes, length: float

@@ -105,7 +105,7 @@ class NearbyCycleSolver:
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-        if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
+        if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.matrix_distance += change
         return moved_orbit(orbit, self.scale.parameter_name, step), change
