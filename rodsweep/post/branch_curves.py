@@ -69,7 +69,7 @@ class StoredBranch:
         return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
 
     @property
-    def errors(self) -> dict[float, float]:
+    def parameter_errors(self) -> dict[float, float]:
         """Absolute error of the parameter at each special point, by parameter value."""
         return {float(special.at): special.error for special in self.special}
 
@@ -129,9 +129,9 @@ class RodBranches:
         self.curves = [_stored_branch(self._v, along, number) for number in range(1, complete + 1)]
 
     @property
-    def errors(self) -> dict[float, float]:
+    def parameter_errors(self) -> dict[float, float]:
         """Absolute error of the parameter at each special point of all branches, by parameter value."""
-        return {at: error for curve in self.curves for at, error in curve.errors.items()}
+        return {at: error for curve in self.curves for at, error in curve.parameter_errors.items()}
 
     @property
     def stable_cycles(self) -> list[ParameterRange]:

@@ -9,7 +9,7 @@ import numpy as np
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
-from ..solve.changes.anchors import ANCHOR_SETTINGS
+from ..solve.changes.spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
 from .check_rows import arms_line, material_check_rows, rod_check_rows
 from .protocol import CheckRow, Task
@@ -52,10 +52,10 @@ class CertifiedTask(Task):
         By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
         imaginary axis.
         """
-        accuracy = mesh_accuracy(ANCHOR_SETTINGS.arm_accuracy, vectors=False)
+        accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, vectors=False)
 
         def mesh_of(rod: Rod) -> Elements:
-            return spectrum_mesh(rod, ANCHOR_SETTINGS.min_known_modes, accuracy)
+            return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)
 
         return largest_first_mesh(self.points, mesh_of, self.searched_limits())
 

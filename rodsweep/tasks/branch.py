@@ -134,10 +134,7 @@ def _cycle_values(point: "BranchPoint", along: str) -> dict[str, Any]:
     return outcome_values(variables, point, point.measures, point.errors, names=own)
 
 
-SPECIAL_POINT_FIELDS = {
-    "special_tip_y_max_error": "size_error",
-    "special_amplitude_coefficient_error": "coefficient_error",
-}
+SPECIAL_POINT_FIELDS = {"special_amplitude_coefficient_error": "coefficient_error"}
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 

@@ -20,7 +20,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
 from rodsweep.solve.branch.bordered.scale import deflection_of
 from rodsweep.solve.branch.branch_curve import BranchPoint
-from rodsweep.solve.branch.mesh_choice import is_measurement_due, with_errors_within_accuracy
+from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, with_errors_within_accuracy
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.along_path import find_axis_crossings

@@ -101,7 +101,7 @@ def branch_answer(rod: Rod, start: float, stop: float, accuracy: float) -> Answe
             name = f"branch {number}, special point {place}, {point.kind.name}: "
             answer[name + "at"] = point.at, point.error
             answer[name + "period"] = point.period, point.period_error * point.period
-            answer[name + "size"] = point.tip_y_max, point.size_error * abs(point.tip_y_max)
+            answer[name + "size"] = point.tip_y_max, point.tip_y_max_error * abs(point.tip_y_max)
     return answer
 
 
@@ -580,7 +580,7 @@ CASES = {
     "EXCHANGE_SETTINGS": THRESHOLDS,
     "LEADING_EIGENVALUE_SETTINGS": THRESHOLDS,
     "UNSTABLE_MODE_COUNT_SETTINGS": THRESHOLDS,
-    "ANCHOR_SETTINGS": CONE,
+    "SPECTRUM_SAMPLE_SETTINGS": CONE,
     "ARM_CROSSING_SETTINGS": CONE,
     "SEARCH_RANGE_SETTINGS": CONE,
     "CRUSHING_END_SETTINGS": THRESHOLDS,

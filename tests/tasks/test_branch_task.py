@@ -24,7 +24,7 @@ from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from rodsweep.results.layouts.variables import MISSING_STATUS
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
 from rodsweep.tasks.branch import branch_values
 from rodsweep.tasks.running.job import job_of_file
 
@@ -280,7 +280,7 @@ def test_words_have_the_numbers_of_the_solver():
     assert {kind.name: int(kind) for kind in SpecialKind} == {
         name: number for number, name in enumerate(SPECIAL_KINDS) if number
     }
-    assert {reason.name: int(reason) for reason in EndReason} == {
+    assert {reason.name: int(reason) for reason in BranchEndReason} == {
         name: number for number, name in enumerate(END_REASONS) if number
     }
 

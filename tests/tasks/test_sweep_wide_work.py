@@ -13,9 +13,9 @@ from surveyed import survey_only
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.results.run.checkpoints import ItemResults
-from rodsweep.solve.branch.special.boundaries import SpecialBoundaries
+from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     TracedHalfCurve,
@@ -180,7 +180,7 @@ def boundaries():
         for row in range(1, 6)
         for at in (0.2, 0.6)
     ]
-    return SpecialBoundaries(LINE, ROWS, special)
+    return SpecialCurveTracer(LINE, ROWS, special)
 
 
 def half(items, item):
@@ -197,7 +197,7 @@ def half(items, item):
     near = {i: 0.0 for i, other in enumerate(items.special_points) if other.at == one.at}
     low, high = sorted((one.row_value, last))
     near = {i: d for i, d in near.items() if low <= items.special_points[i].row_value <= high}
-    return TracedHalfCurve(HalfCurve(points, CurveEnd.edge), near).arrays()
+    return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), near).arrays()
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3, 8])

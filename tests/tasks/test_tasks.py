@@ -22,10 +22,10 @@ from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
 from rodsweep.results.run.journal import Journal
-from rodsweep.solve.branch.special.special_curves import CurveEnd, CurvePoint, SpecialPointCurve
+from rodsweep.solve.branch.special.special_curves import CurveEndReason, CurvePoint, SpecialPointCurve
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.changes.status import ThresholdStatus
-from rodsweep.solve.continuation.boundaries import Boundaries
+from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
@@ -333,10 +333,10 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     point = CurvePoint(at=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
     curve = SpecialPointCurve(
-        SpecialKind.fold, (point,), (CurveEnd.edge, CurveEnd.not_followed), (None, None)
+        SpecialKind.fold, (point,), (CurveEndReason.edge, CurveEndReason.not_followed), (None, None)
     )
     filled = cycle_curve_values(
-        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
     (line,) = cycle_curve_lines(view, "F", "k1")
@@ -352,9 +352,9 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         CurvePoint(at=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
-    curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEnd.edge,) * 2, (None, None))
+    curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))
     filled = cycle_curve_values(
-        Boundaries((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
     nan = float("nan")
     rows = {

@@ -19,7 +19,7 @@ from rodsweep.model.arm.drag import (
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
-from rodsweep.solve.changes.along_path import ThresholdList
+from rodsweep.solve.changes.along_path import ThresholdSearchResult
 from rodsweep.solve.changes.kinds import ChangeKind, Threshold
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
@@ -296,7 +296,7 @@ def test_numbers_need_no_solver_and_help_no_units():
 def found(tau2, *changes, end=200.0):
     """Changes of an arm that are given: (F, kind, unstable modes after it)."""
     crossings = tuple(Threshold(F, kind, 10.0, 0.0, 0.0, after) for F, kind, after in changes)
-    transitions = ThresholdList(thresholds=crossings, proved=True)
+    transitions = ThresholdSearchResult(thresholds=crossings, proved=True)
     return ThresholdsWithDrag(tau2=tau2, thresholds=Thresholds(status=OK, search_result=transitions, end=end))
 
 
@@ -361,7 +361,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
     inaccurate = tuple(replace(c, error=0.1 if c.value == 20.0 else 0.0) for c in known.thresholds.thresholds)
     thresholds = replace(
         known.thresholds,
-        search_result=ThresholdList(thresholds=inaccurate, proved=True),
+        search_result=ThresholdSearchResult(thresholds=inaccurate, proved=True),
         status=ThresholdStatus.accuracy_not_reached,
     )
     told = verdict(arm(viscosity=1e3), replace(known, thresholds=thresholds))

@@ -13,7 +13,7 @@ from typing import Any
 from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
-from ...solve.cycle.accuracy.refinement import refined_cycle_at_given_period
+from ...solve.cycle.accuracy.refinement import refined_cycle_of_any_period
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
 from ...solve.cycle.neighbour import Neighbour
 from ...solve.orbit.matrix.linearisation import Linearisation
@@ -80,7 +80,7 @@ class AccurateCycle:
     @classmethod
     def converged_from_orbit(cls, orbit: Orbit) -> "AccurateCycle":
         """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
-        found = refined_cycle_at_given_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
+        found = refined_cycle_of_any_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
         return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
 
     def cycle_at_force(self, F: float) -> "AccurateCycle":

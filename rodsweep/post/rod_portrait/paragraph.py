@@ -160,13 +160,13 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     stable = [piece for curve in curves for piece in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
-    yield f"Stable cycles: {units.load_ranges_text(stable, rod.errors) if stable else no_cycle}."
+    yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
     if not rod.hidden_count:
         beside = rod.coexistence
-        ranges = units.load_ranges_text(beside, rod.errors) if beside else ""
+        ranges = units.load_ranges_text(beside, rod.parameter_errors) if beside else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycles:
-            yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.errors)}."
+            yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
 
 
 def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:

@@ -81,16 +81,16 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
         yield f"branch {number}, {_ends_phrase(curve, along)}: {_extent_text(curve, errors, along)}"
         yield from _special_points_between_ends(curve, along)
         if curve.stable_ranges:
-            yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.errors)}"
+            yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.parameter_errors)}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
         common = rod.coexistence
-        words = f"{along} = {ranges_text(common, rod.errors)}" if common else nowhere
+        words = f"{along} = {ranges_text(common, rod.parameter_errors)}" if common else nowhere
         yield f"{COEXISTENCE_WORDS}: {words}"
         if pairs := rod.two_cycles:
-            yield f"{TWO_CYCLES_WORDS}: {along} = {ranges_text(pairs, rod.errors)}"
+            yield f"{TWO_CYCLES_WORDS}: {along} = {ranges_text(pairs, rod.parameter_errors)}"
 
 
 def _extent_text(curve: StoredBranch, errors: Array, along: str) -> str:
@@ -204,7 +204,9 @@ def _lines_on_rods_with(
     unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
     having = [
         ": ".join(
-            filter(None, (point_text(rod.view, rod.index), f"{along} = {ranges_text(own, rod.errors)}"))
+            filter(
+                None, (point_text(rod.view, rod.index), f"{along} = {ranges_text(own, rod.parameter_errors)}")
+            )
         )
         for rod, own in zip(rods, ranges, strict=True)
         if own

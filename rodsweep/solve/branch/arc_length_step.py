@@ -218,13 +218,18 @@ def arc_length_between(start: BranchCycle, end: BranchCycle) -> float:
 
 
 def branch_cycle_with_calibrated_errors(
-    start: BranchCycle, found: ConvergedOrbit, tangent: Array, length: float, ahead: float, accuracy: float
+    start: BranchCycle,
+    found: ConvergedOrbit,
+    tangent: Array,
+    length: float,
+    next_arc_length: float,
+    accuracy: float,
 ) -> BranchCycle:
     """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with
     errors estimated from the calibration of `start`.
 
-    tangent: tangent of the branch at the new cycle, (N + 1,). ahead: length of the next step. accuracy:
-    relative accuracy of `found`.
+    tangent: tangent of the branch at the new cycle, (N + 1,). next_arc_length: arc length of the step to the
+    next cycle. accuracy: relative accuracy of `found`.
     """
     cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, found, accuracy)
     derivatives = branch_derivatives(found, start.scale, tangent)
@@ -233,7 +238,7 @@ def branch_cycle_with_calibrated_errors(
     return BranchCycle(
         cycle=cycle,
         derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=changed),
-        next_arc_length=ahead,
+        next_arc_length=next_arc_length,
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,
         arc_since_measured=start.arc_since_measured + length,

@@ -12,7 +12,7 @@ from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
 from .arc_length_step import BranchCycle
 from .special.special_point import SpecialPoint
-from .symmetry import SymmetryBreaking
+from .symmetry_breaking import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,11 +81,12 @@ class BranchCurve:
     """A branch: cycles and special points, both lists in order along the branch."""
 
     start_hopf: int
-    """Index of the Hopf point where the branch starts; -1 for an asymmetric branch."""
+    """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if asymmetric."""
     points: list[BranchPoint] = field(default_factory=list)
     special_points: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
-    """Index of the Hopf point where the branch ends; -1 if the branch has another end."""
+    """Index in `BranchLimits.hopfs` of the Hopf point where the branch ends; -1 if the branch has another
+    end."""
     start_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch starts; None for a branch from a Hopf point."""
     end_breaking: SymmetryBreaking | None = None
@@ -95,7 +96,7 @@ class BranchCurve:
     of the model."""
     list_full: bool = False
     """Whether the continuation stopped at the maximum number of cycles."""
-    multipliers_explained: bool = True
+    unit_circle_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
@@ -108,7 +109,7 @@ class BranchCurve:
         explained: whether these points explain every multiplier that crosses the unit circle there."""
         for special in between:
             self.add_special_point(special)
-        self.multipliers_explained &= explained
+        self.unit_circle_crossings_explained &= explained
 
     def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
         """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated

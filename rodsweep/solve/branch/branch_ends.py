@@ -10,21 +10,22 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
+from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .special.special_point import EndReason
+from .special.special_point import BranchEndReason
 from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_special_point
-from .symmetry import BRANCH_END_SETTINGS, reaches_symmetric_cycle, symmetry_breaking_between
+from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
 
 
-def passed_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
+def reaches_mirror_image(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> bool:
     """Whether a branch reaches its mirror image between two cycles: at a Hopf point or a symmetric cycle."""
     if start.orbit.is_symmetric:
-        return passed_hopf_point(start, end)
+        return passes_hopf_point(start, end)
     return reaches_symmetric_cycle(start, end, limits.breakings, limits.accuracy)
 
 
-def passed_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
+def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether a Hopf point lies between two cycles: the bending moments at t = 0 then have opposite signs.
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
@@ -48,7 +49,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if shorter < ARC_STEP_CONTROL.min_length:
-            raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
+            raise Unsolvable("two cycles of opposite sign follow each other at the shortest allowed step")
         return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
@@ -68,7 +69,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
                 return replace(start, next_arc_length=shorter)
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
     why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)
 
 
 def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart) -> bool:
@@ -89,5 +90,5 @@ def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits)
         breaking = limits.breakings[which]
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric, but no known symmetry breaking is near"
-    return BranchEnd(branch_end_point(start, EndReason.no_cycle_found, why), complete=False)
+    why = "the cycles become symmetric, but no symmetry breaking is known there"
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)

@@ -30,8 +30,8 @@ def measured_branch_calibration(
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
     finer, share = finer_meshes(mesh)
-    side = _side_of_condition(orbit, derivatives)
-    condition = BorderCondition.at_arc_length(derivatives.scale, side, orbit)
+    border = _border_of_comparison(orbit, derivatives)
+    condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_and_trivial_error(found)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
@@ -46,17 +46,18 @@ def measured_branch_calibration(
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= share
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
-    return BranchCalibration(known, parts[:, -1], sensitivity_of(rough, derivatives))
+    return BranchCalibration(known, parts[:, -1], tip_y_sensitivity(rough, derivatives))
 
 
-def _side_of_condition(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
-    """Direction, (3,), in components (deflection, log period, parameter), along which the cycle on a finer
-    mesh does not move: along the branch. Close to the coordinate 0, along the parameter: at an equal arc
-    length the finer mesh might have a negative coordinate, which no rod has."""
+def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
+    """Border, (3,), of the condition under which the cycle is solved on a finer mesh, in components
+    (deflection, log period, parameter): the unit tangent of the branch, so that the arc length is equal.
+    Close to the parameter coordinate 0, the direction of the parameter: at an equal arc length the finer mesh
+    might have a negative coordinate, which no rod has."""
     scale = derivatives.scale
     at = orbit.form.rod.coordinate(scale.parameter_name)
     is_near_zero = abs(at) < scale.min_coordinate_unit
-    is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_rate_at_equal_parameter
+    is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_parameter_rate_near_zero
     return ALONG_PARAMETER if is_near_zero and is_steep else derivatives.unit_tangent
 
 
@@ -86,7 +87,7 @@ def _differences_between_meshes(
     return np.array([*path_differences(rough, CyclePath(slid)), change, own])
 
 
-def sensitivity_of(path: CyclePath, derivatives: BranchDerivatives) -> float:
+def tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit

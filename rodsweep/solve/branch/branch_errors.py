@@ -18,8 +18,8 @@ from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
+from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
-from ..cycle.accuracy.mesh_choice import cheapest_mesh
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
@@ -45,9 +45,10 @@ class BranchErrorSettings:
     newton_tolerance_ratio: float = 0.01
     """Tolerance of Newton's method on the two finer meshes of an error measurement, divided by the
     accuracy."""
-    min_rate_at_equal_parameter: float = 0.1
-    """Close to the coordinate 0, cycles on finer meshes have an equal parameter if the derivative of the
-    scaled parameter coordinate by arc length exceeds this number, far from a fold."""
+    min_parameter_rate_near_zero: float = 0.1
+    """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
+    equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
+    length exceeds this number, far from a fold."""
     sensitivity_step: float = 1e-4
     """Arc length of the difference quotient for the sensitivity of the largest tip y."""
 

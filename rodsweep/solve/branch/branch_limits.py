@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..orbit.matrix.workspace import NewtonWorkspace
-from .special.special_point import EndReason
+from .special.special_point import BranchEndReason
 from .start.hopf_point import HopfBranchStart
-from .symmetry import SymmetryBreaking
+from .symmetry_breaking import SymmetryBreaking
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class BranchLimits:
     """Hopf points of the rod within the range."""
     coordinate_range: tuple[float, float]
     """Smallest and largest coordinate of the continuation parameter, at which branches end."""
-    end_reasons: tuple[EndReason, EndReason]
+    end_reasons: tuple[BranchEndReason, BranchEndReason]
     """Reasons for the end of a branch at the smallest and at the largest coordinate."""
     accuracy: float
     max_cycles: int

@@ -10,11 +10,11 @@ from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
-from .mesh_choice import with_errors_within_accuracy
-from .special.special_point import EndReason, SpecialKind, SpecialPoint
+from .branch_mesh_choice import with_errors_within_accuracy
+from .special.special_point import BranchEndReason, SpecialKind, SpecialPoint
 
 
-def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -> SpecialPoint:
+def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
@@ -30,10 +30,10 @@ def branch_end_point(point: BranchCycle, reason: EndReason, message: str = "") -
     )
 
 
-def reason_of_failure(why: Unsolvable) -> EndReason:
+def reason_of_failure(why: Unsolvable) -> BranchEndReason:
     """Reason for the end of a branch at which no further cycle could be solved because of the error `why`."""
     is_limit = isinstance(why, WorkLimitReached) or isinstance(why.__cause__, WorkLimitReached)
-    return EndReason.list_full if is_limit else EndReason.no_cycle_found
+    return BranchEndReason.list_full if is_limit else BranchEndReason.no_cycle_found
 
 
 class BranchRecord:
@@ -88,5 +88,7 @@ class BranchRecord:
             special = replace(special, error=last.at_error * abs(special.at))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
-            special = replace(special, period_error=errors.period_error, size_error=errors.amplitude_error)
+            special = replace(
+                special, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error
+            )
         curve.end(replace(end, special_point=special))

@@ -11,19 +11,19 @@ from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
 from ...solve_progress import solve_part
-from ..changes.along_path import ThresholdList, find_axis_crossings
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
+from .branch_continuation import follow_asymmetric_branch, follow_branch
 from .branch_curve import BranchCurve
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
-from .following import follow_asymmetric_branch, follow_branch
-from .special.special_point import SPECIAL_POINT_SETTINGS, EndReason
+from .special.special_point import SPECIAL_POINT_SETTINGS, BranchEndReason
 from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
-from .symmetry import SymmetryBreaking, symmetry_breakings_in
+from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,7 +91,7 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         BRANCH_SETTINGS.crushing_margin,
     )
     if not low < high:
-        why = "the force crushes the rod everywhere in the range"
+        why = f"the force crushes the rod everywhere in the range of {request.along}"
         return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
     path = Path(rod.with_values(**{request.along: low}), request.along)
     found = find_axis_crossings(path, low, high, request.certify)
@@ -105,9 +105,10 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         try:
             hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
         except FAILURES as error:
-            failures.append(f"the Hopf point at {request.along} = {crossing.value:.12g}: {cause_of(error)}")
+            where = f"{request.along} = {crossing.value:.12g}"
+            failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
     crushed = (low > request.start, high < request.stop)
-    reasons = [EndReason.crushed if end else EndReason.range_end for end in crushed]
+    reasons = [BranchEndReason.crushed if end else BranchEndReason.range_end for end in crushed]
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
@@ -162,7 +163,7 @@ def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
 
 
 def _status_and_message(
-    found: ThresholdList, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    found: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on
@@ -177,14 +178,14 @@ def _status_and_message(
     special = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
-    if any(not curve.multipliers_explained for curve in curves):
+    if any(not curve.unit_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {
         BranchStatus.stopped: bool(failures)
         or any(not curve.complete and not curve.list_full for curve in curves),
         BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
         BranchStatus.special_undecided: inaccurate
-        or any(not curve.multipliers_explained for curve in curves),
+        or any(not curve.unit_circle_crossings_explained for curve in curves),
         BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
     }
     status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)

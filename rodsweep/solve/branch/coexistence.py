@@ -20,7 +20,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
 from .branch_request import BranchRequest
 from .branches import BRANCH_SETTINGS, BranchesOfRod, solve_branches
-from .special.special_point import EndReason, SpecialPoint
+from .special.special_point import BranchEndReason, SpecialPoint
 from .status import BranchStatus, CoexistenceStatus
 
 
@@ -184,19 +184,19 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
 def _end_error_sign(point: SpecialPoint) -> int:
     """Sign of the error of a special point in `certain_range`: 1 (the interval is shortened), or -1 at an end
     of the parameter range, where the branch has a cycle exactly at the end (the interval is extended)."""
-    return -1 if point.reason is EndReason.range_end else 1
+    return -1 if point.reason is BranchEndReason.range_end else 1
 
 
-def stable_states(motion: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
+def stable_states(rod_classes: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
     """`StableStates` at each parameter value, (values,).
 
-    motion: `RodClass` of the straight rod, (values,). cycles: existence of a stable cycle as in
-    `stable_cycles_at`, (values,).
+    rod_classes: `RodClass` of the straight rod at each parameter value, (values,). cycles: existence of a
+    stable cycle as in `stable_cycles_at`, (values,).
     """
-    straight = (motion == RodClass.monotone) | (motion == RodClass.oscillatory)
+    straight = (rod_classes == RodClass.monotone) | (rod_classes == RodClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.
     states[cycles > 0] += StableStates.cycle
-    states[(cycles < 0) | (motion == RodClass.undecided)] = StableStates.undecided
-    states[motion == RodClass.crushed] = StableStates.crushed
+    states[(cycles < 0) | (rod_classes == RodClass.undecided)] = StableStates.undecided
+    states[rod_classes == RodClass.crushed] = StableStates.crushed
     return states

@@ -17,8 +17,8 @@ from .arc_length_step import (
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ALONG_PARAMETER
+from .branch_end_settings import BRANCH_END_SETTINGS
 from .special.segment import BranchSegment
-from .symmetry import BRANCH_END_SETTINGS
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:

@@ -1,9 +1,8 @@
 """Search for all thresholds along a path of rods (`kinds`): pairs that cross the imaginary axis, and
 exchanges of the leading eigenvalue.
 
-The crossings come from `determinant.certificate.covering`, which proves that the list is complete, or for
-nonuniform arms from `arm.crossings`; the exchanges come from `leading_eigenvalue`. The winding number
-confirms the number of unstable modes at both ends and between the crossings.
+The crossings come from `determinant.certificate.covering`, or for nonuniform arms from `arm.crossings`; the
+exchanges come from `leading_eigenvalue`. Winding numbers confirm the numbers of unstable modes.
 """
 
 import math
@@ -27,18 +26,18 @@ from .unstable_modes import ModeCounter
 class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
-    anchor_shift: float = 1e-4
-    """Anchors are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
+    sample_shift: float = 1e-4
+    """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
     merge_distance: float = 1e-5
-    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this."""
+    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this number."""
 
 
 THRESHOLD_SETTINGS = ThresholdSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ThresholdList:
+class ThresholdSearchResult:
     """All thresholds along a path, by parameter. unstable_at_start, unstable_at_end: -1 if unknown."""
 
     thresholds: tuple[Threshold, ...] = ()
@@ -79,8 +78,7 @@ class AxisCrossings:
     evaluation_count: int = 0
 
     def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
-        """The crossings and gaps up to an earlier end `reach` of the search; self if `reach` is the present
-        end."""
+        """The crossings and gaps up to `reach`, an earlier end of the search or the present end."""
         if reach.p == self.search_end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= reach.p]
@@ -97,7 +95,7 @@ class AxisCrossings:
 
 def find_thresholds(
     path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
-) -> ThresholdList:
+) -> ThresholdSearchResult:
     """All thresholds along `path` for parameter values from `start` to `stop`; `certify` requests a proof.
 
     The search ends early at a rod whose eigenvalues cannot be computed, and for a nonuniform arm after more
@@ -108,7 +106,7 @@ def find_thresholds(
     found = _crossings(problem, (low, high), certify, max_crossings)
     tracer = LeaderExchangeSearch(problem, certify)
     edges = problem.interval_edges(low, high)
-    # A second round only if a pair on the axis was not found to lead, with anchors close to it.
+    # A second round only if a pair on the axis was not found to lead, with samples close to it.
     for _ in range(2):
         changes, reach = tracer.exchanges([*(p for p in edges if p < found.search_end.p), found.search_end.p])
         found = found.restricted_to(reach) if reach.reason else found
@@ -116,17 +114,19 @@ def find_thresholds(
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
         unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
-        oscillates = tracer.anchor(path.coordinate(ends[0])).oscillates
+        oscillates = tracer.sample_at(path.coordinate(ends[0])).oscillates
         ordered = sorted(changes + found.crossings, key=lambda c: c.value)
         crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-        missed = _pairs_missed_as_leaders(path, crossings, oscillates, unstable)
+        missed = _crossings_without_leading_pair(path, crossings, oscillates, unstable)
         if not missed:
             break
-        near = [p + side * THRESHOLD_SETTINGS.anchor_shift * (high - low) for p in missed for side in (-1, 1)]
+        near = [p + side * THRESHOLD_SETTINGS.sample_shift * (high - low) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
-    if certify and not tracer.leaders_proved:
+        counts.doubts.append(
+            "a pair crosses the imaginary axis although another eigenvalue has a larger growth rate"
+        )
+    if certify and not tracer.leading_eigenvalues_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _with_counts(counts, unstable, crossings, at_end)
     counted = _with_interval(counted, found, (start, stop))
@@ -135,12 +135,11 @@ def find_thresholds(
 
 def find_axis_crossings(
     path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
-) -> ThresholdList:
+) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
-    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`.
-
-    `proved` then means that the covering is complete and every count agrees. certify, max_crossings: as in
-    `find_thresholds`, which also says when the search ends early or raises Unsolvable."""
+    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`. `proved`: the covering is
+    complete and every count agrees. certify, max_crossings, early end and Unsolvable: as in
+    `find_thresholds`."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, max_crossings)
@@ -154,11 +153,11 @@ def find_axis_crossings(
 
 def _with_counts(
     counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
-) -> ThresholdList:
-    """`ThresholdList` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
+) -> ThresholdSearchResult:
+    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
     at_end: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
-    return ThresholdList(
+    return ThresholdSearchResult(
         thresholds=crossings,
         open_range=_hull_of_gaps(counts.gaps),
         unstable_at_start=unstable,
@@ -168,7 +167,9 @@ def _with_counts(
     )
 
 
-def _with_interval(counted: ThresholdList, found: AxisCrossings, asked: tuple[float, float]) -> ThresholdList:
+def _with_interval(
+    counted: ThresholdSearchResult, found: AxisCrossings, asked: tuple[float, float]
+) -> ThresholdSearchResult:
     """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
     searched = found.searched_interval(*asked)
     reason = found.search_end.reason
@@ -213,14 +214,14 @@ def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
     return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
-def _pairs_missed_as_leaders(
+def _crossings_without_leading_pair(
     path: Path, crossings: tuple[Threshold, ...], oscillates: bool, unstable: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
     oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:
-        if crossing.kind.changes_leader:
+        if crossing.kind.changes_leading_eigenvalue:
             oscillates = crossing.kind.pair_leads_after
         else:
             if min(unstable, crossing.unstable_after) == 0 and not oscillates:
@@ -233,8 +234,7 @@ def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     """Crossing at a zero of D on the axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
-    # dw/dp = -D_p/D_w.
-    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)
+    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)  # dw/dp = -D_p/D_w
     at, error = path.value(zero.p, zero.error_of_p)
     return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 

@@ -1,22 +1,22 @@
-"""Location of one exchange of the leading eigenvalue between two anchors, by Newton's method on the
+"""Location of one exchange of the leading eigenvalue between two samples, by Newton's method on the
 determinant D."""
 
 import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from .anchors import Anchor
 from .path_problem import PathProblem
+from .spectrum_samples import SpectrumSample
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExchangeSettings:
-    """Settings of Newton's method for an exchange between two anchors."""
+    """Settings of Newton's method for an exchange between two samples."""
 
     max_overtaking_steps: int = 60
     """Maximum number of Newton steps to an overtaking."""
-    carrying_steps: int = 8
-    """Number of steps in which an eigenvalue is followed from an anchor to the middle of the interval."""
+    following_steps: int = 8
+    """Number of steps in which an eigenvalue is followed from a sample to the middle of the interval."""
     converged_step_in_errors: float = 4.0
     """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
     estimate."""
@@ -41,8 +41,10 @@ class LeaderExchange(NamedTuple):
     frequency: float
 
 
-def double_eigenvalue_between(problem: PathProblem, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-    """The double eigenvalue between an anchor `pair` with a leading pair and an anchor `real` with two
+def double_eigenvalue_between(
+    problem: PathProblem, pair: SpectrumSample, real: SpectrumSample
+) -> LeaderExchange | None:
+    """The double eigenvalue between a sample `pair` with a leading pair and a sample `real` with two
     real leading eigenvalues; None if Newton's method does not find it."""
     below = pair.squared_pair_difference()
     above = real.squared_pair_difference()
@@ -57,14 +59,16 @@ def double_eigenvalue_between(problem: PathProblem, pair: Anchor, real: Anchor) 
     return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
 
-def overtaking_between(problem: PathProblem, pair: Anchor, real: Anchor) -> LeaderExchange | None:
-    """The point between two anchors where a real eigenvalue and a pair have equal real parts, by Newton's
+def overtaking_between(
+    problem: PathProblem, pair: SpectrumSample, real: SpectrumSample
+) -> LeaderExchange | None:
+    """The point between two samples where a real eigenvalue and a pair have equal real parts, by Newton's
     method; None if Newton's method does not find it."""
     if all(w.imag != 0 for w in pair.w) or all(w.imag == 0 for w in real.w):
         return None  # no eigenvalue of the other kind is known
     p = (pair.p + real.p) / 2
     ends = sorted((pair.p, real.p))
-    # Start each eigenvalue from the anchor where it leads and carry it to the middle.
+    # Start each eigenvalue from the sample where it leads and carry it to the middle.
     w_real = _follow_eigenvalue(problem, complex(real.w[0]), real.p, p)
     w_pair = _follow_eigenvalue(problem, complex(pair.w[0]), pair.p, p)
     for _ in range(EXCHANGE_SETTINGS.max_overtaking_steps):
@@ -96,9 +100,9 @@ def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: flo
     """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
     steps by Newton's method on D."""
     p = start
-    for i in range(1, EXCHANGE_SETTINGS.carrying_steps + 1):
+    for i in range(1, EXCHANGE_SETTINGS.following_steps + 1):
         w, slope, _ = problem.eigenvalue(w, p)
-        following = start + (stop - start) * i / EXCHANGE_SETTINGS.carrying_steps
+        following = start + (stop - start) * i / EXCHANGE_SETTINGS.following_steps
         ahead = w + slope * (following - p)
         w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
         p = following

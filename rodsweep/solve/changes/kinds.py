@@ -32,7 +32,7 @@ class ChangeKind(IntEnum):
     pair_leads = 7
 
     @property
-    def changes_leader(self) -> bool:
+    def changes_leading_eigenvalue(self) -> bool:
         """Whether the leading eigenvalue changes between real and complex at this threshold. Otherwise a pair
         crosses the imaginary axis."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)

@@ -2,13 +2,13 @@
 
 An exchange happens in two ways. At a double eigenvalue, D = D_w = 0, two real eigenvalues become a pair or a
 pair becomes two real eigenvalues. In an overtaking, a real eigenvalue and a pair exchange the lead without
-becoming equal. Anchors are rods whose leading eigenvalues come from the spectrum solver, certified on
-request. Between two anchors, cubic interpolation must explain two smooth quantities: the squared difference
+becoming equal. A sample is a rod whose leading eigenvalues come from the spectrum solver, certified on
+request. Between two samples, cubic interpolation must explain two smooth quantities: the squared difference
 of the two leading eigenvalues, and the difference in real part between the leading eigenvalue and the next
-eigenvalue of the opposite kind (real or complex). Otherwise an anchor is added between the two anchors.
+eigenvalue of the opposite kind (real or complex). Otherwise a sample is added between the two samples.
 Newton's method on the determinant D finds each exchange, and the winding number proves that no eigenvalue
 lies to the right of the eigenvalues that exchange the lead. The slopes must also exclude further exchanges
-between the two anchors; otherwise anchors are added on both sides of the exchange.
+between the two samples; otherwise samples are added on both sides of the exchange.
 """
 
 from dataclasses import dataclass
@@ -19,47 +19,47 @@ import numpy as np
 from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
 from ..unsolvable import Unsolvable
-from .anchor_interpolation import (
-    excludes_exchange,
-    has_only_double_eigenvalue,
-    has_only_overtaking,
-    next_anchor_position,
-)
-from .anchors import Anchor
 from .exchange import double_eigenvalue_between, overtaking_between
 from .kinds import ChangeKind, Threshold
 from .path_problem import PathProblem
-from .search_range import SearchedIntervals, SearchEnd
+from .sample_interpolation import (
+    excludes_exchange,
+    has_only_double_eigenvalue,
+    has_only_overtaking,
+    next_sample_position,
+)
+from .search_range import IntervalQueue, SearchEnd
+from .spectrum_samples import SpectrumSample
 
-ANCHOR_MODE_COUNT = 4
-"""Number of leading eigenvalues computed at an anchor: the first two, and two that may overtake the first
-two. The number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become
-equal."""
+SAMPLED_MODE_COUNT = 4
+"""Number of leading eigenvalues of a sample: the first two, and two that may overtake the first two. The
+number is a constant, because with fewer eigenvalues it would be unknown which eigenvalues become equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LeadingEigenvalueSettings:
-    """Settings of the search for exchanges of the leading eigenvalue between anchors."""
+    """Settings of the search for exchanges of the leading eigenvalue between samples."""
 
     accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues at an anchor, before the refinement by Newton's method on D."""
-    close_anchors: float = 2e-4
-    """Between two anchors whose distance, as a fraction of the path's length, is at most this, the second and
-    third eigenvalue, or the first two pairs, may explain the interval as well."""
+    """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
+    close_sample_distance: float = 2e-4
+    """Two samples are close if their distance, as a fraction of the path's length, is at most this number.
+    Between close samples, `excludes_exchange` too may exclude an exchange."""
     smallest_interval: float = 1e-8
-    """An anchor is added between two anchors only if their distance, as a fraction of the path's length,
-    exceeds this. Three real eigenvalues of cones meet within 4e-7 of the path."""
-    max_anchors: int = 1000
-    """With more anchors than this, an anchor is added only between anchors farther apart than
-    `close_anchors`."""
+    """A sample is added between two samples only if their distance, as a fraction of the path's length,
+    exceeds this number. Three real eigenvalues of cones meet within 4e-7 of the path."""
+    max_samples: int = 1000
+    """With more samples than this number, a sample is added only between samples farther apart than
+    `close_sample_distance`."""
     distance_to_exchange: float = 1e-3
-    """Where further exchanges may lie between two anchors, anchors are added on both sides of the exchange
+    """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
-    smallest_hiding_interval: float = 1e-9
-    """Like `smallest_interval`, for two anchors between which two exchanges may lie."""
-    smallest_share: float = 0.05
-    """An added anchor divides its interval into parts that are at least this fraction of the interval: a
-    minimum of the interpolant may coincide with an anchor."""
+    smallest_interval_with_two_exchanges: float = 1e-9
+    """Like `smallest_interval`, for two samples between which the interpolation does not exclude two
+    exchanges."""
+    min_part_ratio: float = 0.05
+    """An added sample divides its interval into parts that are at least this fraction of the interval: a
+    minimum of the interpolant may coincide with a sample."""
     max_distance_in_errors: float = 10.0
     """The eigenvalue found by Newton's method is rejected as a different eigenvalue if its distance from the
     start exceeds this multiple of the start's error estimate and `max_relative_distance` times |w|."""
@@ -75,34 +75,34 @@ LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 
 class LeaderExchangeSearch:
-    """Finds the exchanges of the leading eigenvalue along a path. anchors: the solved anchors, by path
+    """Finds the exchanges of the leading eigenvalue along a path. samples: the samples solved so far, by path
     variable."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem = problem
         self.path = problem.path
         self.certify = certify
-        self.anchors: dict[float, Anchor] = {}
-        self.leaders_proved = certify
-        """Whether all anchors are certified, no undecided interval is left, and counts prove at each exchange
+        self.samples: dict[float, SpectrumSample] = {}
+        self.leading_eigenvalues_proved = certify
+        """Whether all samples are certified, no undecided interval is left, and counts prove at each exchange
         that no further eigenvalue lies to the right."""
 
-    def anchor(self, p: float) -> Anchor:
-        """The anchor at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
+    def sample_at(self, p: float) -> SpectrumSample:
+        """The sample at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
         cannot be computed."""
-        if p not in self.anchors:
-            self.anchors[p] = self._solve_anchor(p)
-        return self.anchors[p]
+        if p not in self.samples:
+            self.samples[p] = self._solve_sample(p)
+        return self.samples[p]
 
-    def _solve_anchor(self, p: float) -> Anchor:
-        request = SpectrumRequest(ANCHOR_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
+    def _solve_sample(self, p: float) -> SpectrumSample:
+        request = SpectrumRequest(SAMPLED_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
         found = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
-        self.leaders_proved &= found.certified or found.status == SpectrumStatus.undecided
+        self.leading_eigenvalues_proved &= found.certified or found.status == SpectrumStatus.undecided
         if not np.isfinite(found.eigenvalues).all():
             raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
         w = found.eigenvalues.copy()
-        slope = np.empty(ANCHOR_MODE_COUNT, dtype=complex)
+        slope = np.empty(SAMPLED_MODE_COUNT, dtype=complex)
         for i, guess in enumerate(found.eigenvalues):
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
             polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
@@ -111,14 +111,14 @@ class LeaderExchangeSearch:
             distances = np.abs(found.eigenvalues - polished)
             if distances[i] <= min(near, distances.min()):
                 w[i] = polished
-        return Anchor(p, w, slope, *self.problem.relaxation_time_and_slope(p))
+        return SpectrumSample(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
     def exchanges(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
         found: list[Threshold] = []
-        intervals = SearchedIntervals(edges)
-        self.anchor(edges[0])
+        intervals = IntervalQueue(edges)
+        self.sample_at(edges[0])
         for a, b in intervals:
             try:
                 found += self._search_interval(a, b, intervals)
@@ -126,25 +126,27 @@ class LeaderExchangeSearch:
                 intervals.end_within((a, b), str(why))
         return found, intervals.end
 
-    def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> list[Threshold]:
-        """The exchange between the anchors at a and b, in a list; an empty list without an exchange, or if
+    def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
+        """The exchange between the samples at a and b, in a list; an empty list without an exchange, or if
         the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
         proof if it is too short; raises Unsolvable."""
-        left = self.anchor(a)
-        right = self.anchor(b)
+        left = self.sample_at(a)
+        right = self.sample_at(b)
         share = 0.5
         if left.oscillates == right.oscillates:
-            share, hides = next_anchor_position(left, right)
+            share, may_hold_two = next_sample_position(left, right)
             settings = LEADING_EIGENVALUE_SETTINGS
-            smallest = settings.smallest_hiding_interval if hides else settings.smallest_interval
-            if len(self.anchors) > settings.max_anchors:
-                smallest = settings.close_anchors
-            close = b - a <= settings.close_anchors * intervals.length
-            if share == 0.0 or (close and excludes_exchange(left, right, hides)):
+            smallest = (
+                settings.smallest_interval_with_two_exchanges if may_hold_two else settings.smallest_interval
+            )
+            if len(self.samples) > settings.max_samples:
+                smallest = settings.close_sample_distance
+            close = b - a <= settings.close_sample_distance * intervals.length
+            if share == 0.0 or (close and excludes_exchange(left, right, may_hold_two)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
-                self.leaders_proved = False
+                self.leading_eigenvalues_proved = False
                 return []
         else:
             change = self._exchange_between(left, right)
@@ -155,32 +157,32 @@ class LeaderExchangeSearch:
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
                 )
-        smallest_share = LEADING_EIGENVALUE_SETTINGS.smallest_share
-        middle = a + min(max(share, smallest_share), 1 - smallest_share) * (b - a)
-        intervals.add_parts((a, middle), (middle, b))
+        min_part_ratio = LEADING_EIGENVALUE_SETTINGS.min_part_ratio
+        middle = a + min(max(share, min_part_ratio), 1 - min_part_ratio) * (b - a)
+        intervals.add_subintervals((a, middle), (middle, b))
         return []
 
     def _exchange_if_alone(
-        self, change: Threshold, left: Anchor, right: Anchor, intervals: SearchedIntervals
+        self, change: Threshold, left: SpectrumSample, right: SpectrumSample, intervals: IntervalQueue
     ) -> list[Threshold]:
-        """The exchange `change` between two anchors, in a list, if no further exchange lies between them;
+        """The exchange `change` between two samples, in a list, if no further exchange lies between them;
         else an empty list, after the division of the interval next to the exchange. An interval too short to
         be divided ends the proof."""
         alone = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
         if alone(left, right):
             return [change]
         length = right.p - left.p
-        if length <= LEADING_EIGENVALUE_SETTINGS.smallest_hiding_interval * intervals.length:
-            self.leaders_proved = False
+        if length <= LEADING_EIGENVALUE_SETTINGS.smallest_interval_with_two_exchanges * intervals.length:
+            self.leading_eigenvalues_proved = False
             return [change]
         p = self.path.coordinate(change.value)
         beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
         places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
-        intervals.add_parts(*pairwise(places))
+        intervals.add_subintervals(*pairwise(places))
         return []
 
-    def _exchange_between(self, left: Anchor, right: Anchor) -> Threshold | None:
-        """The exchange between an anchor with a leading pair and an anchor with a real leading eigenvalue.
+    def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:
+        """The exchange between a sample with a leading pair and a sample with a real leading eigenvalue.
         None if Newton's method finds no exchange, or if a count shows that other eigenvalues lead there."""
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
@@ -202,7 +204,7 @@ class LeaderExchangeSearch:
             # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
             if count.number in (meeting, None):
-                self.leaders_proved = self.leaders_proved and count.number == meeting
+                self.leading_eigenvalues_proved = self.leading_eigenvalues_proved and count.number == meeting
                 at, error = self.path.value(found.p, found.error_of_p)
                 return Threshold(at, kind, found.frequency, found.growth_rate, error)
         return None

@@ -16,7 +16,7 @@ from ..unsolvable import Unsolvable
 class SearchRangeSettings:
     """Settings for the end of a search along a path."""
 
-    last_halvings: int = 4
+    max_halvings_after_failure: int = 4
     """If the search of an interval fails, its left half is searched, then the left half of the remaining
     part, and so on, up to this many times."""
 
@@ -31,8 +31,8 @@ class CrushingEndSettings:
     crushing_margin: float = 1e-6
     """A search ends at this relative distance below the crushing force; at F = k1 the rod is crushed."""
     crushing_tolerance: float = 1e-12
-    """F and the crushing force are treated as equal if their relative difference is at most this: on a grid
-    of F and k1 the two forces may differ by rounding alone."""
+    """F and the crushing force are treated as equal if their relative difference is at most this number: on a
+    grid of F and k1 the two forces may differ by rounding alone."""
 
 
 CRUSHING_END_SETTINGS = CrushingEndSettings()
@@ -52,8 +52,8 @@ class SearchEnd(NamedTuple):
     reason: str = ""
 
 
-class SearchedIntervals:
-    """Queue of the intervals of the path variable that are still to be searched, leftmost first.
+class IntervalQueue:
+    """Intervals of the path variable that are still to be searched, leftmost first.
 
     end: end of the search. When the queue is empty, the range from the first of `edges` to `end.p` has
     been searched.
@@ -71,7 +71,11 @@ class SearchedIntervals:
         """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
         while True:
             # The left part of an interval whose search failed can often be searched.
-            if not self._queue and self.end.reason and self._halvings < SEARCH_RANGE_SETTINGS.last_halvings:
+            if (
+                not self._queue
+                and self.end.reason
+                and self._halvings < SEARCH_RANGE_SETTINGS.max_halvings_after_failure
+            ):
                 self._halvings += 1
                 middle = (self.end.p + self._unsearched_end) / 2
                 self._queue.append((self.end.p, middle))
@@ -82,7 +86,7 @@ class SearchedIntervals:
         if self.end.reason and self.end.p <= self.start_p:
             raise Unsolvable(self.end.reason)
 
-    def add_parts(self, *intervals: tuple[float, float]) -> None:
+    def add_subintervals(self, *intervals: tuple[float, float]) -> None:
         """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
         self._queue += intervals[::-1]
 
@@ -90,7 +94,7 @@ class SearchedIntervals:
         """Ends the search at path variable `p`, up to which the search is complete. reason: why the search
         ends."""
         self._queue.clear()
-        self._halvings = SEARCH_RANGE_SETTINGS.last_halvings
+        self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)
 
     def end_within(self, interval: tuple[float, float], reason: str) -> None:

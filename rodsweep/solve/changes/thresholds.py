@@ -7,7 +7,7 @@ from functools import cache
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
 from ..point_outcome import outcome_or_failure
-from .along_path import ThresholdList, find_thresholds
+from .along_path import ThresholdSearchResult, find_thresholds
 from .kinds import ChangeKind, Threshold
 from .search_range import end_below_crushing
 from .status import ThresholdStatus
@@ -30,7 +30,7 @@ class Thresholds:
     """Result of a search: all thresholds along a path up to the parameter value `end`, with a status."""
 
     status: ThresholdStatus
-    search_result: ThresholdList
+    search_result: ThresholdSearchResult
     end: float
     seconds: float = 0.0
     message: str = ""
@@ -56,12 +56,12 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
     value at the end of the search, NaN after a failure. message: reason for a failure."""
-    found = ThresholdList(proved=status == ThresholdStatus.ok)
+    found = ThresholdSearchResult(proved=status == ThresholdStatus.ok)
     return Thresholds(status=status, search_result=found, end=end, message=message)
 
 
 def thresholds_with_status(
-    found: ThresholdList, accuracy: float, certify: bool, max_thresholds: int
+    found: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
 ) -> Thresholds:
     """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
     requested. max_thresholds: maximum number of thresholds in the list."""

@@ -21,8 +21,8 @@ class UnstableModeCountSettings:
     """Positions between two crossings, as fractions of the interval, at which the unstable modes are counted,
     in this order, until a count is decided."""
     min_crossing_distance: float = 1e-3
-    """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this,
-    because a pair is then too close to the imaginary axis."""
+    """Modes are not counted between two crossings at path variables a < b if (b - a)/|b| is at most this
+    number, because a pair is then too close to the imaginary axis."""
 
 
 UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()

@@ -229,7 +229,7 @@ def zero_along_step(
 
     known = {0.0: ends[0], length: ends[1]}
     if not ends[0] * ends[1] <= 0:
-        raise Unsolvable("the function has the same sign at both ends of the step")
+        raise Unsolvable("the function whose zero is sought has the same sign at both ends of the step")
 
     def settled(at: float) -> float:
         here = known[at] if at in known else value(at)

@@ -8,7 +8,7 @@ the difference gives the error estimate. Near a Hopf point a motion may not sett
 
 from collections import deque
 from dataclasses import replace
-from math import isnan, nan
+from math import nan
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -31,16 +31,16 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
-from .settled_motion import NoCycleFound, SettledMotion
+from .settled_motion import NoCycleFound, SettledMotion, SettlingCriterion, max_settled_distance
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
 from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.returns import (
     RETURN_SETTINGS,
-    early_end,
     not_settled_text,
     repetition,
+    run_failure,
     section_crossings,
     tip_angle_row,
     until_returns,
@@ -84,15 +84,14 @@ class _MarchedMotion:
             settled = self._integrate_until_settled(z)
             path = self._measured_path(settled)
             in_limit = self.rod != self.limiting_rod
-            share = MARCHING_SETTINGS.pair_error_share_in_limit if in_limit else 1.0
+            share = MARCHING_SETTINGS.max_error_ratio_for_limiting_rod if in_limit else 1.0
             enough = self.request.accuracy * share
             for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._measured_path(settled)
-                errors = errors_of_two_integrations(
-                    before, path, MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy
-                )
+                left = max_settled_distance(self.request.accuracy)
+                errors = errors_of_two_integrations(before, path, left)
                 if errors.largest_weighted_error <= enough:
                     break
             if in_limit:
@@ -117,8 +116,7 @@ class _MarchedMotion:
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
-        last = nan
-        rate = 0.0
+        criterion = SettlingCriterion(self.request.accuracy, self.scheme.tolerance)
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
@@ -141,17 +139,11 @@ class _MarchedMotion:
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance
-            # Below the noise the quotient of two distances is not the contraction rate per return.
-            if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
-            elif isnan(last):
-                rate = 0.0 if distance <= noise else 1.0
-            last = distance
-            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            if distance <= MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy * (1 - rate):
+            if criterion.is_settled(distance, turns):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), last))
+        raise NoCycleFound(
+            MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), criterion.distance)
+        )
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -159,7 +151,7 @@ class _MarchedMotion:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := early_end(self.beam, run, self.return_count):
+        if end := run_failure(self.beam, run, self.return_count):
             status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
             raise NoCycleFound(status, end.message)
         return run
@@ -219,7 +211,7 @@ class _MarchedMotion:
         in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
         coordinates = {
-            name: MARCHING_SETTINGS.limit_distance_ratio * known.coordinate(name) for name in in_limits
+            name: MARCHING_SETTINGS.second_rod_distance_ratio * known.coordinate(name) for name in in_limits
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = Beam(self.rod, self.mesh)

@@ -33,8 +33,8 @@ from .status import CycleStatus
 from .straight_rod import StraightRodStability, eigenvalues_to_follow, straight_rod_stability
 from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_meshes
 from .transient.shape_trace import ShapeTrace
+from .transient.tip_trace import TipTrace
 from .transient.torus import classify_quasiperiodic
-from .transient.trace import TipTrace
 from .transient.transient import Transient
 from .transient.transient_outcome import TransientOutcome
 

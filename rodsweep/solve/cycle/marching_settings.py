@@ -29,13 +29,13 @@ class MarchingSettings:
     """Longest duration of a run divided by (number of returns * period of the leading mode)."""
     returns_per_test: int = 5
     """Number of returns of the tip between two tests whether the motion repeats."""
-    pair_error_factor: float = 2.0
+    difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
-    pair_error_share_in_limit: float = 0.5
+    max_error_ratio_for_limiting_rod: float = 0.5
     """For a limiting rod, such as a rod with k1 = inf, integrations are refined until their error is at most
     this fraction of the accuracy; the rest of the accuracy is left for the error of integrating a nearby
     rod."""
-    limit_distance_ratio: float = 2.0
+    second_rod_distance_ratio: float = 2.0
     """A limiting rod is approximated by an integrated rod and, for the error estimate, by a second rod that
     is farther from the limit by this factor. Cycles change in proportion to the distance from the limit, so
     with the factor 2 the difference of the two cycles is the error of the nearer rod."""

@@ -27,9 +27,9 @@ from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
 from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
+from .accuracy.cheapest_mesh import cheapest_mesh
 from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.error_indicators import error_indicators
-from .accuracy.mesh_choice import cheapest_mesh
 from .accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
@@ -54,7 +54,7 @@ class NextMeshSettings:
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
-    at most this."""
+    at most this number."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
     """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
     measuring the errors of a new mesh costs as much as three cycles."""
@@ -66,6 +66,7 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
 """Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
 CheckpointArrays = dict[str, Array]
+"""Data of a neighbour in a checkpoint: arrays by name, as `Neighbour.arrays` returns them."""
 
 
 @dataclass(frozen=True, eq=False)

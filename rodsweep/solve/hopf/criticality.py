@@ -10,7 +10,7 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import Path
 from ...model.rod import Rod
-from ..changes.along_path import ThresholdList, find_axis_crossings
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..changes.search_range import end_below_crushing
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
@@ -40,7 +40,7 @@ class Criticality:
     seconds: computing time."""
 
     status: CriticalityStatus
-    search_result: ThresholdList
+    search_result: ThresholdSearchResult
     coefficients: tuple[HopfCoefficients, ...]
     end: float
     seconds: float = 0.0
@@ -84,7 +84,7 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdList:
+def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdSearchResult:
     return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
@@ -100,7 +100,7 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 def _empty_criticality(cause: str) -> Criticality:
     return Criticality(
         status=CriticalityStatus.failed,
-        search_result=ThresholdList(proved=False),
+        search_result=ThresholdSearchResult(proved=False),
         coefficients=(),
         end=math.nan,
         message=cause,
@@ -108,7 +108,7 @@ def _empty_criticality(cause: str) -> Criticality:
 
 
 def _status_and_message(
-    found: ThresholdList, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+    found: ThresholdSearchResult, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
     problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""

@@ -98,10 +98,10 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
         Boundary(plane, curve.eigenvalue_sign),
-        curve.scaled,
+        curve.scaled_points,
         min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy),
     )
-    signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled))])
+    signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled_points))])
     points = []
     unlocated = 0
     decided = np.flatnonzero(signs != 0)  # the sign may change within the error of a point

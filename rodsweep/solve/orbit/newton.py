@@ -23,7 +23,7 @@ class OrbitNewtonSettings:
     """A new Newton matrix is assembled and eliminated if the relative change in a Newton step exceeds this
     number times the change in the previous step; without a parameter among the unknowns, also if it exceeds
     this number itself."""
-    longest_step: float = 0.5
+    max_relative_step: float = 0.5
     """Largest relative change of state, period or parameter in one iteration. If the parameter is unknown, a
     longer step is a failure. Otherwise a longer step is shortened; the iteration fails if a step after the
     first is longer than this number and longer than the step before."""
@@ -88,10 +88,10 @@ def newton(
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
         # A long first step may come from a poor start; a long later step that is not shorter is divergence.
-        if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.longest_step):
+        if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.max_relative_step):
             raise Unsolvable("Newton's method for the orbit diverges from its start")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
-        share = min(1.0, ORBIT_NEWTON_SETTINGS.longest_step / change) if change > 0 else 1.0
+        share = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
         orbit = orbit.plus_change(step, share)
         distance += share * change
         if not orbit.period > 0:

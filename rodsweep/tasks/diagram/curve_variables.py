@@ -29,13 +29,13 @@ if TYPE_CHECKING:
     from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.branch.special.special_point import RowSpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
     from ...solve.hopf.generalised import CurveCriticality
 
 
 def boundary_curve_values(
-    found: "Boundaries[BoundaryCurve]", plane: tuple[str, str], **more: Any
+    found: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **more: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
     differs between rows). more: values of the variables on the partial beam limit, by name.
@@ -103,14 +103,14 @@ def bautin_curve_values(
 
 
 def cycle_curve_values(
-    found: "Boundaries[SpecialPointCurve]", plane: tuple[str, str]
+    found: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
     """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(found.curves, 1):
-        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.vanishing_points)
+        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
         own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
         for (further, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
             named = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
@@ -164,7 +164,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     line: parameter that varies along the row.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
-    own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
+    own = {f"cycle_special_{line}": "at"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=own)
         for point in result.special_points
@@ -178,7 +178,7 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
-    from ...solve.branch.special.boundaries import FOLLOWED_KINDS
+    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
     from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
@@ -209,17 +209,17 @@ def unstored_special_count(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "Boundaries[SpecialPointCurve]",
+    found: "TracedCurves[SpecialPointCurve]",
     plane: "Plane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
-) -> "Boundaries[SpecialPointCurve]":
+) -> "TracedCurves[SpecialPointCurve]":
     """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced_count`.
     """
-    from ...solve.branch.special.special_curves import with_located_ends
+    from ...solve.branch.special.special_curves import with_generalised_hopf_ends
 
     known = [point for curve in criticalities for point in curve.points]
-    curves = tuple(with_located_ends(curve, plane, known) for curve in found.curves)
+    curves = tuple(with_generalised_hopf_ends(curve, plane, known) for curve in found.curves)
     return replace(found, curves=curves, untraced_count=found.untraced_count + unstored)

@@ -25,10 +25,10 @@ from .curve_variables import (
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
-    from ...solve.branch.special.boundaries import SpecialBoundaries
+    from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
     from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.boundaries import Boundaries
+    from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.generalised import CurveCriticality
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
@@ -61,7 +61,7 @@ class DiagramCurves:
             self.special_points_by_row[number] = row.special_points
         return row
 
-    def initial_data(self, items: "SpecialBoundaries", chosen: Sequence[int]) -> "dict[int, Any]":
+    def initial_data(self, items: "SpecialCurveTracer", chosen: Sequence[int]) -> "dict[int, Any]":
         """Special points cached on this rank, by number of the row, for the rows on which the half curves
         numbered `chosen` start. items: all half curves.
         """
@@ -74,22 +74,22 @@ class DiagramCurves:
         """
         self.special_points_by_row.update(starts)
 
-    def work_items(self, view: View) -> "SpecialBoundaries | None":
+    def work_items(self, view: View) -> "SpecialCurveTracer | None":
         """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
         requested, or if fewer than two rows have a finite value.
 
         view: the result file with all rows.
         """
-        from ...solve.branch.special.boundaries import SpecialBoundaries
+        from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
             return None
         row = self.task.config.plane_parameters[1]
         special = special_points_of_rows(view, plane.axes[0].name, self.task.points.columns_by_name[row])
-        return SpecialBoundaries(*plane.axes, special)
+        return SpecialCurveTracer(*plane.axes, special)
 
-    def solve(self, items: "SpecialBoundaries", item: int) -> dict[str, np.ndarray]:
+    def solve(self, items: "SpecialCurveTracer", item: int) -> dict[str, np.ndarray]:
         """Result of the half curve number `item`, as arrays with the shapes of `TracedHalfCurve`."""
         return items.solve(item, self._special_points, self.workspace)
 
@@ -100,7 +100,7 @@ class DiagramCurves:
         return TracedHalfCurve(None).arrays()
 
     def variables(
-        self, view: View, items: "SpecialBoundaries | None", results: Mapping[int, dict[str, np.ndarray]]
+        self, view: View, items: "SpecialCurveTracer | None", results: Mapping[int, dict[str, np.ndarray]]
     ) -> list[FilledVariable]:
         """All curves as variables of the file; an empty list if there are no curves, because `plane` is None.
         view: the file with all rows. results: results of all half curves by number, with shapes as in
@@ -158,7 +158,7 @@ class DiagramCurves:
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
         return Plane(rod, (abscissa, ordinate))
 
-    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "Boundaries[BoundaryCurve]":
+    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
         """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
         every row, (rows,).
         """
@@ -191,7 +191,7 @@ class DiagramCurves:
             )
         return self.special_points_by_row[number]
 
-    def _criticality(self, plane: "Plane", found: "Boundaries[BoundaryCurve]") -> "list[CurveCriticality]":
+    def _criticality(self, plane: "Plane", found: "TracedCurves[BoundaryCurve]") -> "list[CurveCriticality]":
         """Criticality along each curve; NaN along curves that are not Hopf curves."""
         from ...solve.hopf.generalised import CurveCriticality, curve_criticality
 

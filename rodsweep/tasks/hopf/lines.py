@@ -20,7 +20,7 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import ThresholdList
+    from ...solve.changes.along_path import ThresholdSearchResult
     from ...solve.changes.kinds import Threshold
 
 
@@ -37,7 +37,7 @@ class HopfLine:
     build: Build = DEFAULT_BUILD
     """Constitutive law and profile of all rods on the line."""
 
-    def hopf_points(self) -> "ThresholdList | None":
+    def hopf_points(self) -> "ThresholdSearchResult | None":
         """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
         all rods on such a line are crushed, or if the search fails.
         """
@@ -119,7 +119,7 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 
 
 def hopf_variables(
-    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdList | None]"
+    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 

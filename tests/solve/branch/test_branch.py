@@ -13,17 +13,17 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve import seldom_used_kernels
-from rodsweep.solve.branch import branches, following
+from rodsweep.solve.branch import branch_continuation, branches
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
+from rodsweep.solve.branch.branch_continuation import follow_branch
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import follow_branch
-from rodsweep.solve.branch.special.augmented.functions import pair_nearest_unit_circle
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
-from rodsweep.solve.branch.special.special_curves import CurveEnd
-from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_curves import CurveEndReason
+from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
 from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
@@ -60,7 +60,8 @@ def first_branch(rod, stop, accuracy=1e-7):
     crossing = find_axis_crossings(Path(straight, "F"), 0.0, stop).thresholds[0]
     hopf = hopf_branch_start(Path(rod, "F"), crossing)
     return follow_branch(
-        0, BranchLimits([hopf], (0.0, stop), (EndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace())
+        0,
+        BranchLimits([hopf], (0.0, stop), (BranchEndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace()),
     )
 
 
@@ -121,7 +122,7 @@ def test_forward_and_backward_give_the_same_cycle():
     assert kinds(forward) == ["hopf", "end"]
     assert kinds(backward) == ["hopf", "fold", "end"]
     for curve in (forward, backward):
-        assert curve.special_points[-1].reason == EndReason.range_end
+        assert curve.special_points[-1].reason == BranchEndReason.range_end
         assert curve.points[-1].at == pytest.approx(100.0, rel=1e-14)
     one, other = forward.points[-1], backward.points[-1]
     for name in ("period", "tip_y_max", "tip_x_min", "tip_x_max"):
@@ -201,7 +202,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     points, end = SpecialCurveProblem(
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).follow_from(torus, 100.0)
-    assert end is CurveEnd.edge
+    assert end is CurveEndReason.edge
     assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
     for point in points:
         assert point.error <= 1e-7 * point.parameter
@@ -235,7 +236,7 @@ def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, 
     assert found.status == BranchStatus.ok
     curve = found.curves[0]
     end, point = curve.special_points[-1], curve.points[-1]
-    assert end.reason == EndReason.range_end
+    assert end.reason == BranchEndReason.range_end
     request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
     cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.at}), request)
     assert cycle.status == CycleStatus.cycle
@@ -250,21 +251,21 @@ def test_rod_without_a_hopf_point_has_no_branch():
 
 
 def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
-    made = following.next_cycle
+    made = branch_continuation.next_cycle
 
     def lost(here, accuracy):
         if here.parameter_coordinate > 75:
             raise Unsolvable("there is no cycle near on the branch")
         return made(here, accuracy)
 
-    monkeypatch.setattr(following, "next_cycle", lost)
+    monkeypatch.setattr(branch_continuation, "next_cycle", lost)
     solved.cache_clear()
     found = solved(SHORT)
     solved.cache_clear()
     first, second = found.curves
     assert found.status == BranchStatus.stopped
     assert first.special_points[-1].kind == SpecialKind.end
-    assert first.special_points[-1].reason == EndReason.no_cycle_found
+    assert first.special_points[-1].reason == BranchEndReason.no_cycle_found
     said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
     assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
     assert first.points[-1].at > 75
@@ -275,7 +276,7 @@ def test_list_that_is_full_says_so():
     found = solved(SHORT, points=8)
     assert found.status == BranchStatus.list_full
     assert sum(len(curve.points) for curve in found.curves) == 8
-    assert found.curves[0].special_points[-1].reason == EndReason.list_full
+    assert found.curves[0].special_points[-1].reason == BranchEndReason.list_full
 
 
 def test_search_that_fails_is_a_status(monkeypatch):
@@ -348,7 +349,7 @@ def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_
     """Their first cycles, and the errors beyond F = 174, were lost in rounding errors of Newton's steps."""
     rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
     crossing = find_axis_crossings(Path(rod, "F"), start, start + 5).thresholds[0]
-    ends = ((0.0, stop), (EndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
+    ends = ((0.0, stop), (BranchEndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
     curve = follow_branch(0, BranchLimits([hopf_branch_start(Path(rod, "F"), crossing)], *ends))
     assert curve.complete
     assert curve.special_points[-1].at == pytest.approx(stop)

@@ -16,7 +16,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import cycle_at_length, next_cycle
-from rodsweep.solve.branch.mesh_choice import is_measurement_due, solve_on_sufficient_mesh
+from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, solve_on_sufficient_mesh
 from rodsweep.solve.branch.range_end import cycle_at_range_end, range_end_condition
 from rodsweep.solve.branch.special.detection import special_points_between
 from rodsweep.solve.branch.special.special_point import SpecialKind

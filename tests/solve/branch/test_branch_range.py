@@ -5,11 +5,11 @@ import pytest
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_continuation import follow_branch
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import follow_branch
-from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
@@ -36,7 +36,7 @@ def test_branch_ends_before_a_fold_beyond_the_range(fold, share):
     assert found.status == BranchStatus.ok
     first = found.curves[0]
     assert [one.kind.name for one in first.special_points] == ["hopf", "end"]
-    assert first.special_points[-1].reason == EndReason.range_end
+    assert first.special_points[-1].reason == BranchEndReason.range_end
     assert first.special_points[-1].at == pytest.approx(stop, rel=1e-9)
     assert max(point.at for point in first.points) <= stop * (1 + 1e-9)
 
@@ -53,7 +53,7 @@ def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     whole = solve_branches(rod, BranchRequest("taper", 0.25, 0.45, 1e-5, True, 100, 10))
     assert whole.status == BranchStatus.ok
     (curve,) = whole.curves
-    assert curve.special_points[-1].reason == EndReason.range_end
+    assert curve.special_points[-1].reason == BranchEndReason.range_end
     assert min(point.at for point in curve.points) == pytest.approx(0.25, rel=1e-9)
 
 
@@ -63,14 +63,14 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
     ends = []
     for keeps_omega in (False, True):
         hopf = hopf_branch_start(path, crossing, keeps_omega)
-        reasons = (EndReason.range_end,) * 2
+        reasons = (BranchEndReason.range_end,) * 2
         limits = BranchLimits([hopf], (0.33, 0.45), reasons, 1e-6, 100, NewtonWorkspace())
         last = follow_branch(0, limits).special_points[-1]
-        assert last.reason == EndReason.range_end
+        assert last.reason == BranchEndReason.range_end
         ends.append(last)
     one, other = ends
     assert abs(one.period - other.period) <= one.period_error + other.period_error < 1e-6
-    assert abs(one.tip_y_max - other.tip_y_max) <= one.size_error + other.size_error < 1e-5
+    assert abs(one.tip_y_max - other.tip_y_max) <= one.tip_y_max_error + other.tip_y_max_error < 1e-5
 
 
 def test_a_branch_along_the_rotational_drag_ends_at_zero():
@@ -81,9 +81,9 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
         found = solve_branches(rod, BranchRequest("gamma3", 0.0, 5.3, accuracy, False, 100, 10))
         assert found.status == BranchStatus.ok
         (curve,) = found.curves
-        assert curve.special_points[-1].reason == EndReason.range_end
+        assert curve.special_points[-1].reason == BranchEndReason.range_end
         assert curve.points[-1].at == 0.0
         ends.append(curve.special_points[-1])
     rough, fine = ends
     assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4
-    assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.size_error + fine.size_error < 1e-4
+    assert abs(rough.tip_y_max - fine.tip_y_max) <= rough.tip_y_max_error + fine.tip_y_max_error < 1e-4

@@ -6,14 +6,14 @@ import pytest
 
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_continuation import follow_asymmetric_branch, follow_branch
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.following import follow_asymmetric_branch, follow_branch
-from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.branch.symmetry import symmetry_breakings_in
+from rodsweep.solve.branch.symmetry_breaking import symmetry_breakings_in
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
@@ -24,7 +24,7 @@ def test_a_fold_close_to_the_birth_of_a_branch_is_found():
     straight = Rod(F=0.0, k1=30.0, k2=0.61, gamma3=0.1)
     path = Path(straight, "F")
     hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
-    limits = BranchLimits([hopf], (0.0, 21.8), (EndReason.range_end,) * 2, 1e-3, 500, NewtonWorkspace())
+    limits = BranchLimits([hopf], (0.0, 21.8), (BranchEndReason.range_end,) * 2, 1e-3, 500, NewtonWorkspace())
     known = replace(limits, breakings=symmetry_breakings_in([follow_branch(0, limits).special_points]))
     curve = follow_asymmetric_branch(0, "F", known)
     assert [point.kind.name for point in curve.special_points] == ["symmetry_breaking", "fold", "end"]

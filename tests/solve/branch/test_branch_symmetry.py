@@ -12,24 +12,24 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
-from rodsweep.solve.branch import following
+from rodsweep.solve.branch import branch_continuation
 from rodsweep.solve.branch.arc_length_step import next_cycle
-from rodsweep.solve.branch.branch_curve import BranchCurve
-from rodsweep.solve.branch.branch_limits import BranchLimits
-from rodsweep.solve.branch.branches import BranchesOfRod
-from rodsweep.solve.branch.following import (
+from rodsweep.solve.branch.branch_continuation import (
     follow_asymmetric_branch,
     follow_branch,
     follow_from_cycle,
 )
-from rodsweep.solve.branch.mesh_choice import solve_on_sufficient_mesh
+from rodsweep.solve.branch.branch_curve import BranchCurve
+from rodsweep.solve.branch.branch_limits import BranchLimits
+from rodsweep.solve.branch.branch_mesh_choice import solve_on_sufficient_mesh
+from rodsweep.solve.branch.branches import BranchesOfRod
 from rodsweep.solve.branch.special import locating
 from rodsweep.solve.branch.special.detection import special_kinds_between
-from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import SPECIAL_POINT_SETTINGS, BranchEndReason, SpecialKind
 from rodsweep.solve.branch.start.first_asymmetric_cycle import first_asymmetric_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.branch.symmetry import (
+from rodsweep.solve.branch.symmetry_breaking import (
     asymmetry,
     extended_to_whole_period,
     symmetry_breakings_in,
@@ -51,7 +51,9 @@ def limits():
     hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
-        yield BranchLimits([hopf], (0.0, STOP), (EndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace())
+        yield BranchLimits(
+            [hopf], (0.0, STOP), (BranchEndReason.range_end,) * 2, ROUGH, 500, NewtonWorkspace()
+        )
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +65,7 @@ def symmetric(limits):
 def known(limits, symmetric):
     """The limits with the one symmetry breaking."""
     (breaking,) = symmetry_breakings_in([symmetric.special_points])
-    return following.replace(limits, breakings=[breaking])
+    return branch_continuation.replace(limits, breakings=[breaking])
 
 
 @pytest.fixture(scope="module")
@@ -81,14 +83,16 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     assert kinds(asymmetric) == ["symmetry_breaking", "fold", "end"]
     born, fold, end = asymmetric.special_points
     # NaN does not equal NaN, but has the same text.
-    assert repr(born) == repr(following.replace(symmetric.special_points[1], index_of_cycle_before=-1))
+    assert repr(born) == repr(
+        branch_continuation.replace(symmetric.special_points[1], index_of_cycle_before=-1)
+    )
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
     assert abs(born.at / breaks_at - 1) < 1e-5
     assert abs(fold.at / turns_at - 1) < 1e-5
     assert max(born.error, fold.error) < 1e-3
     assert end.at == pytest.approx(STOP, rel=1e-14)
-    assert end.reason == EndReason.range_end
+    assert end.reason == BranchEndReason.range_end
     turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
     assert {point.unstable_count for point in symmetric.points[turn:]} - {-1} == {1}
@@ -164,8 +168,8 @@ def test_a_known_breaking_that_lies_elsewhere_is_not_taken_for_the_end(known):
     here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(here), replace(known, breakings=[]))
     assert not curve.complete
-    assert curve.special_points[-1].reason == EndReason.no_cycle_found
-    assert "no known symmetry breaking is near" in curve.special_points[-1].message
+    assert curve.special_points[-1].reason == BranchEndReason.no_cycle_found
+    assert "no symmetry breaking is known there" in curve.special_points[-1].message
 
 
 @pytest.mark.parametrize(("has", "kind"), [(True, "symmetry_breaking"), (False, "period_doubling")])

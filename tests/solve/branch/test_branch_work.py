@@ -9,8 +9,8 @@ from rodsweep.solve.branch.branch_errors import BranchCalibration
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special import locating
-from rodsweep.solve.branch.special.located_meshes import first_mesh
-from rodsweep.solve.branch.special.special_point import EndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point_meshes import first_mesh
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -30,7 +30,7 @@ def test_branch_ends_where_its_work_is_used_up():
     part = branches_of(ROD, 60.0, work=0.2)
     assert (whole.status, part.status) == (BranchStatus.ok, BranchStatus.stopped)
     (curve,) = part.curves
-    assert curve.special_points[-1].reason == EndReason.list_full
+    assert curve.special_points[-1].reason == BranchEndReason.list_full
     assert "`work`" in part.message
     known = [point.at for point in whole.curves[0].points]
     assert 1 <= len(curve.points) < len(known)
@@ -47,7 +47,7 @@ def test_rod_after_a_limited_rod_has_its_own_work():
 def test_branch_without_work_for_its_first_cycle_says_so():
     (curve,) = branches_of(ROD, 60.0, work=1e-6).curves
     assert not curve.points
-    assert curve.special_points[-1].reason == EndReason.list_full
+    assert curve.special_points[-1].reason == BranchEndReason.list_full
 
 
 def test_special_point_has_its_error_on_the_meshes_that_the_work_allows(monkeypatch):

@@ -21,10 +21,10 @@ from rodsweep.solve.branch.bordered.condition import BorderCondition
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.branch.coexistence import StableStates, solve_coexistence
-from rodsweep.solve.branch.special.augmented.functions import FoldFunction
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import FoldFunction
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import (
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     SpecialPointCurve,
@@ -143,15 +143,15 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
         )
         halves.append(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end))
     curve = SpecialPointCurve.joined(SpecialKind.fold, *halves)
-    assert curve.ends == (CurveEnd.hopf, CurveEnd.edge)
+    assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
     last = curve.points[-1]
     assert last.row_value == 150.0
     assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
     assert last.error <= 1e-7 * last.at
-    end = curve.vanishing_points[0]
+    end = curve.hopf_ends[0]
     assert abs(end.at - BAUTIN_F) <= end.error
     assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
-    assert curve.vanishing_points[1] is None
+    assert curve.hopf_ends[1] is None
     heights = [point.tip_y_max for point in curve.points]
     assert heights == sorted(heights)
 

@@ -53,7 +53,7 @@ def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
         Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.eigenvalue_sign)
         for build in (Build(), ONES)
     ]
-    for v in curve.scaled[::6]:
+    for v in curve.scaled_points[::6]:
         exact, found = (boundary.tangent(v) for boundary in boundaries)
         assert found * np.sign(found @ exact) == pytest.approx(exact, abs=3e-10)
 

@@ -60,7 +60,7 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
         (cone(15253.748780772801, 18327.095650919167, 0.00016823986456179592, 0.17550637707235592), 59.7),
     ],
 )
-def test_three_exchanges_between_two_anchors_are_all_found(rod, F_max):
+def test_three_exchanges_between_two_samples_are_all_found(rod, F_max):
     found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
     kinds = [c.kind for c in found.thresholds[:3]]
@@ -81,7 +81,7 @@ def assert_leaders_are_those_of_spectra(rod, found, forces):
     """At each force the list tells the kind of the leading eigenvalue and the number of unstable modes."""
     for F in forces:
         before = [c for c in found.thresholds if c.value <= F]
-        pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leader][-1:]
+        pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leading_eigenvalue][-1:]
         spectrum = solve_spectrum(rod.with_values(F=F), SpectrumRequest(2, 1e-8, True))
         assert spectrum.certified
         assert (spectrum.eigenvalues[0].imag != 0) == (pair == [True])

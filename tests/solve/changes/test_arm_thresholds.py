@@ -18,7 +18,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.kinds import ChangeKind
-from rodsweep.solve.changes.search_range import SearchedIntervals
+from rodsweep.solve.changes.search_range import IntervalQueue
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.path import followed_arms
@@ -155,7 +155,7 @@ def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force)
 
 def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
     """Intervals right of an unsolvable place are dropped, and parts of them are searched anew."""
-    intervals, seen = SearchedIntervals([0.0, 1.0, 2.0, 3.0]), []
+    intervals, seen = IntervalQueue([0.0, 1.0, 2.0, 3.0]), []
     for a, b in intervals:
         if b > 1.7:
             intervals.end_within((a, b), "no")
@@ -179,7 +179,7 @@ def test_a_full_list_ends_the_search_and_holds_the_same_changes():
 
 
 def test_each_load_of_a_search_is_counted_once(monkeypatch):
-    """The places of a search, the anchors of the leading eigenvalue and the confirmation share counts."""
+    """The places of a search, the samples of the leading eigenvalue and the confirmation share counts."""
     counted, whole = [], followed_arms.confirmed_count_at
 
     def count(path, hulls, p, modes, here):

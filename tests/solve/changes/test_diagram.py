@@ -13,7 +13,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
-from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEnd
+from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEndReason
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
@@ -92,7 +92,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     assert curves.largest_seed_distance < 1e-11
     assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
     for curve in curves.curves:
-        inside = (np.diff(curve.scaled[:, :2], axis=0) ** 2).sum(axis=1)
+        inside = (np.diff(curve.scaled_points[:, :2], axis=0) ** 2).sum(axis=1)
         assert np.sqrt(inside).max() < 0.05
 
 
@@ -116,13 +116,16 @@ ENDS = [
     (
         (PlaneAxis("F", 0.0, 150.0), PlaneAxis("gamma3", 0.0, 0.25)),
         Rod(F=0.0, k1=327.0, k2=4502.0, gamma3=1e-3),
-        {(BoundaryEnd.edge, BoundaryEnd.edge)},
+        {(BoundaryEndReason.edge, BoundaryEndReason.edge)},
     ),
     # Hopf points that come as close to F = k1 as steps can be short
     (
         (PlaneAxis("F", 0.0, 239.0), PlaneAxis("k1", 183.0, 3e3, logarithmic=True)),
         Rod(F=0.0, k1=1e3, k2=33.0, gamma3=2.7e-3),
-        {(BoundaryEnd.edge, BoundaryEnd.edge), (BoundaryEnd.crushed, BoundaryEnd.edge)},
+        {
+            (BoundaryEndReason.edge, BoundaryEndReason.edge),
+            (BoundaryEndReason.crushed, BoundaryEndReason.edge),
+        },
     ),
 ]
 
@@ -134,14 +137,14 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
-            curve.scaled[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
+            curve.scaled_points[[0, -1]], curve.values[[0, -1]], curve.end_reasons, strict=True
         ):
             beside_an_edge = min(x, 1 - x, y, 1 - y) < 1e-9
-            assert beside_an_edge if end == BoundaryEnd.edge else pytest.approx(other, rel=1e-7) == F
+            assert beside_an_edge if end == BoundaryEndReason.edge else pytest.approx(other, rel=1e-7) == F
     few = replace(boundary_curves.BOUNDARY_STEP_CONTROL, max_solutions=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
     curve = boundary_curves_through(Plane(rod, axes), seeds[:1]).curves[0]
-    assert BoundaryEnd.list_full in curve.end_reasons
+    assert BoundaryEndReason.list_full in curve.end_reasons
     assert len(curve.values) < 10
 
 

@@ -50,7 +50,7 @@ def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
 
 @pytest.mark.parametrize("multiple", [1.0, 2.0, 4.0])
 def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_proved(multiple):
-    """An anchor of the search is then a rod with a pair on the axis: which mode leads is known all the
+    """A sample of the search is then a rod with a pair on the axis: which mode leads is known all the
     same."""
     at = next(c.value for c in thresholds(1e4, 1e4, 1e-4, 40.0).thresholds if c.kind == ChangeKind.hopf)
     found = thresholds(1e4, 1e4, 1e-4, multiple * at)

@@ -10,7 +10,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from rodsweep.solve.cycle.accuracy.coarser_meshes import CoarserMeshes
-from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_at_given_period
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_of_any_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -96,8 +96,8 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
 
     monkeypatch.setattr(CoarserMeshes, "predicted_orbit_and_errors", spoilt)
     alone, first = (
-        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
-        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+        refined_cycle_of_any_period(near, ACCURACY, MEMORY),
+        refined_cycle_of_any_period(near, ACCURACY, MEMORY, "F"),
     )
     assert np.array_equal(alone.orbit.values, first.orbit.values)
     assert alone.errors == first.errors
@@ -105,8 +105,8 @@ def test_what_coarser_meshes_do_not_predict_is_measured_by_finer_ones(near, why,
 
 def test_a_cycle_alone_and_one_that_starts_a_chain_are_the_same(near):
     alone, first = (
-        refined_cycle_at_given_period(near, ACCURACY, MEMORY),
-        refined_cycle_at_given_period(near, ACCURACY, MEMORY, "F"),
+        refined_cycle_of_any_period(near, ACCURACY, MEMORY),
+        refined_cycle_of_any_period(near, ACCURACY, MEMORY, "F"),
     )
     assert alone.orbit.period == pytest.approx(first.orbit.period, rel=2 * ACCURACY)
     assert alone.converged_orbit.matrix.tangent is None and first.converged_orbit.matrix.tangent is not None
@@ -122,7 +122,7 @@ def test_the_period_of_neighbouring_orders_that_agree_by_luck_is_not_believed():
     accuracy = 1e-4
     rod = Rod(F=40.20452, k1=float("inf"), k2=149.6991, gamma3=0.0, gamma1=0.2582922, taper=0.5194033)
     start = orbit_from_hopf(StressForm(rod, coarse_mesh_along_branch(rod)), hopf_point_below(rod), MEMORY)
-    found = refined_cycle_at_given_period(start, accuracy, MEMORY)
+    found = refined_cycle_of_any_period(start, accuracy, MEMORY)
     own = mesh_of(found.orbit)
     finer = replace(own, order=own.order + 8, interval_count=2 * own.interval_count)
     exact = newton(finer.interpolated_orbit(found.orbit), 1e-10, MEMORY).orbit

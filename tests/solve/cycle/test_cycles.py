@@ -439,7 +439,7 @@ def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
     )
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled
-    assert "the period found may be 2 minimal periods" in c.message
+    assert "the period found may be 2 times the minimal period" in c.message
 
 
 def test_a_start_off_the_slow_manifold_does_not_fail():
@@ -486,7 +486,7 @@ def test_finer_meshes_are_tried_for_short_cycles_only(repeats, meshes, monkeypat
     points = np.concatenate([half.all_states[:1], np.tile(half.all_states[1:], (repeats, 1))])
     orbit = Orbit.from_states(half.form, half.symmetry, repeats * half.period, points, half.stage_count)
     with pytest.raises(Unsolvable):
-        refinement.refined_cycle_at_given_period(orbit, 1e-6, NewtonWorkspace())
+        refinement.refined_cycle_of_any_period(orbit, 1e-6, NewtonWorkspace())
     assert len(tried) == meshes
 
 

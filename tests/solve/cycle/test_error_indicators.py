@@ -6,7 +6,7 @@ from rods import rod_of
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.solve.cycle.accuracy.error_indicators import AMPLITUDE_ERROR, error_indicators
+from rodsweep.solve.cycle.accuracy.error_indicators import AMPLITUDE_ERROR_INDEX, error_indicators
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -35,7 +35,7 @@ def test_amplitude_error_by_energy_has_the_order_of_magnitude_of_the_error(orbit
     found, exact = converged(orbit, intervals), converged(orbit, FINE)
     path = CyclePath(found.orbit)
     y = [one.extrema["tip_y_max"] for one in (path, CyclePath(exact.orbit))]
-    estimate = error_indicators(found, path)[AMPLITUDE_ERROR]
+    estimate = error_indicators(found, path)[AMPLITUDE_ERROR_INDEX]
     assert estimate / 10 < abs(y[0] / y[1] - 1) < 10 * estimate
 
 

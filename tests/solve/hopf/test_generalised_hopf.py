@@ -87,7 +87,7 @@ def test_the_side_changes_once_and_at_the_point(found):
     (after,) = np.flatnonzero(np.diff(told.criticality))
     assert point.preceding_index == after
     at = np.array([axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True)])
-    a, b = curve.scaled[after : after + 2, :2]
+    a, b = curve.scaled_points[after : after + 2, :2]
     assert np.linalg.norm(at - a) + np.linalg.norm(b - at) < 1.001 * np.linalg.norm(b - a)
     for i, side in ((after, told.criticality[after]), (after + 1, told.criticality[after + 1])):
         w = 1j * curve.frequency[i]
@@ -165,7 +165,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     plane, curve, told = found
     (point,) = told.points
     x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
-    there = np.insert(curve.scaled, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
+    there = np.insert(curve.scaled_points, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
     again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
     assert again.criticality[point.preceding_index + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)

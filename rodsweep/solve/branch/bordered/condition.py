@@ -43,12 +43,12 @@ class BorderCondition:
         return self.value - float(self.border @ self.scale.components(orbit))
 
     def solve_cycle(
-        self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, distance: float = np.inf
+        self, orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle near `orbit` that fulfils the condition, by Newton's method; raises Unsolvable.
 
-        tolerance: relative error of the cycle. workspace: memory of Newton's matrices. distance: largest
-        relative distance between the cycle and the orbit at which the last matrix was assembled. This
+        tolerance: relative error of the cycle. workspace: memory of Newton's matrices. max_matrix_distance:
+        largest relative distance between the cycle and the orbit at which the last matrix was assembled. This
         distance is the error of multipliers and tangent.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
@@ -58,14 +58,14 @@ class BorderCondition:
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-            if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
-                raise Unsolvable("Newton's method finds no cycle of the branch near its starting point")
+            if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
+                raise Unsolvable("Newton's method finds no cycle of the branch near the prediction")
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             off = off + change
             rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
             settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
-            if (settled or change <= tolerance) and off <= distance:
+            if (settled or change <= tolerance) and off <= max_matrix_distance:
                 return ConvergedOrbit(orbit, matrix, off)
             if (
                 settled
@@ -79,14 +79,17 @@ class BorderCondition:
             else:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
-        raise Unsolvable(f"Newton's method on the branch does not converge; its last step is {change:.0e}")
+        raise Unsolvable(
+            f"Newton's method on the branch does not converge: its last relative step is {change:.0e}"
+        )
 
     def solve_on_mesh(
-        self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, distance: float = np.inf
+        self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance, distance: as in `solve_cycle`."""
-        return self.solve_cycle(mesh.interpolated_orbit(found.orbit), tolerance, found.workspace, distance)
+        tolerance, max_matrix_distance: as in `solve_cycle`."""
+        orbit = mesh.interpolated_orbit(found.orbit)
+        return self.solve_cycle(orbit, tolerance, found.workspace, max_matrix_distance)
 
 
 def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
@@ -95,8 +98,8 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     if form.is_omega_unknown != orbit.form.is_omega_unknown:
         limit = STRESS_FORM_SETTINGS.min_eliminated_drag
         raise Unsolvable(
-            f"the smallest rotational drag along the rod passes {limit:.0e} gamma2 L^2, below which the "
-            "equations have other unknowns"
+            f"no branch can be followed across a rotational drag of {limit:.0e} gamma2 L^2, at which the "
+            "solver changes its unknowns"
         )
 
 

@@ -64,7 +64,7 @@ class BorderedMatrix:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
             own = slice(c, c + 1)
-            self._matrix[:-2, place] = -self.closing_right_sides(
+            self._matrix[:-2, place] = -self.matching_right_sides(
                 np.zeros(n), self._stage_columns[:, :, own], ends[own]
             )
         row = np.empty(n)
@@ -73,22 +73,23 @@ class BorderedMatrix:
         # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
         # plus.
         self._matrix[-2, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
-        self._right_sides = self._closing_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
+        self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
 
-    def step(self, border: Array, length: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), along which `border` . `scale.components` grows by `length`;
-        border: (3,)."""
-        return self.solve(border, np.append(self._right_sides, length), self._stage_columns[:, :, 1], 1.0)
+    def step(self, border: Array, residual: float) -> Array:
+        """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`, to
+        first order. border: last row of the matrix, (3,). residual: of the condition that closes the system,
+        as in `BorderCondition.residual`."""
+        return self.solve(border, np.append(self._right_sides, residual), self._stage_columns[:, :, 1], 1.0)
 
-    def correction(self, orbit: Orbit, border: Array, length: float) -> Array:
+    def correction(self, orbit: Orbit, border: Array, residual: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
-        factors of this matrix; border, length: as in `step`."""
+        factors of this matrix; border, residual: as in `step`."""
         factors = self._memory.factors
         p = self.orbit.semidiscrete_equations
         columns, ends = reduced_residuals(
             orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
         )
-        right = np.append(self._closing_and_phase_sides(orbit, columns, ends), length)
+        right = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
         return self.solve(border, right, columns[:, :, 0], 1.0)
 
     def branch_tangent(self, border: Array) -> Array:
@@ -113,7 +114,7 @@ class BorderedMatrix:
         )
         return changed
 
-    def changes_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
+    def orbit_changes_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
@@ -141,8 +142,8 @@ class BorderedMatrix:
         return multipliers_over_period(self.multipliers_over_solved_part, self.orbit)
 
     def approximate_null_vector(self) -> Array:
-        """Right singular vector of the matrix with the parameter fixed, for the smallest singular value, (N +
-        1,), of any length and sign.
+        """Approximate null vector of the matrix with the parameter fixed, (N + 1,), of any length and sign:
+        the right singular vector of the smallest singular value.
 
         At a crossing of two branches the vector points along the second branch.
         """
@@ -151,9 +152,9 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._stage_columns[:, :, 1], 0.0)
 
-    def closing_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
-        """Right-hand sides, (m n,), of the m closing conditions. A shooting interval must end where the next
-        interval starts, the last interval at the symmetric image of the first start.
+    def matching_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
+        """Right-hand sides, (m n,), of the m matching conditions of multiple shooting: each shooting interval
+        must end where the next interval starts, the last interval at the symmetric image of the first start.
 
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
@@ -165,20 +166,20 @@ class BorderedMatrix:
         sides[-1] += jump
         return sides.ravel()
 
-    def _closing_and_phase_sides(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
-        """Right-hand sides of the m closing conditions of an orbit, one for each of its m shooting intervals,
-        and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages, (K, s, 1,
-        n). ends: change of the end of the last shooting interval caused by `columns` for a fixed start, (1,
-        n)."""
+    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
+        """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
+        intervals, and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages,
+        (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a fixed
+        start, (1, n)."""
         p = orbit.semidiscrete_equations
-        right = self.closing_right_sides(closing_residual(orbit.all_states, p), columns, ends)
+        right = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
         return np.append(right, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
         period, parameter), (3,).
 
-        right: right-hand sides of the closing conditions, of the phase condition and of the border, (m n +
+        right: right-hand sides of the matching conditions, of the phase condition and of the border, (m n +
         2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`.
         """
         n = len(self.orbit.start_state)

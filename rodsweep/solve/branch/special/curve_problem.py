@@ -15,7 +15,7 @@ from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..bordered.matrix import BorderedMatrix
-from .augmented.functions import pair_nearest_unit_circle
+from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
 from .cycle_family import CycleFamily
 from .least_stretch import least_stretch_of_orbit
@@ -27,7 +27,7 @@ from .solved_curve_point import (
     orbit_with_parameters,
     with_parameter_errors,
 )
-from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEnd, lagrange_weights
+from .special_curves import CURVE_IDENTITY_SETTINGS, CurveEndReason, lagrange_weights
 from .special_point import SpecialKind, SpecialPoint
 
 CURVE_STEP_CONTROL = StepControl(
@@ -66,10 +66,14 @@ class CurveEndSettings:
 
 
 END_SETTINGS = CurveEndSettings()
-
 ROW_EDGE_MARGINS = (2, 3)
 """Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
-END_BY_MARGIN = (*4 * (CurveEnd.edge,), CurveEnd.crushed, CurveEnd.left_the_model, CurveEnd.hopf)
+END_BY_MARGIN = (
+    *4 * (CurveEndReason.edge,),
+    CurveEndReason.crushed,
+    CurveEndReason.left_the_model,
+    CurveEndReason.hopf,
+)
 """Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""
 
 
@@ -85,22 +89,22 @@ class SpecialCurveProblem:
     workspace: NewtonWorkspace
     row_direction: float = 1.0
 
-    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEnd]:
+    def follow_from(self, special: SpecialPoint, row: float) -> tuple[list[SolvedPoint], CurveEndReason]:
         """(points of the curve from `special` on row `row`, reason for its end); raises Unsolvable."""
         first = first_point_of_curve(special, self.line_axis.name, self.row_axis, row, self.workspace)
         curve = follow_curve(self, first, CURVE_STEP_CONTROL, self._report)
         return with_parameter_errors(curve.solutions), self._end_reason(curve)
 
-    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEnd:
+    def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
         """Reason for the end of the curve `curve`, as stored in the result file."""
         if curve.end_reason is CurveStop.zero_margin:
             return END_BY_MARGIN[curve.margin_index]
         if curve.end_reason is CurveStop.closed:
-            return CurveEnd.closed
+            return CurveEndReason.closed
         return (
             self._reason_for_loss(curve.solutions[-1])
             if curve.end_reason is CurveStop.no_further_solution
-            else CurveEnd.not_followed
+            else CurveEndReason.not_followed
         )
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
@@ -189,7 +193,7 @@ class SpecialCurveProblem:
         """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
         this point is `behind[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
         inner = behind[-1]
-        if END_BY_MARGIN[margin] is CurveEnd.hopf:
+        if END_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
         if ends[0] <= END_SETTINGS.max_edge_distance:
@@ -237,10 +241,10 @@ class SpecialCurveProblem:
         start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
         return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
 
-    def _reason_for_loss(self, last: SolvedPoint) -> CurveEnd:
+    def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""
         if self.kind == SpecialKind.torus:
             pair = pair_nearest_unit_circle(BorderedMatrix(last.orbit, last.scale, self.workspace))
             if pair is None or abs(pair.imag) < END_SETTINGS.min_sine_at_resonance * abs(pair):
-                return CurveEnd.resonance
-        return CurveEnd.not_followed
+                return CurveEndReason.resonance
+        return CurveEndReason.not_followed

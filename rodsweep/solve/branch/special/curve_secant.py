@@ -21,7 +21,7 @@ from ...unsolvable import Unsolvable
 from ..arc_length_step import tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.scale import ArcLengthScale
-from .augmented.functions import AUGMENTED_SETTINGS
+from .augmented.fold_and_torus_functions import AUGMENTED_SETTINGS
 from .augmented.nearby_cycles import NearbyCycleSolver
 from .solved_curve_point import CURVE_SECANT_SETTINGS, NormalDerivatives, SearchLine, SolvedPoint
 
@@ -62,7 +62,7 @@ class SecantSearch:
         self.distance = 0.0
         self.previous: _SecantIterate | None = None
         self.start_arc_length = float(family.border @ family.scale.components(start))
-        self.has_carried_derivatives = not is_other_mesh
+        self.has_previous_point_derivatives = not is_other_mesh
         """Whether the derivatives come from the previous point of the curve."""
         self.curvature = (
             CURVE_SECANT_SETTINGS.curvature_factor * derivatives.relative_curvature if derivatives else inf
@@ -81,7 +81,7 @@ class SecantSearch:
         span = 0.0
         if own := self._derivatives_from_last(present):
             self.derivatives = own
-            self.has_carried_derivatives = False
+            self.has_previous_point_derivatives = False
             span = own.cycle_distance
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
@@ -97,7 +97,7 @@ class SecantSearch:
                     relative_curvature=self.measured_curvature,
                 )
                 return self._curve_point(step, known, error)
-            if self.has_carried_derivatives and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
+            if self.has_previous_point_derivatives and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
                 # Between closer cycles no derivative can be measured.
                 step = math.copysign(2 * CURVE_SECANT_SETTINGS.min_cycle_distance, step)
         if self.previous:  # the vectors are extrapolated along a line, like the cycle
@@ -121,9 +121,9 @@ class SecantSearch:
             return self.curvature * abs(step) * (abs(step) + span) / 2
         assert self.derivatives is not None
         slope_error = CURVE_SECANT_SETTINGS.slope_error + self.curvature * self.derivatives.cycle_distance / 2
-        if self.has_carried_derivatives:
+        if self.has_previous_point_derivatives:
             # Along the curve a derivative changes more where the curvature is large.
-            slope_error = CURVE_SECANT_SETTINGS.carried_slope_error * max(1.0, self.curvature)
+            slope_error = CURVE_SECANT_SETTINGS.previous_point_slope_error * max(1.0, self.curvature)
         return min(slope_error, 1.0) * abs(step)
 
     def _is_accurate_enough(self, error: float) -> bool:
@@ -146,7 +146,7 @@ class SecantSearch:
         enough = (
             AUGMENTED_SETTINGS.tolerance
             if rates
-            else AUGMENTED_SETTINGS.tolerance_share * CURVE_SECANT_SETTINGS.first_secant_step
+            else AUGMENTED_SETTINGS.tolerance_to_distance_ratio * CURVE_SECANT_SETTINGS.first_secant_step
         )
         condition = BorderCondition(family.scale, family.border, length)
         self.orbit, test = self.nearby_solver.solve(self.orbit, condition, slope, enough)

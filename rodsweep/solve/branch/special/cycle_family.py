@@ -19,7 +19,7 @@ from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
-from .augmented.functions import FoldFunction, TorusFunction
+from .augmented.fold_and_torus_functions import FoldFunction, TorusFunction
 from .curve_secant import SecantSearch
 from .solved_curve_point import (
     CURVE_SECANT_SETTINGS,

@@ -16,7 +16,7 @@ from ..arc_length_step import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 
-CycleStep = Callable[[BranchCycle, float], BranchCycle]
+CycleAtArcLength = Callable[[BranchCycle, float], BranchCycle]
 """Function of a cycle and an arc length that returns the cycle at this arc length ahead; raises
 Unsolvable."""
 
@@ -69,17 +69,17 @@ def _has_complex_pair(point: BranchCycle) -> bool:
 def special_points_between(
     start: BranchCycle,
     end: BranchCycle,
-    step: CycleStep,
+    cycle_at: CycleAtArcLength,
     accuracy: float,
     depth: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
     """Returns (points, explained): special points between two cycles, in order, and whether these points
     explain the change of the number of multipliers outside the unit circle.
 
-    step: function that solves a cycle between the two cycles. accuracy: relative accuracy of the branch.
-    depth: number of halvings so far. The step is halved if the multipliers show several special points, or if
-    a special point cannot be located. Near crushing, for example, a prediction over the whole step may leave
-    the model.
+    cycle_at: function that solves a cycle at an arc length between the two cycles. accuracy: relative
+    accuracy of the branch. depth: number of halvings so far. The step is halved if the multipliers show
+    several special points, or if a special point cannot be located. Near crushing, for example, a prediction
+    over the whole step may leave the model.
     """
     kinds, explained = special_kinds_between(start, end)
     points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
@@ -88,11 +88,11 @@ def special_points_between(
     ):
         try:
             # Halving separates special points whose changes of the number of multipliers cancel or add up.
-            middle = step(start, arc_length_between(start, end) / 2)
+            middle = cycle_at(start, arc_length_between(start, end) / 2)
         except Unsolvable:
             pass
         else:
-            first, first_explained = special_points_between(start, middle, step, accuracy, depth + 1)
-            second, second_explained = special_points_between(middle, end, step, accuracy, depth + 1)
+            first, first_explained = special_points_between(start, middle, cycle_at, accuracy, depth + 1)
+            second, second_explained = special_points_between(middle, end, cycle_at, accuracy, depth + 1)
             return first + second, first_explained and second_explained
     return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], explained

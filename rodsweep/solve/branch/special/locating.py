@@ -22,11 +22,11 @@ from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
-from .augmented.functions import TorusFunction, correct_until_converged
+from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
 from .least_stretch import least_stretch
-from .located_meshes import first_mesh, next_mesh
 from .segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
+from .special_point_meshes import first_mesh, next_mesh
 
 
 def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
@@ -143,7 +143,7 @@ def _with_mesh_errors(
         point,
         error=error,
         period_error=period / point.period + SPECIAL_POINT_SETTINGS.rounding_error,
-        size_error=size / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
+        tip_y_max_error=size / point.tip_y_max + SPECIAL_POINT_SETTINGS.rounding_error,
     )
 
 
@@ -176,7 +176,7 @@ def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, me
         # The two cycles may have the same parameter value, as on the two sides of a fold.
         error=max(abs(at - other), SPECIAL_POINT_SETTINGS.accuracy * abs(at)),
         period_error=abs(before.period / measures.period - 1),
-        size_error=abs(before.tip_y_max / measures.tip_y_max - 1),
+        tip_y_max_error=abs(before.tip_y_max / measures.tip_y_max - 1),
         message=message,
     )
 

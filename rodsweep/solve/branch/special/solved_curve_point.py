@@ -44,7 +44,7 @@ class CurveSecantSettings:
     slope_error: float = 1e-3
     """Relative error of derivatives that were computed at the same point on another mesh or at an earlier
     step of the same search, in addition to the effect of the curvature."""
-    carried_slope_error: float = 0.1
+    previous_point_slope_error: float = 0.1
     """Relative error of derivatives that were computed at the previous point of the curve; increased if the
     curvature exceeds 1."""
     curvature_factor: float = 4.0

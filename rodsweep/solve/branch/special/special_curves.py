@@ -56,7 +56,7 @@ HalfCurveArrays = dict[str, Array]
 """Stored result of following a half curve: arrays by name."""
 
 
-class CurveEnd(IntEnum):
+class CurveEndReason(IntEnum):
     """Reason for the end of a curve of special points, stored by value in the result file.
 
     none: the point is not an end. edge: edge of the parameter plane. crushed: F is near the crushing force.
@@ -75,7 +75,7 @@ class CurveEnd(IntEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class VanishingPoint:
+class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
     at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
@@ -118,7 +118,7 @@ class HalfCurve:
     curve."""
 
     points: tuple[CurvePoint, ...]
-    end: CurveEnd
+    end: CurveEndReason
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ class TracedHalfCurve:
 
     def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEnd`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
+        the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
         special point."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
@@ -148,7 +148,7 @@ class TracedHalfCurve:
     def from_arrays(cls, arrays: HalfCurveArrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
-        half = HalfCurve(points, CurveEnd(int(arrays["end"][0]))) if points else None
+        half = HalfCurve(points, CurveEndReason(int(arrays["end"][0]))) if points else None
         return cls(half, {int(index): float(distance) for index, distance in arrays["distances"]})
 
 
@@ -159,13 +159,13 @@ def _point_numbers(point: CurvePoint) -> list[float]:
 @dataclass(frozen=True, slots=True)
 class SpecialPointCurve:
     """A complete curve of folds or torus points: points in order, and the reasons for the two ends.
-    vanishing_points: for each end the Hopf point at which the cycles vanish; None for an end with another
+    hopf_ends: for each end the Hopf point at which the cycles vanish; None for an end with another
     reason, or on a curve with too few points for the extrapolation."""
 
     kind: SpecialKind
     points: tuple[CurvePoint, ...]
-    ends: tuple[CurveEnd, CurveEnd]
-    vanishing_points: tuple[VanishingPoint | None, VanishingPoint | None]
+    ends: tuple[CurveEndReason, CurveEndReason]
+    hopf_ends: tuple[HopfEnd | None, HopfEnd | None]
 
     @classmethod
     def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
@@ -174,13 +174,13 @@ class SpecialPointCurve:
         before = behind or HalfCurve(ahead.points[:1], ahead.end)
         points = (*before.points[:0:-1], *ahead.points)
         vanishing = [
-            vanishing_point(side) if end is CurveEnd.hopf else None
+            extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
             for end, side in ((before.end, points[::-1]), (ahead.end, points))
         ]
         return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
 
 
-def with_located_ends(
+def with_generalised_hopf_ends(
     curve: SpecialPointCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
@@ -188,7 +188,7 @@ def with_located_ends(
     identical point, are unchanged.
     """
 
-    def located(end: VanishingPoint | None) -> VanishingPoint | None:
+    def located(end: HopfEnd | None) -> HopfEnd | None:
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known:
@@ -197,11 +197,11 @@ def with_located_ends(
                 abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
             ):
-                return VanishingPoint(*point.values, point.errors[0], 2 * np.pi / point.frequency)
+                return HopfEnd(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
-    first, last = map(located, curve.vanishing_points)
-    return replace(curve, vanishing_points=(first, last))
+    first, last = map(located, curve.hopf_ends)
+    return replace(curve, hopf_ends=(first, last))
 
 
 def lagrange_weights(places: Array, at: float) -> Array:
@@ -212,7 +212,7 @@ def lagrange_weights(places: Array, at: float) -> Array:
     return np.append(weights, 1 - weights.sum())
 
 
-def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
+def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there are too few points."""
     known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
@@ -224,4 +224,4 @@ def vanishing_point(points: Sequence[CurvePoint]) -> VanishingPoint | None:
     best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(best[0] - other[0]) + max(point.error for point in known)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
-    return VanishingPoint(float(best[0]), float(best[1]), float(error), float(best[2]))
+    return HopfEnd(float(best[0]), float(best[1]), float(error), float(best[2]))

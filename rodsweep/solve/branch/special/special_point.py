@@ -100,7 +100,7 @@ class SpecialKind(IntEnum):
     period_doubling = 7
 
 
-class EndReason(IntEnum):
+class BranchEndReason(IntEnum):
     """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
     and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
     of cycles, or limit of the work on the rod) are failures."""
@@ -124,11 +124,11 @@ class SpecialPoint:
     """Absolute error of the parameter value `at`."""
     period_error: float = nan
     """Relative difference of the period from the period at the exact special point."""
-    size_error: float = nan
+    tip_y_max_error: float = nan
     """Relative difference of the largest tip y from its value at the exact special point."""
     index_of_cycle_before: int = -1
     """Index of the last cycle of the branch before the special point; -1 if no cycle precedes the point."""
-    reason: EndReason | None = None
+    reason: BranchEndReason | None = None
     """Reason for the end of the branch at this point; None if the branch does not end here."""
     message: str = ""
     """Reason for a failure: why no cycle was found, or why the point was not located."""

@@ -23,8 +23,9 @@ from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..mesh_choice import first_measured_cycle
-from ..symmetry import BRANCH_END_SETTINGS, SymmetryBreaking, asymmetry, extended_to_whole_period
+from ..branch_end_settings import BRANCH_END_SETTINGS
+from ..branch_mesh_choice import first_measured_cycle
+from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
 from .first_cycle import ALONG_DEFLECTION
 
 
@@ -44,8 +45,9 @@ class AsymmetricStartSettings:
     cycle."""
     max_accuracy_beside_fold: float = 1e-6
     """Largest relative accuracy of the cycles of a branch with a fold before the first cycle. On a coarser
-    mesh the fold may be missing: at 1e-5 one that is 7e-7 below the symmetry breaking."""
-    share_of_fold: float = 0.5
+    mesh the fold may be missing: at an accuracy of 1e-5, a fold at a relative distance of 7e-7 from the
+    symmetry breaking was missing."""
+    asymmetry_to_fold_ratio: float = 0.5
     """If the branch has a fold before the first cycle, the asymmetry of the first cycle is reduced to this
     fraction of the asymmetry at the fold."""
 
@@ -70,13 +72,13 @@ def first_asymmetric_cycle(
     scale = ArcLengthScale.at_orbit(whole, name, 0.0, min_coordinate_unit)
     matrix = BorderedMatrix(whole, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
-    way = matrix.approximate_null_vector()
-    way = way / relative_change(whole, way[:-1])
+    null_vector = matrix.approximate_null_vector()
+    null_vector = null_vector / relative_change(whole, null_vector[:-1])
     near = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
     # The two signs give mirror images. The cycle with the larger y is followed, so that the result does not
     # depend on the sign of the null vector.
-    ways = [_WayFromSymmetry(whole, matrix, sign * way, accuracy) for sign in (1, -1)]
-    chosen = max(ways, key=lambda one: CyclePath(one.predicted_orbit(near)).extrema["tip_y_max"])
+    halves = [_AsymmetricCycles(whole, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
+    chosen = max(halves, key=lambda one: CyclePath(one.predicted_orbit(near)).extrema["tip_y_max"])
     for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
         try:
             before_fold = chosen.distance_before_fold(distance)
@@ -94,27 +96,29 @@ def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     expected = asymmetry(predicted)
     other = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
     found = float(asymmetry(other) @ expected) / float(expected @ expected)
-    least, largest = BRANCH_END_SETTINGS.asymmetry_ratios
+    least, largest = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
     if not least < found < largest:
         raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _WayFromSymmetry:
-    """Asymmetric cycles at small relative distances from a symmetric cycle along a branch."""
+class _AsymmetricCycles:
+    """One half of a branch of asymmetric cycles, near the symmetric cycle at its symmetry breaking. A cycle
+    is identified by its relative distance from the symmetric cycle."""
 
     symmetric: Orbit
     """The symmetric cycle at the symmetry breaking, over the whole period."""
     matrix: BorderedMatrix
     """Bordered matrix of the symmetric cycle, with the units of arc length."""
-    way: Array
-    """Change of orbit values and parameter coordinate at the relative distance 1, (N + 1,)."""
+    null_vector: Array
+    """Null vector of the linearised equations at the symmetric cycle, (N + 1,): change of orbit values and
+    parameter coordinate for the relative distance 1."""
     accuracy: float
     """Relative accuracy of the cycles."""
 
     def predicted_orbit(self, distance: float) -> Orbit:
         """The prediction of the cycle at a relative distance; raises Unsolvable."""
-        return moved_orbit(self.symmetric, self.matrix.scale.parameter_name, distance * self.way)
+        return moved_orbit(self.symmetric, self.matrix.scale.parameter_name, distance * self.null_vector)
 
     def distance_before_fold(self, distance: float) -> float:
         """The relative distance, or a smaller one if the branch has a fold between the symmetric cycle and
@@ -126,7 +130,7 @@ class _WayFromSymmetry:
         B = (whole - 2 * A) / 4
         if A * whole >= 0:
             return distance
-        return distance * ASYMMETRIC_START_SETTINGS.share_of_fold * sqrt(-A / (2 * B))
+        return distance * ASYMMETRIC_START_SETTINGS.asymmetry_to_fold_ratio * sqrt(-A / (2 * B))
 
     def _parameter_rate(self, distance: float) -> float:
         """Derivative of the scaled parameter coordinate by arc length at the cycle at a relative distance;

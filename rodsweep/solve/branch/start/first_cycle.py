@@ -18,7 +18,7 @@ from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_of
-from ..mesh_choice import first_measured_cycle
+from ..branch_mesh_choice import first_measured_cycle
 from .hopf_point import BRANCH_START_SETTINGS, HopfBranchStart
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])

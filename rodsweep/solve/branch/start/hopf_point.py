@@ -32,17 +32,21 @@ class BranchStartSettings:
     """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
     predicted by the normal form."""
     min_amplitude_before_fold: float = 5e-4
-    """Smallest amplitude (largest tip y, in L) to which the first cycle is moved towards the Hopf point if
-    the branch has a fold before it, and the last cycle of a branch that ends at a Hopf point."""
+    """If the branch has a fold between its Hopf point and its first cycle, the first cycle is moved towards
+    the Hopf point, down to this amplitude (largest tip y, in L); likewise the last cycle of a branch that
+    ends at a Hopf point."""
     max_amplitude_coefficient: float = 3.0
-    """Close to a generalised Hopf point, where the amplitude coefficient |a| of a Hopf point is larger than
-    this number, in L, a coarse mesh moves or invents folds."""
+    """Largest amplitude coefficient |a| of a Hopf point, in L, that does not affect the accuracy of the
+    cycles. A larger |a| means that a generalised Hopf point is close; a coarse mesh then displaces folds, or
+    has folds that the rod does not have."""
     max_accuracy_if_degenerate: float = 5e-7
-    """Largest relative accuracy of the cycles of a rod with such a Hopf point, at |a| =
-    `max_amplitude_coefficient`. It falls with 1/a^2, as the depth of the fold beside the Hopf point does."""
+    """Largest relative accuracy of the cycles of a rod with a Hopf point of |a| =
+    `max_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2, like the
+    distance of the fold from the Hopf point."""
     min_accuracy_if_degenerate: float = 1e-8
-    """The accuracy that a large |a| asks for is at least this number. For ten rods at distances of 1e-7 to
-    1e-3 from a generalised Hopf point no fold is invented, and folds deeper than 1e-11 of F are found."""
+    """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
+    distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
+    than 1e-11 F from the Hopf point were found."""
     frequency_rounding: float = 1e-14
     """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
     determinant D."""
@@ -69,7 +73,7 @@ class HopfBranchStart:
     coefficients: HopfCoefficients
     """Coefficients of the normal form with error estimates, from a comparison of meshes."""
     keeps_omega: bool = False
-    """Whether Omega is an unknown of all cycles of the branch, see `StressForm`."""
+    """Whether the angular velocity Omega is an unknown for all cycles of the branch, see `StressForm`."""
     min_coordinate_unit: float = 0.0
     """Smallest unit of the parameter coordinate on the branch, see `ArcLengthScale`."""
 
@@ -136,8 +140,8 @@ def hopf_branch_start(
     path: Path, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
 ) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
-    `path`; raises Unsolvable. keeps_omega: whether Omega is an unknown of all cycles of the branch.
-    min_coordinate_unit: as in `ArcLengthScale`."""
+    `path`; raises Unsolvable. keeps_omega: whether the angular velocity Omega is an unknown for all cycles of
+    the branch. min_coordinate_unit: as in `ArcLengthScale`."""
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
@@ -156,8 +160,8 @@ def hopf_branch_start(
 
 
 def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
-    """Relative accuracy of the cycles of a rod with the given Hopf points: `accuracy`, or a smaller one if a
-    Hopf point is close to a generalised Hopf point."""
+    """Relative accuracy of the cycles of a rod with the given Hopf points: the requested `accuracy`, or a
+    smaller number if a Hopf point is close to a generalised Hopf point."""
     largest = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
     if not largest > BRANCH_START_SETTINGS.max_amplitude_coefficient:
         return accuracy
@@ -175,7 +179,7 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
         tip_y_max=0.0,
         error=hopf.crossing.error,
         period_error=hopf.period_error,
-        size_error=0.0,
+        tip_y_max_error=0.0,
         amplitude_coefficient=hopf.amplitude_coefficient,
         coefficient_error=hopf.coefficient_error,
     )

@@ -10,8 +10,8 @@ from ....arrays import Complex
 from ...spectrum.search import Spectrum, SpectrumRequest
 from ...spectrum.status import SpectrumStatus
 from ...unsolvable import Unsolvable
-from ..anchor_interpolation import minimum_of_cubic
-from ..anchors import ANCHOR_SETTINGS
+from ..sample_interpolation import minimum_of_cubic
+from ..spectrum_samples import SPECTRUM_SAMPLE_SETTINGS
 from .path import ArmPath
 
 
@@ -19,10 +19,10 @@ from .path import ArmPath
 class AxisModeSettings:
     """Settings of the eigenvalues that are computed for selected arms during a search for crossings."""
 
-    many_modes: float = 16.0
-    """If a certificate is requested and more modes of an arm than this are expected to grow, only the modes
-    near the imaginary axis are computed."""
-    max_known_modes: int = 200
+    max_growing_for_leading_modes: float = 16.0
+    """If a certificate is requested and more modes of an arm than this number are expected to grow, only the
+    modes near the imaginary axis are computed."""
+    max_computed_modes: int = 200
     """Maximum number of leading eigenvalues computed for one arm."""
 
 
@@ -78,7 +78,10 @@ class AxisModesOfPath:
     def has_many_modes(self, p: float) -> bool:
         """Whether, at path variable p, only the modes near the imaginary axis are computed: many modes are
         expected to grow, and `certify` is set."""
-        return self.certify and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.many_modes
+        return (
+            self.certify
+            and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.max_growing_for_leading_modes
+        )
 
     def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises
@@ -139,23 +142,25 @@ class AxisModesOfPath:
     def _leading_modes(self, p: float, growing: int) -> AxisModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. growing: expected number of unstable modes."""
-        modes = max(ANCHOR_SETTINGS.min_known_modes, 2 + growing)
-        found = self.problem.spectrum(p, SpectrumRequest(modes, ANCHOR_SETTINGS.arm_accuracy, self.certify))
-        while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_known_modes:
+        modes = max(SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, 2 + growing)
+        found = self.problem.spectrum(
+            p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
+        )
+        while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_computed_modes:
             if self.certify and found.unstable_count < 0:
                 break  # more modes do not help a failed count
             modes = _needed_modes(found)
             found = self.problem.spectrum(
-                p, SpectrumRequest(modes, ANCHOR_SETTINGS.arm_accuracy, self.certify)
+                p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
             )
         if found.unstable_count < 0:
             decided = found.status != SpectrumStatus.ok  # else only the number of unstable modes is unknown
             name = found.status.name if decided else SpectrumStatus.undecided.name
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {name} {found.message}".rstrip())
-        if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_known_modes):
+        if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_computed_modes):
             raise Unsolvable(
-                f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, more than "
-                "the search follows"
+                f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, but at most "
+                f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed"
             )
         slopes = found.eigenvalues.copy()
         for i, w in enumerate(found.eigenvalues.tolist()):
@@ -187,6 +192,6 @@ def next_count_position(left: AxisModes, right: AxisModes) -> float:
                 return 0.5
             continue
         lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if lowest < ANCHOR_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
+        if lowest < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
             return share
     return 0.0

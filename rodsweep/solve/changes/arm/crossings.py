@@ -12,7 +12,7 @@ import numpy as np
 
 from ...unsolvable import Unsolvable
 from ..kinds import Threshold, crossing_kind
-from ..search_range import SearchedIntervals, SearchEnd
+from ..search_range import IntervalQueue, SearchEnd
 from .axis_modes import AxisModes, AxisModesOfPath, next_count_position
 from .path import ArmPath
 
@@ -21,9 +21,9 @@ from .path import ArmPath
 class ArmCrossingSettings:
     """Settings of the search for crossings along a path of arms."""
 
-    full_list_ratio: float = 2.0
-    """An interval is halved before its search if the number of pairs expected to grow at its right end
-    exceeds this number times the maximum number of crossings."""
+    max_expected_pairs_ratio: float = 2.0
+    """Largest number of pairs expected to grow at the right end of an interval, divided by the maximum number
+    of crossings; with more pairs the interval is halved before its search."""
     min_halved_interval: float = 1e-3
     """Intervals shorter than this fraction of the path are searched without being halved."""
     max_pairs_at_once: int = 6
@@ -35,14 +35,14 @@ class ArmCrossingSettings:
     max_distance_in_errors: float = 10.0
     """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
     their errors."""
-    same_frequency: float = 1e-6
+    frequency_tolerance: float = 1e-6
     """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
-    their frequencies is at most this."""
+    their frequencies is at most this number."""
     smallest_interval: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
     smallest_step: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
-    of its ends, is at most this: some thousand rounding errors."""
+    of its ends, is at most this number: some thousand rounding errors."""
     count_distance: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
@@ -75,7 +75,7 @@ class CrossingSearch:
         The search ends after the first crossing beyond `max_crossings`: where dozens of modes grow, each
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
-        intervals = SearchedIntervals(edges)
+        intervals = IntervalQueue(edges)
         beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
         self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
         self.axis_modes.modes_at(edges[0])
@@ -84,7 +84,7 @@ class CrossingSearch:
                 intervals.stop_at(a, f"more than {max_crossings:g} crossings; raise the option crossings")
                 continue
             if self._must_be_halved(a, b, max_crossings, intervals.length):
-                intervals.add_parts((a, (a + b) / 2), ((a + b) / 2, b))
+                intervals.add_subintervals((a, (a + b) / 2), ((a + b) / 2, b))
                 continue
             try:
                 self._search_interval(a, b, intervals)
@@ -105,10 +105,10 @@ class CrossingSearch:
         the list of `max_crossings` crossings is likely to be full before b. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
-        full = ARM_CROSSING_SETTINGS.full_list_ratio * 2 * max_crossings
+        full = ARM_CROSSING_SETTINGS.max_expected_pairs_ratio * 2 * max_crossings
         return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > full
 
-    def _search_interval(self, a: float, b: float, intervals: SearchedIntervals) -> None:
+    def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
         the interval as a gap if it is too short to be divided; raises Unsolvable."""
         left = self.axis_modes.modes_at(a)
@@ -133,12 +133,13 @@ class CrossingSearch:
                 self.crossings_by_p.update(
                     (self.problem.path.coordinate(crossing.value), crossing) for crossing in crossings
                 )
-                intervals.add_parts(*parts)
+                intervals.add_subintervals(*parts)
                 return
             if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
-                raise Unsolvable(f"the crossing near {self.problem.path.text_at(a)} could not be located")
+                where = self.problem.path.text_at(a)
+                raise Unsolvable(f"the crossing of the imaginary axis near {where} could not be located")
         middle = a + share * (b - a)
-        intervals.add_parts((a, middle), (middle, b))
+        intervals.add_subintervals((a, middle), (middle, b))
 
     def _intervals_between_crossings(
         self, crossings: list[Threshold], left: AxisModes, right: AxisModes, length: float
@@ -215,26 +216,26 @@ class CrossingSearch:
             if not ends[0] <= p <= ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
-            blur = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
-            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged_step_in_errors * blur:
+            p_error = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
+            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged_step_in_errors * p_error:
                 # With such an error no root of D is resolved.
                 unresolved = self.axis_modes.has_many_modes(
                     p
-                ) and not blur <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
-                return None if unresolved else self._crossing_at(p, w, slope, blur, grows)
+                ) and not p_error <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
+                return None if unresolved else self._crossing_at(p, w, slope, p_error, grows)
         return None
 
     def _crossing_at(
-        self, p: float, w: complex, slope: complex, blur: float, grows: bool
+        self, p: float, w: complex, slope: complex, p_error: float, grows: bool
     ) -> Threshold | None:
         """The crossing of the pair w at p; None if w is real, or if its growth rate changes in the direction
-        opposite to `grows`: w is then another pair. slope: dw/dp. blur: error of p."""
+        opposite to `grows`: w is then another pair. slope: dw/dp. p_error: error of p."""
         if w.imag <= 0 or (slope.real > 0) != grows:
             return None
         kind = crossing_kind(self.problem.path, grows)
-        error_of_p = blur + abs(w.real / slope.real)
-        at, error = self.problem.path.value(p, error_of_p)
-        error_of_w = (abs(slope.real) + abs(slope.imag)) * error_of_p  # at fixed p, and by the error of p
+        total_p_error = p_error + abs(w.real / slope.real)
+        at, error = self.problem.path.value(p, total_p_error)
+        error_of_w = (abs(slope.real) + abs(slope.imag)) * total_p_error  # at fixed p, and by the error of p
         return Threshold(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
@@ -244,5 +245,6 @@ def _are_same_crossing(one: Threshold, other: Threshold) -> bool:
         one.error + other.error
     )
     return (
-        apart and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.same_frequency * one.frequency
+        apart
+        and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.frequency_tolerance * one.frequency
     )

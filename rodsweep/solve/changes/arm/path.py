@@ -41,15 +41,15 @@ class ArmPathSettings:
     """Number of leading eigenvalues that are proved complete at each step, together with all unstable
     eigenvalues."""
     spare_modes: int = 2
-    """Number of modes solved for in addition to the requested modes, if more than `followed_modes` modes are
+    """Number of modes computed in addition to the requested modes, if more than `followed_modes` modes are
     requested."""
     max_growing_modes: float = 16.0
-    """No modes are followed where more unstable modes than this are expected, because at most 13 modes can be
-    followed."""
+    """No modes are followed where more unstable modes than this number are expected, because at most 13 modes
+    can be followed."""
     W_reserve_factor: float = 4.0
     """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
-    max_count_offset: float = 0.25
+    max_count_distance_from_middle: float = 0.25
     """A known count replaces a count in the middle of an interval if the distance of its path variable from
     the middle is less than this fraction of the interval's length."""
 
@@ -164,7 +164,7 @@ class ArmPath(PathProblem):
         places = [
             p
             for p in self._unstable_counts
-            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_offset * (high - low)
+            if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_from_middle * (high - low)
         ]
         nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._unstable_counts[nearest]

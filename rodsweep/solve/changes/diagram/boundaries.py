@@ -13,7 +13,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary
-from ...continuation.boundaries import Boundaries, trace_boundaries
+from ...continuation.curve_search import TracedCurves, trace_all_curves
 from ..kinds import ChangeKind
 from .boundary_curves import BoundaryCurve, trace_boundary
 
@@ -22,21 +22,21 @@ from .boundary_curves import BoundaryCurve, trace_boundary
 class BoundaryAssignmentSettings:
     """Settings for the assignment of the thresholds found on rows to boundary curves."""
 
-    same_coordinate: float = 1e-12
-    """Two scaled coordinates are equal if their difference is smaller than this."""
-    same_eigenvalue: float = 1e-3
+    coordinate_tolerance: float = 1e-12
+    """Two scaled coordinates are equal if their difference is smaller than this number."""
+    eigenvalue_tolerance: float = 1e-3
     """A threshold lies on a curve only if its eigenvalue and the eigenvalue of the curve at the same value of
-    the second parameter differ by less than this, relatively."""
-    max_secants: int = 20
+    the second parameter differ by less than this number, relatively."""
+    max_secant_steps: int = 20
     """Maximum number of secant steps to the point of a curve at a given value of the second parameter."""
     max_end_distance: float = 1e-6
     """Two curves are identical if an end of the first and an end of the second (coordinates and log
-    |eigenvalue|) are closer than this, because curves do not cross."""
-    change_distance: float = 1e-7
+    |eigenvalue|) are closer than this number, because curves do not cross."""
+    max_threshold_distance: float = 1e-7
     """A threshold closer to a curve than this lies on the curve; both axes have length 1."""
-    chord_overhang: float = 0.1
+    max_distance_beyond_chord: float = 0.1
     """A chord of a curve is searched for a threshold only if the threshold lies at most this far beyond the
-    chord's ends along the first axis, which has length 1; continuation steps are shorter than this."""
+    chord's ends along the first axis, which has length 1; continuation steps are shorter than this number."""
 
 
 BOUNDARY_ASSIGNMENT_SETTINGS = BoundaryAssignmentSettings()
@@ -65,9 +65,9 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 
 @dataclass(frozen=True, slots=True)
-class _ChangeBoundaries:
+class _StabilityBoundaries:
     """The boundary curves through the thresholds of all rows of a plane, as a problem for
-    `trace_boundaries`."""
+    `trace_all_curves`."""
 
     plane: Plane
     seeds: list[Seed]
@@ -95,20 +95,20 @@ class _ChangeBoundaries:
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
         """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
         is needed near a crushed rod, where a threshold may not be found on its own curve."""
-        ends = one.scaled[[0, -1], None] - other.scaled[None, [0, -1]]
+        ends = one.scaled_points[[0, -1], None] - other.scaled_points[None, [0, -1]]
         return (
             one.eigenvalue_sign == other.eigenvalue_sign
             and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
         )
 
 
-def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> Boundaries[BoundaryCurve]:
+def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
     """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
     further curve."""
-    problem = _ChangeBoundaries(plane, seeds)
-    return trace_boundaries(
-        problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.change_distance
-    ).boundaries
+    problem = _StabilityBoundaries(plane, seeds)
+    return trace_all_curves(
+        problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
+    ).traced_curves
 
 
 def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
@@ -117,14 +117,14 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
-    points = curve.scaled
+    points = curve.scaled_points
     side = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
-    side[np.abs(side) < BOUNDARY_ASSIGNMENT_SETTINGS.same_coordinate] = 0.0
+    side[np.abs(side) < BOUNDARY_ASSIGNMENT_SETTINGS.coordinate_tolerance] = 0.0
     if len(points) == 1:
         return (
             float(abs(points[0, 0] - x))
-            if abs(side[0]) < BOUNDARY_ASSIGNMENT_SETTINGS.change_distance
+            if abs(side[0]) < BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
             else math.inf
         )
     best = math.inf
@@ -132,12 +132,13 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
         a = points[i]
         b = points[i + 1]
         beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.chord_overhang:
+        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_beyond_chord:
             continue
         there = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             there is not None
-            and abs(there[2] - math.log(abs(seed.eigenvalue))) < BOUNDARY_ASSIGNMENT_SETTINGS.same_eigenvalue
+            and abs(there[2] - math.log(abs(seed.eigenvalue)))
+            < BOUNDARY_ASSIGNMENT_SETTINGS.eigenvalue_tolerance
         ):
             best = min(best, float(abs(there[0] - x)))
     return best
@@ -151,7 +152,7 @@ def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float
     curve follow.
     """
     share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
-    for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secants):
+    for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
         guess = a + share * (b - a)
         level = guess.copy()
         level[1] = y

@@ -20,7 +20,7 @@ from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
     BOUNDARY_STEP_CONTROL,
     BoundaryCurveProblem,
-    BoundaryEnd,
+    BoundaryEndReason,
     BoundaryPoint,
 )
 
@@ -52,8 +52,8 @@ class BoundaryCurve:
     frequency: Array
     growth_rate: Array
     folds: tuple[Fold, ...]
-    end_reasons: tuple[BoundaryEnd, BoundaryEnd]
-    scaled: Array
+    end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
+    scaled_points: Array
     """Scaled coordinates x, y and h = log|eigenvalue| of each point, (points, 3)."""
 
     @property
@@ -88,11 +88,13 @@ def trace_boundary(
     points = np.array([point.v for point in passed])
     # The chord of coincident points, as on an edge, has no direction.
     apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
-    return _curve_with_folds(curve, points[np.append(apart, True)], (curve.end_of(back), curve.end_of(ahead)))
+    return _curve_with_folds(
+        curve, points[np.append(apart, True)], (curve.end_reason_of(back), curve.end_reason_of(ahead))
+    )
 
 
 def _curve_with_folds(
-    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEnd, BoundaryEnd]
+    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEndReason, BoundaryEndReason]
 ) -> BoundaryCurve:
     """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
     ends."""

@@ -36,8 +36,8 @@ class BoundaryCurveSettings:
     edge_tolerance: float = 1e-9
     """Largest distance by which a point on one edge of the plane may lie beyond another edge."""
     max_merged_distance: float = 1e-9
-    """Two neighbouring points of a curve are merged if their distance is at most this, as at a start on an
-    edge of the plane."""
+    """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
+    on an edge of the plane."""
     fold_accuracy: float = 1e-13
     """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
     of the step."""
@@ -58,7 +58,7 @@ CRUSHED_MARGIN = 4
 """Index of the margin that is negative for a crushed rod; the four edges of the plane have indices 0 to 3."""
 
 
-class BoundaryEnd(IntEnum):
+class BoundaryEndReason(IntEnum):
     """Reasons for the end of a boundary curve. none: the point is not an end. edge: edge of the plane.
     crushed: crushed rod. closed: the curve returns to its first point. not_followed: no further point was
     found. list_full: maximum number of points."""
@@ -146,24 +146,28 @@ class BoundaryCurveProblem:
             and float(there.tangent @ first.tangent) > 0
         )
 
-    def end_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEnd:
+    def end_reason_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEndReason:
         """The reason for the end of a followed curve.
 
         If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
         gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
         if followed.end_reason is CurveStop.closed:
-            return BoundaryEnd.closed
+            return BoundaryEndReason.closed
         if followed.end_reason is CurveStop.max_solutions:
-            return BoundaryEnd.list_full
+            return BoundaryEndReason.list_full
         if followed.end_reason is CurveStop.zero_margin:
-            return BoundaryEnd.crushed if followed.margin_index == CRUSHED_MARGIN else BoundaryEnd.edge
+            return (
+                BoundaryEndReason.crushed
+                if followed.margin_index == CRUSHED_MARGIN
+                else BoundaryEndReason.edge
+            )
         v, tangent = followed.solutions[-1]
         if (
             self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min()
             <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
         ):
-            return BoundaryEnd.edge
+            return BoundaryEndReason.edge
         beyond = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
         is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
-        return BoundaryEnd.crushed if is_crushed else BoundaryEnd.not_followed
+        return BoundaryEndReason.crushed if is_crushed else BoundaryEndReason.not_followed

@@ -16,7 +16,7 @@ from ....arrays import Array
 from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point_outcome import outcome_or_failure
-from ..along_path import ThresholdList, find_thresholds
+from ..along_path import ThresholdSearchResult, find_thresholds
 from ..search_range import CRUSHING_END_SETTINGS
 from ..status import ThresholdStatus
 from ..thresholds import Thresholds, empty_thresholds, thresholds_with_status
@@ -129,7 +129,7 @@ def _row_of_one_class(
 
 
 def classes_and_unstable_counts(
-    found: ThresholdList, values: Array
+    found: ThresholdSearchResult, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
@@ -139,7 +139,7 @@ def classes_and_unstable_counts(
     blurred = np.zeros(len(values), dtype=bool)
     for crossing in found.thresholds:
         beyond = values > crossing.value
-        if crossing.kind.changes_leader:
+        if crossing.kind.changes_leading_eigenvalue:
             oscillates[beyond] = crossing.kind.pair_leads_after
         else:
             unstable[beyond] = crossing.unstable_after

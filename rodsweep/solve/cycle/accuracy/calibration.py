@@ -2,8 +2,8 @@
 
 The convergence rate in space is estimated from the decay of the orbit's coefficients, the order in time from
 the number of stages; errors measured on two meshes give more accurate rates. The cheapest sufficient mesh
-follows from the rates (`mesh_choice`). Along a chain of cycles the errors are measured at the first cycle on
-a mesh, and scaled up at later cycles as the coefficient tails of the orbits grow.
+follows from the rates (`cheapest_mesh`). Along a chain of cycles the errors are measured at the first cycle
+on a mesh, and scaled up at later cycles as the coefficient tails of the orbits grow.
 """
 
 from dataclasses import dataclass, field, replace
@@ -80,11 +80,11 @@ class Calibration:
         indicators: `error_indicators` of the later orbit, (3,)."""
         tails = tails_and_size(orbit)
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
-        dies = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
+        has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
         growth = error_growth_factors(self.tails_and_size, tails)
         in_time, of_extrema = indicator_growth(self.indicators, indicators)
         growth[1] = max(growth[1], in_time)
-        moved = inf if dies else self.parameter_change + change
+        moved = inf if has_shrunk else self.parameter_change + change
         return replace(self, error_growth=growth, extrema_growth=of_extrema, parameter_change=moved)
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":

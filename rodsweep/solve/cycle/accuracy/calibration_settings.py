@@ -52,12 +52,12 @@ class CalibrationSettings:
     """Upper limit of the ratio of the numbers of time intervals, planned mesh to present mesh; the
     convergence rates are not known for finer meshes."""
     max_parameter_change: float = 0.2
-    """The errors are measured again if the summed relative changes of the parameter exceed this."""
+    """The errors are measured again if the summed relative changes of the parameter exceed this number."""
     max_error_growth: float = 4.0
     """The errors are measured again if an error has grown by more than this factor since the measurement."""
     min_size_ratio: float = 0.75
-    """The errors are measured again if (size of the orbit)/(size of the measured orbit) is less than this.
-    Near the Hopf point where the cycles end, the error of the largest y may change sign and then grow
+    """The errors are measured again if (size of the orbit)/(size of the measured orbit) is less than this
+    number. Near the Hopf point where the cycles end, the error of the largest y may change sign and then grow
     fast."""
     min_remeasured_ratio: float = 0.5
     """Lower limit of an error that is measured again on the same mesh, divided by the previous error scaled

@@ -46,7 +46,7 @@ class CoarserMeshSettings:
     max_order_excess."""
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
-    fine mesh to coarse mesh, is at most this."""
+    fine mesh to coarse mesh, is at most this number."""
     pessimistic_decay_ratio: float = 1.2
     """Pessimistic decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per
     order."""

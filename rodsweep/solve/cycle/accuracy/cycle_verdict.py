@@ -63,18 +63,26 @@ class RefinedCycle:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
         stable or unstable cycle."""
         if self.measures.least_stretch <= 0:
-            return CycleStatus.left_the_model, f"smallest h1 = {self.measures.least_stretch:.3g} on the cycle"
+            return (
+                CycleStatus.left_the_model,
+                f"the axial stretch h1 falls to {self.measures.least_stretch:.3g} on the cycle",
+            )
         if self.errors.largest_weighted_error > accuracy:
-            return CycleStatus.not_settled, "the cycle's errors exceed the requested accuracy"
+            error = self.errors.largest_weighted_error
+            return (
+                CycleStatus.not_settled,
+                f"the cycle's errors, up to {error:.1e}, exceed the requested accuracy",
+            )
         if self.possible_period_divisor != 1:
             several = (
-                f"the period found may be {self.possible_period_divisor} minimal periods, "
-                "within the errors of its harmonics"
+                f"the period found may be {self.possible_period_divisor} times the minimal period: the "
+                "harmonics that distinguish the two are within their errors"
             )
             return CycleStatus.not_settled, several
         if self.stable is None:
             return (
                 CycleStatus.not_settled,
-                f"the cycle's largest |multiplier| is 1 within {self.largest_modulus_error:.0e}",
+                "the stability is undecided: the largest modulus of a Floquet multiplier is 1 within its "
+                f"error, {self.largest_modulus_error:.0e}",
             )
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

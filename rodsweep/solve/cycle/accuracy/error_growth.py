@@ -6,7 +6,7 @@ from ....arrays import Array
 from ...orbit.orbit import Orbit
 from ...orbit.tails import smooth_tails
 from .calibration_settings import CALIBRATION_SETTINGS
-from .error_indicators import LAST_HARMONICS
+from .error_indicators import LAST_HARMONICS_INDEX
 
 
 def tails_and_size(orbit: Orbit) -> Array:
@@ -44,4 +44,4 @@ def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
     over all fields and intervals. Between the time nodes, errors grow with the last harmonics of the path.
     """
     growth = after / before
-    return float(growth[:LAST_HARMONICS].max()), float(growth[LAST_HARMONICS])
+    return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])

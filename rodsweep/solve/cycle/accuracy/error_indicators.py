@@ -14,7 +14,7 @@ from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from .cycle_errors import CYCLE_ERROR_SETTINGS
 
-LOST_ENERGY, AMPLITUDE_ERROR, LAST_HARMONICS = range(3)
+ENERGY_LOSS_INDEX, AMPLITUDE_ERROR_INDEX, LAST_HARMONICS_INDEX = range(3)
 """Indices into the array that `error_indicators` returns."""
 LAST_HARMONIC_COUNT = 3
 """Number of the last harmonics. The path of a symmetric orbit has even harmonics in x and odd harmonics in y

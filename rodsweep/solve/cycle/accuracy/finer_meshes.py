@@ -23,7 +23,7 @@ from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.path_differences import Y_INDEX, path_differences
 from .calibration import Calibration, calibration_of
 from .calibration_settings import CALIBRATION_SETTINGS
-from .error_indicators import AMPLITUDE_ERROR, error_indicators
+from .error_indicators import AMPLITUDE_ERROR_INDEX, error_indicators
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,7 +77,7 @@ def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibra
         space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
     # The error of the largest y may be small only because it changes its sign near this cycle.
     indicators = error_indicators(found, measured.path)
-    by_energy = indicators[AMPLITUDE_ERROR] / CALIBRATION_SETTINGS.safety_factor
+    by_energy = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
     time[Y_INDEX] = max(time[Y_INDEX], by_energy)
     return replace(calibration_of(mesh, space, time, found.orbit, before), indicators=indicators)
 

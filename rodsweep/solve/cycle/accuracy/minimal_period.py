@@ -23,7 +23,7 @@ class MinimalPeriodSettings:
 
     min_harmonic_ratio: float = 1e-3
     """While the error of the orbit is not known, a harmonic is treated as nonzero if its size divided by the
-    size of the largest harmonic exceeds this."""
+    size of the largest harmonic exceeds this number."""
     certain_harmonic_in_errors: float = 10.0
     """A harmonic is certainly nonzero if its size divided by the size of the largest harmonic exceeds this
     number times the relative error of the extrema."""
@@ -35,10 +35,10 @@ class MinimalPeriodSettings:
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
-def common_harmonic_divisor(path: CyclePath, present: float) -> int:
-    """Greatest common divisor of the numbers of all harmonics larger than `present` times the largest
+def common_harmonic_divisor(path: CyclePath, min_ratio: float) -> int:
+    """Greatest common divisor of the numbers of all harmonics larger than `min_ratio` times the largest
     harmonic; 0 if all harmonics are 0."""
-    return int(_divisor_from_harmonic_sizes(path.bending_harmonics, present))
+    return int(_divisor_from_harmonic_sizes(path.bending_harmonics, min_ratio))
 
 
 @compiled

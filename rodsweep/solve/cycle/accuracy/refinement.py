@@ -25,10 +25,10 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...unsolvable import Unsolvable
 from .calibration import Calibration
+from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
 from .finer_meshes import measured_calibration
-from .mesh_choice import cheapest_mesh
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 
@@ -66,11 +66,11 @@ def _multiplier_per_relative_exponent(multipliers: Complex) -> float:
     return modulus * abs(log(modulus)) if modulus else 0.0
 
 
-def refined_cycle_at_given_period(
+def refined_cycle_of_any_period(
     orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
 ) -> RefinedCycle:
-    """The cycle near an approximate orbit, to a relative accuracy or on the finest allowed mesh; raises
-    Unsolvable.
+    """The cycle near an approximate orbit, over one or more minimal periods, to a relative accuracy or on the
+    finest allowed mesh; raises Unsolvable.
 
     workspace: memory of Newton's matrices. parameter: parameter along which the tangent of the cycle is
     computed; None for a single cycle, whose errors are predicted from coarser meshes if possible.
@@ -214,14 +214,14 @@ def refined_cycle(
     computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
     accuracy.
     """
-    found = refined_cycle_at_given_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
+    found = refined_cycle_of_any_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
     if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
-        found = refined_cycle_at_given_period(
+        found = refined_cycle_of_any_period(
             restricted_to_minimal_period(found.orbit), accuracy, workspace, parameter
         )
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if found.stable is None:
-        found = refined_cycle_at_given_period(
+        found = refined_cycle_of_any_period(
             found.orbit,
             max(
                 accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy

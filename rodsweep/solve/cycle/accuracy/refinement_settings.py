@@ -13,7 +13,7 @@ class RefinementSettings:
     """Smallest relative tolerance of Newton's method for a cycle: some hundred rounding errors."""
     undecided_accuracy_divisor: float = 100.0
     """A cycle whose largest nontrivial multiplier has modulus 1 within its error is solved again with the
-    accuracy divided by this."""
+    accuracy divided by this number."""
     matrix_distance_ratio: float = 3.0
     """Largest relative distance between a cycle and the orbit whose matrix gives its multipliers, divided by
     the accuracy."""
@@ -38,8 +38,8 @@ class RefinementSettings:
     times this factor."""
     max_retry_cost: float = 1e8
     """After a mesh without a cycle, a finer mesh is tried only if its number of time intervals times its
-    cubed number of unknowns is at most this. Cycles near a Hopf point need fewer than 20 intervals and 150
-    unknowns; without this limit, a motion that never repeats costs a minute."""
+    cubed number of unknowns is at most this number. Cycles near a Hopf point need fewer than 20 intervals and
+    150 unknowns; without this limit, a motion that never repeats costs a minute."""
     first_mesh_accuracy_ratio: float = 0.5
     """Accuracy for which the first mesh of a single cycle is chosen, divided by the requested accuracy: a
     second mesh costs more than a finer first mesh."""
@@ -49,7 +49,7 @@ class RefinementSettings:
     error of the largest y was four times its estimate."""
     max_prediction_distance_ratio: float = 30.0
     """Predicted errors are accepted if the relative distance of a cycle from its prediction by coarser
-    meshes, divided by the accuracy, is at most this; the largest observed ratio was 4.4."""
+    meshes, divided by the accuracy, is at most this number; the largest observed ratio was 4.4."""
     min_prediction_distance: float = 1e-9
     """Predicted errors are always accepted if the relative distance of a cycle from its prediction is at most
     this, because of rounding errors."""

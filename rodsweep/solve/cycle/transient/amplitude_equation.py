@@ -27,8 +27,8 @@ class AmplitudeEquationSettings:
     """A new measurement replaces an earlier c if |c| a^2 exceeds this number times the noise, so that the
     noise is at most a tenth of c a^2. A c measured within the noise may have the wrong sign."""
     min_factor_change: float = 0.1
-    """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this,
-    because Newton's method converges."""
+    """The state is not scaled if the factor to the predicted amplitude differs from 1 by less than this
+    number, because Newton's method converges."""
     decaying_state_factor: float = 0.7
     """Factor by which a slowly decaying motion is scaled; a growing motion with c < 0 is scaled by the
     inverse. The factor is close enough to 1 not to miss a cycle."""
@@ -50,10 +50,10 @@ class AmplitudeEquation:
     rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add.
     Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
 
-    def __init__(self, period: float, linear_rate: float, excess: float, noise: float) -> None:
+    def __init__(self, period: float, linear_growth_rate: float, growth_excess: float, noise: float) -> None:
         self.period = period
-        self.linear_growth_rate = linear_rate
-        self.growth_excess = excess
+        self.linear_growth_rate = linear_growth_rate
+        self.growth_excess = growth_excess
         self.growth_noise = noise
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""

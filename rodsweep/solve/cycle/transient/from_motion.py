@@ -24,7 +24,7 @@ class NewtonFromMotionSettings:
     peak_search_times: int = 128
     """Number of equidistant times per period from which the time of the largest y is chosen."""
     max_asymmetry: float = 0.2
-    """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this."""
+    """The orbit is solved as symmetric if the `relative_asymmetry` of the motion is less than this number."""
 
 
 NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()

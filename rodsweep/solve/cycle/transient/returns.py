@@ -24,10 +24,11 @@ class ReturnSettings:
 
     straight_norm: float = 1e-6
     """A motion with |z| < straight_norm has decayed to the straight state, if this state is stable; z: state.
-    If the norm of the bending and shear components of z is smaller than this, the rod no longer oscillates.
-    Numerical damping governs smaller motions."""
+    If the norm of the bending and shear components of z is smaller than this number, the rod no longer
+    oscillates. Numerical damping governs smaller motions."""
     max_equal_return_distance: float = 0.03
-    """Two returns are equal if their relative distance is at most this, or twice the smallest distance."""
+    """Two returns are equal if their relative distance is at most this number, or twice the smallest
+    distance."""
     max_returns_per_period: int = 8
     """A cycle is recognised if the tip returns at most this number of times per period."""
     max_steps_per_run: int = 20_000
@@ -64,28 +65,32 @@ def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
     return RunLimit(enough, RETURN_SETTINGS.max_steps_per_run)
 
 
-class EarlyEnd(NamedTuple):
+class RunFailure(NamedTuple):
     """Failure of a run before its limit. left_the_model: whether the model is no longer valid for the rod."""
 
     left_the_model: bool
     message: str
 
 
-def early_end(beam: Beam, run: Trajectory, returns: int) -> EarlyEnd | None:
+def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
     """The failure of a run, with a message; None if the run is complete. returns: number of returns of the
     tip before the run."""
     if run.ending in (RunEnding.reached, RunEnding.stopped):
         return None
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
-        return EarlyEnd(True, f"h1 = {h1:.3g} at a point of the rod after {returns} returns of the tip")
+        where = f"at a point of the rod after {counted(returns, 'return')} of the tip"
+        return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {where}")
     if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.searched_last_states :]):
-        why = f"after {returns} returns of the tip the strain energy of a section is not convex"
-        return EarlyEnd(True, why)
+        why = (
+            f"after {counted(returns, 'return')} of the tip a section has lost its stiffness: its strain "
+            "energy is not convex"
+        )
+        return RunFailure(True, why)
     why = "the integrator finds no time step with an acceptable error"
     if run.ending == RunEnding.too_many_steps:
-        why = "the integrator reached its maximum number of steps"
-    return EarlyEnd(False, run.message or why)
+        why = "the integrator reached the maximum number of time steps of one run"
+    return RunFailure(False, run.message or why)
 
 
 def _loses_convexity(beam: Beam, states: Array) -> bool:

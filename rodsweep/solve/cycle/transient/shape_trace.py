@@ -21,9 +21,10 @@ class ShapeTraceSettings:
     max_stored_shapes: int = 1600
     """Maximum number of stored shapes: 50 periods of 32 shapes."""
     max_rest_deflection: float = 2e-3
-    """An arm is at rest if the tip's |y|, in L, is at most this."""
+    """An arm is at rest if the tip's |y|, in L, is at most this number."""
     min_returns: int = 3
-    """With fewer returns than this, the period of the leading mode is used as the period of the motion."""
+    """With fewer returns than this number, the period of the leading mode is used as the period of the
+    motion."""
 
 
 SHAPE_TRACE_SETTINGS = ShapeTraceSettings()

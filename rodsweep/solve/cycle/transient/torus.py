@@ -6,7 +6,7 @@ curve by the same angle on average. The bending moments at the k-th return are t
 times this angle. The series is fitted to the earlier returns and must predict the later returns, which
 excludes growing, decaying and irregular motions. The earlier returns must fill the closed curve: a periodic
 motion that closes after several returns leaves gaps, as does a short motion. A motion that closes after
-`TORUS_TEST_SETTINGS.min_returns_around` or more returns cannot be distinguished from a torus.
+`TORUS_TEST_SETTINGS.min_distinct_returns` or more returns cannot be distinguished from a torus.
 """
 
 from collections.abc import Iterator
@@ -31,9 +31,10 @@ class TorusTestSettings:
     harmonics: int = 6
     """Number of harmonics of the second frequency in the fitted Fourier series. On the studied tori each
     harmonic was a fifth of the previous harmonic, and the sum of all harmonics beyond the sixth was 6e-4."""
-    min_returns_around: int = 16
-    """The returns must leave no gap larger than 1/min_returns_around of the closed curve. The returns then
-    determine the 13 terms of the Fourier series, and a motion that closes after fewer returns is rejected."""
+    min_distinct_returns: int = 16
+    """Smallest number of returns after which a motion on a torus may close: the returns must leave no gap
+    larger than 1/`min_distinct_returns` of the closed curve. The returns then determine the 13 terms of the
+    Fourier series."""
     max_prediction_error: float = 0.05
     """Largest rms error of the predicted returns on a torus, divided by the rms modulation. Errors of 7e-4 to
     0.03 were measured on tori, and 0.11 for a growing modulation."""
@@ -77,7 +78,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         - (transient.returns - len(transient.past_returns)),
     )
     past = list(transient.past_returns)[skipped:]
-    if len(past) < 2 * TORUS_TEST_SETTINGS.min_returns_around:
+    if len(past) < 2 * TORUS_TEST_SETTINGS.min_distinct_returns:
         return end
     times = np.array([time for time, _ in past])
     moments = np.array([moment for _, moment in past])
@@ -91,8 +92,9 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
             turns = modulation.angle_per_return / (2 * np.pi)
             message = (
-                f"the motion is modulated at {turns:.3f} times the return rate; the cycle inside the torus "
-                f"has a multiplier of modulus {cycle.largest_multiplier:.3g}"
+                f"the motion is modulated at {turns:.3f} times the frequency of its oscillation; the "
+                "unstable cycle inside the torus has a Floquet multiplier of modulus "
+                f"{cycle.largest_multiplier:.3g}"
             )
             return TransientOutcome(CycleStatus.torus, message, end.return_count, unstable_cycle=cycle)
     return end
@@ -136,7 +138,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     size = float(np.linalg.norm(later - later.mean(axis=0)))
     if (
         size == 0
-        or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST_SETTINGS.min_returns_around
+        or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
     ):
         return None
     basis = fourier_basis(best * numbers, TORUS_TEST_SETTINGS.harmonics)

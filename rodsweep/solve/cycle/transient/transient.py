@@ -30,10 +30,10 @@ from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
-from .returns import RETURN_SETTINGS, early_end, repetition, section_crossings, tip_angle_row, until_returns
+from .returns import RETURN_SETTINGS, repetition, run_failure, section_crossings, tip_angle_row, until_returns
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
-from .trace import TipTrace
+from .tip_trace import TipTrace
 from .transient_outcome import TransientOutcome
 from .transient_settings import TRANSIENT_SETTINGS
 
@@ -97,7 +97,7 @@ class Transient:
         while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
             report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
             run = self._run_of_returns(z, first)
-            if end := early_end(self.beam, run, self.returns):
+            if end := run_failure(self.beam, run, self.returns):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
                 return self._result(status, end.message)
             z = run.states[-1]
@@ -155,7 +155,7 @@ class Transient:
         if self.unsolved_message:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
-            work = f" and the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
+            work = f", at the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
             return f"no periodic motion within {counted(self.returns, 'return')} of the tip{work}"
         unstable = self.straight.stable is False
         why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"

@@ -3,7 +3,8 @@
 Most directions decay to rounding error over a period, so that the numerical rank of the derivative A is
 small. If A = Q R is a factorisation of this rank, the nonzero eigenvalues of A are the eigenvalues of the
 small matrix R Q. Pivoted Gram-Schmidt gives A = Q R to rounding error, even if the columns of A differ much
-in size. Q need not be orthogonal to rounding error.
+in size. Q need not be orthogonal to rounding error. The multipliers of a strongly unstable orbit, whose
+derivative is not formed, come from `shooting_intervals`.
 """
 
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 """Cycles near a cycle whose Newton matrix is factorised, corrected together with a test function from the
-module `functions`. A new matrix is assembled only if the corrections converge slowly."""
+module `fold_and_torus_functions`. A new matrix is assembled only if the corrections converge slowly."""
 
 from typing import Protocol
 
@@ -12,7 +12,7 @@ from ....unsolvable import Unsolvable
 from ...bordered.condition import BorderCondition, moved_orbit
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import ArcLengthScale
-from .functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
+from .fold_and_torus_functions import AUGMENTED_SETTINGS, FoldFunction, TorusFunction
 
 
 class CycleFamilyInterface(Protocol):
@@ -71,8 +71,8 @@ class NearbyCycleSolver:
         """(cycle near `orbit` that fulfils `condition`, value of its test function); raises Unsolvable.
 
         slope: approximate modulus of the derivative of the test function across the curve. tolerance:
-        relative tolerance of cycle and test function; far from the curve `AUGMENTED_SETTINGS.tolerance_share`
-        allows more."""
+        relative tolerance of cycle and test function; far from the curve
+        `AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
         last = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
@@ -89,7 +89,7 @@ class NearbyCycleSolver:
                 measured = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, measured)
             if off * min(rate, 1.0) <= max(
-                tolerance, AUGMENTED_SETTINGS.tolerance_share * abs(value) / slope
+                tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
@@ -105,7 +105,7 @@ class NearbyCycleSolver:
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
-        if not change <= ORBIT_NEWTON_SETTINGS.longest_step:
+        if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
             raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
         self.matrix_distance += change
         return moved_orbit(orbit, self.scale.parameter_name, step), change

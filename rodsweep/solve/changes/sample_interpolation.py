@@ -1,9 +1,9 @@
-"""Interpolation between two anchors: whether the slopes exclude exchanges of the leading eigenvalue between
-the anchors, other than an exchange that is known."""
+"""Interpolation between two samples: whether the slopes exclude exchanges of the leading eigenvalue between
+the samples, other than an exchange that is known."""
 
 import math
 
-from .anchors import ANCHOR_SETTINGS, Anchor
+from .spectrum_samples import SPECTRUM_SAMPLE_SETTINGS, SpectrumSample
 
 
 def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tuple[float, float]:
@@ -30,12 +30,12 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
     return lowest, at
 
 
-def next_anchor_position(left: Anchor, right: Anchor) -> tuple[float, bool]:
-    """Returns (share, hides). share: position of an additional anchor as a fraction of the interval from
-    `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading eigenvalue.
-    hides: whether two exchanges may lie between the anchors.
+def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[float, bool]:
+    """Returns (share, may_hold_two). share: position of an additional sample as a fraction of the interval
+    from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading
+    eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
 
-    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
     h = right.p - left.p
     for a, b in (
@@ -50,31 +50,31 @@ def next_anchor_position(left: Anchor, right: Anchor) -> tuple[float, bool]:
                 return 0.5, False
             continue
         smallest = min(abs(a[0]), abs(b[0]))
-        # By the trapezoidal rule smooth slopes explain the change between the anchors.
+        # By the trapezoidal rule smooth slopes explain the change between the samples.
         missed = _unexplained_change(a, b, h)
         sign = math.copysign(h, a[0])
         lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < ANCHOR_SETTINGS.interpolation_tolerance * smallest:
+        if a[0] * b[0] <= 0 or lowest < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest:
             return share, True
-        if missed > ANCHOR_SETTINGS.interpolation_tolerance * max(smallest, abs(b[0] - a[0])):
+        if missed > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b[0] - a[0])):
             return 0.5, False
     return 0.0, False
 
 
-def excludes_exchange(left: Anchor, right: Anchor, hides: bool) -> bool:
-    """Whether the slopes at two close anchors exclude an exchange of the leading eigenvalue, although
-    `next_anchor_position` asks for an anchor between them and returns `hides`.
+def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two: bool) -> bool:
+    """Whether the slopes at two close samples exclude an exchange of the leading eigenvalue, although
+    `next_sample_position` asks for a sample between them and returns `may_hold_two`.
 
-    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
-    return two_pairs_exchange_lead(left, right) or (not hides and next_two_stay_behind(left, right))
+    return two_pairs_exchange_lead(left, right) or (not may_hold_two and next_two_stay_behind(left, right))
 
 
-def next_two_stay_behind(left: Anchor, right: Anchor) -> bool:
+def next_two_stay_behind(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
-    between two anchors, whether these two eigenvalues are real or a complex pair.
+    between two samples, whether these two eigenvalues are real or a complex pair.
 
-    The leading eigenvalue must be real at both anchors, or a pair at both anchors.
+    The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
     at_left = left.gaps_to_next_two()
     at_right = right.gaps_to_next_two()
@@ -84,10 +84,10 @@ def next_two_stay_behind(left: Anchor, right: Anchor) -> bool:
     return all(_stays_positive(a, b, h) for a, b in zip(at_left, at_right, strict=True))
 
 
-def two_pairs_exchange_lead(left: Anchor, right: Anchor) -> bool:
+def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes show that the first two pairs at `left` are the first two pairs at `right` in the
-    opposite order, and exclude that one of the two pairs becomes real between the anchors."""
-    if any(w.imag == 0 for anchor in (left, right) for w in anchor.w):
+    opposite order, and exclude that one of the two pairs becomes real between the samples."""
+    if any(w.imag == 0 for sample in (left, right) for w in sample.w):
         return False
     h = right.p - left.p
     return _changes_sign_once(left.growth_gap(0, 2), right.growth_gap(2, 0), h) and all(
@@ -95,9 +95,9 @@ def two_pairs_exchange_lead(left: Anchor, right: Anchor) -> bool:
     )
 
 
-def has_only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
-    """Whether the slopes exclude further exchanges between two anchors with a double eigenvalue between them.
-    The leading eigenvalue is real at one anchor, and a pair at the other."""
+def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> bool:
+    """Whether the slopes exclude further exchanges between two samples with a double eigenvalue between them.
+    The leading eigenvalue is real at one sample, and a pair at the other."""
     squares = left.squared_pair_difference(), right.squared_pair_difference()
     if squares[0] is None or squares[1] is None:
         return False
@@ -108,15 +108,15 @@ def has_only_double_eigenvalue(left: Anchor, right: Anchor) -> bool:
     )
 
 
-def has_only_overtaking(left: Anchor, right: Anchor) -> bool:
-    """Whether the slopes show that, between two anchors, a real eigenvalue and a pair exchange the lead once
-    and no other eigenvalue takes the lead. False if the first eigenvalues at an anchor are not one real
+def has_only_overtaking(left: SpectrumSample, right: SpectrumSample) -> bool:
+    """Whether the slopes show that, between two samples, a real eigenvalue and a pair exchange the lead once
+    and no other eigenvalue takes the lead. False if the first eigenvalues at a sample are not one real
     eigenvalue and one pair."""
     # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
-    places = [(2, 0) if anchor.oscillates else (0, 1) for anchor in (left, right)]
+    places = [(2, 0) if sample.oscillates else (0, 1) for sample in (left, right)]
     ((real_left, pair_left), (real_right, pair_right)) = places
-    anchors = ((left, real_left, pair_left), (right, real_right, pair_right))
-    if any(anchor.w[real].imag != 0 or anchor.w[pair].imag == 0 for anchor, real, pair in anchors):
+    samples = ((left, real_left, pair_left), (right, real_right, pair_right))
+    if any(sample.w[real].imag != 0 or sample.w[pair].imag == 0 for sample, real, pair in samples):
         return False
     h = right.p - left.p
     return (
@@ -128,29 +128,29 @@ def has_only_overtaking(left: Anchor, right: Anchor) -> bool:
 
 
 def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
-    """Whether the slopes of a quantity explain its values at two anchors and exclude a zero between them.
-    left, right: (value, slope) at the anchors. h: distance of the anchors."""
+    """Whether the slopes of a quantity explain its values at two samples and exclude a zero between them.
+    left, right: (value, slope) at the samples. h: distance of the samples."""
     (a, slope_a), (b, slope_b) = left, right
     smallest = min(a, b)
     lowest, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
     missed = _unexplained_change(left, right, h)
     return (
-        lowest >= ANCHOR_SETTINGS.interpolation_tolerance * smallest > 0
-        and missed <= ANCHOR_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
+        lowest >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest > 0
+        and missed <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
     )
 
 
 def _changes_sign_once(left: tuple[float, float], right: tuple[float, float], h: float) -> bool:
-    """Whether a quantity has opposite signs at two anchors and its slopes explain the change. left, right:
-    (value, slope) at the anchors. h: distance of the anchors."""
+    """Whether a quantity has opposite signs at two samples and its slopes explain the change. left, right:
+    (value, slope) at the samples. h: distance of the samples."""
     change = abs(right[0] - left[0])
     return (
         left[0] * right[0] < 0
-        and _unexplained_change(left, right, h) <= ANCHOR_SETTINGS.interpolation_tolerance * change
+        and _unexplained_change(left, right, h) <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * change
     )
 
 
 def _unexplained_change(left: tuple[float, float], right: tuple[float, float], h: float) -> float:
-    """Modulus of the change of a quantity between two anchors, minus its change by the trapezoidal rule.
-    left, right: (value, slope) at the anchors. h: distance of the anchors."""
+    """Modulus of the change of a quantity between two samples, minus its change by the trapezoidal rule.
+    left, right: (value, slope) at the samples. h: distance of the samples."""
     return abs(right[0] - left[0] - h * (left[1] + right[1]) / 2)

@@ -28,7 +28,7 @@ class AugmentedSettings:
     tolerance: float = 1e-9
     """Relative tolerance of a cycle and its test function; the test function then has an error of about
     1e-8."""
-    tolerance_share: float = 0.01
+    tolerance_to_distance_ratio: float = 0.01
     """A cycle is corrected to the larger of `tolerance` and this fraction of its estimated distance from the
     curve of special points; the estimate is the test function divided by its slope."""
     min_contraction_rate: float = 10.0
@@ -94,7 +94,7 @@ class FoldFunction:
         write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         along = orbit.form.parameter_derivative(matrix.scale.parameter_name)
         shift = phase_right_side(orbit.start_state, along, p.rod, p.node_matrices)
-        closing = matrix.closing_right_sides(closing_residual(change.all_states, p), columns, ends)
+        closing = matrix.matching_right_sides(closing_residual(change.all_states, p), columns, ends)
         of_phase = shift * tangent[-1] - row @ change.start_state
         right = np.array(
             [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
@@ -125,7 +125,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.stage_states.shape
-        self.null_vectors = matrix.changes_at_fixed_parameter(
+        self.null_vectors = matrix.orbit_changes_at_fixed_parameter(
             _real_and_imaginary(start), np.zeros((K, s, 2, n))
         )
         n = len(start)
@@ -156,7 +156,7 @@ class TorusFunction:
         right[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered_propagator, right)
         self.multiplier += complex(change[-1])
-        self.null_vectors = self.null_vectors + self.matrix.changes_at_fixed_parameter(
+        self.null_vectors = self.null_vectors + self.matrix.orbit_changes_at_fixed_parameter(
             _real_and_imaginary(change[:-1]), columns
         )
 

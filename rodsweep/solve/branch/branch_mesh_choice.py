@@ -19,7 +19,7 @@ from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, 
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ArcLengthScale
-from .branch_error_measurement import measured_branch_calibration, sensitivity_of
+from .branch_error_measurement import measured_branch_calibration, tip_y_sensitivity
 from .branch_errors import BranchCalibration
 
 
@@ -230,6 +230,6 @@ def _with_interpolated_errors(
     if slow or float(grown) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     known = last.calibration.interpolate(
-        end.calibration, share, sensitivity_of(point.cycle.path, point.derivatives)
+        end.calibration, share, tip_y_sensitivity(point.cycle.path, point.derivatives)
     )
     return with_calibration(point, known, accuracy)

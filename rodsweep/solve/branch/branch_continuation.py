@@ -11,40 +11,38 @@ from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
-from .branch_ends import end_at_mirror_image, passed_mirror_image
+from .branch_end_settings import BRANCH_END_SETTINGS
+from .branch_ends import end_at_mirror_image, reaches_mirror_image
 from .branch_limits import BranchLimits
+from .branch_mesh_choice import is_measurement_due
 from .branch_record import BranchRecord, branch_end_point, reason_of_failure
 from .computing_time import fraction_done
-from .mesh_choice import is_measurement_due
 from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
-from .special.special_point import EndReason, SpecialKind, SpecialPoint
+from .special.special_point import BranchEndReason, SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point
-from .symmetry import (
-    BRANCH_END_SETTINGS,
-)
 
 
-def follow_branch(number: int, limits: BranchLimits) -> BranchCurve:
-    """The branch from the Hopf point `limits.hopfs[number]`; the last special point stores a failure."""
-    hopf = limits.hopfs[number]
-    curve = BranchCurve(start_hopf=number)
+def follow_branch(hopf_index: int, limits: BranchLimits) -> BranchCurve:
+    """The branch from the Hopf point `limits.hopfs[hopf_index]`; the last special point stores a failure."""
+    hopf = limits.hopfs[hopf_index]
+    curve = BranchCurve(start_hopf=hopf_index)
     curve.add_special_point(hopf_as_special_point(hopf))
     return _follow_to_end(
         curve, lambda: (first_cycle(hopf, limits.accuracy, limits.workspace), limits), limits
     )
 
 
-def follow_asymmetric_branch(which: int, name: str, limits: BranchLimits) -> BranchCurve:
+def follow_asymmetric_branch(breaking_index: int, name: str, limits: BranchLimits) -> BranchCurve:
     """The branch of asymmetric cycles along the parameter `name` from the symmetry breaking
-    `limits.breakings[which]`, solved at least to the accuracy `max_accuracy` of asymmetric cycles; a failure
-    is stored in the last special point."""
+    `limits.breakings[breaking_index]`, solved at least to the accuracy `max_accuracy` of asymmetric cycles; a
+    failure is stored in the last special point."""
     limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
-    breaking = limits.breakings[which]
+    breaking = limits.breakings[breaking_index]
     curve = BranchCurve(start_hopf=-1, start_breaking=breaking)
     curve.add_special_point(replace(breaking.special_point, message="", orbit=None))
 
@@ -62,7 +60,9 @@ def _follow_to_end(
     """The branch `curve`, which has only its first special point, followed to its end. first: function that
     solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
-        curve.end(BranchEnd(_end_without_cycle(curve, EndReason.list_full), complete=False, list_full=True))
+        curve.end(
+            BranchEnd(_end_without_cycle(curve, BranchEndReason.list_full), complete=False, list_full=True)
+        )
         return curve
     try:
         start, limits = first()
@@ -78,12 +78,12 @@ def _follow_to_end(
 
 def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimits) -> BranchCurve:
     """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
-    trail = BranchRecord(curve, limits.accuracy, first)
-    going: BranchCycle | BranchEnd = first
-    while isinstance(going, BranchCycle):
-        report(partial(_branch_progress, curve, going, limits))
-        going = _append_next_cycle(trail, going, limits)
-    trail.end(going)
+    record = BranchRecord(curve, limits.accuracy, first)
+    last: BranchCycle | BranchEnd = first
+    while isinstance(last, BranchCycle):
+        report(partial(_branch_progress, curve, last, limits))
+        last = _append_next_cycle(record, last, limits)
+    record.end(last)
     return curve
 
 
@@ -103,7 +103,7 @@ def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimit
     )
 
 
-def _end_without_cycle(curve: BranchCurve, reason: EndReason, message: str = "") -> SpecialPoint:
+def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
     born = curve.special_points[0]
     return replace(
@@ -132,16 +132,16 @@ def _append_next_cycle(
     is too long, `start` with half the step length, without a new cycle."""
     curve = record.curve
     if len(curve.points) >= limits.max_cycles:
-        return BranchEnd(branch_end_point(start, EndReason.list_full), complete=False, list_full=True)
+        return BranchEnd(branch_end_point(start, BranchEndReason.list_full), complete=False, list_full=True)
     try:
         at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
         end = at_zero or next_cycle(start, limits.accuracy)
-        if passed_mirror_image(start, end, limits):
+        if reaches_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return end_at_mirror_image(start, end, limits)
         end, outside = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
-        if range_end is not None and _step_hides_corner(start, end):
+        if range_end is not None and _step_has_unresolved_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
@@ -166,11 +166,11 @@ def _add_special_points(
     curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
 ) -> None:
     """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
-    step = partial(cycle_at_length, accuracy=limits.accuracy)
-    curve.add_special_points(*special_points_between(start, end, step, limits.accuracy))
+    cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
+    curve.add_special_points(*special_points_between(start, end, cycle_at, limits.accuracy))
 
 
-def _step_hides_corner(start: BranchCycle, end: BranchCycle) -> bool:
+def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""

@@ -1,5 +1,5 @@
-"""Anchors: rods of a path whose spectra are solved, with the smooth quantities that are interpolated between
-two anchors."""
+"""Samples of the spectrum along a path: leading eigenvalues and their slopes at selected rods, and the smooth
+quantities that are interpolated between two samples."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -8,28 +8,29 @@ from ...arrays import Complex
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnchorSettings:
-    """Settings of the anchors of a path of rods and of the interpolation between two anchors."""
+class SpectrumSampleSettings:
+    """Settings of the samples of the spectrum along a path of rods and of the interpolation between two
+    samples."""
 
-    min_known_modes: int = 4
+    min_computed_modes: int = 4
     """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
     more than the number of unstable modes are computed."""
     arm_accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
     D."""
     interpolation_tolerance: float = 0.25
-    """Tolerance of the interpolation between two anchors. The cubic must stay above this fraction of the
+    """Tolerance of the interpolation between two samples. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this
     fraction, with the difference that the slopes give by the trapezoidal rule."""
 
 
-ANCHOR_SETTINGS = AnchorSettings()
+SPECTRUM_SAMPLE_SETTINGS = SpectrumSampleSettings()
 
 
 @dataclass(frozen=True)
-class Anchor:
-    """A rod of a path, at path variable p, with its leading eigenvalues w and their slopes dw/dp,
-    (ANCHOR_MODE_COUNT,) each.
+class SpectrumSample:
+    """Spectrum of one rod of a path, at path variable p: leading eigenvalues w, in 1/tau2, and their slopes
+    dw/dp, (SAMPLED_MODE_COUNT,) each.
 
     relaxation_time: a relaxation time tau of the rod, smooth in p. relaxation_time_slope: dtau/dp. The
     product tau w is of order one; w alone grows without bound near crushing for a rod that has neither shear
@@ -64,7 +65,7 @@ class Anchor:
     def leading_growth_gap(self) -> tuple[float, float] | None:
         """Returns (tau Re(w1 - w), derivative of this product with respect to p), tau: `relaxation_time`. w1:
         leading eigenvalue. w: first complex eigenvalue if w1 is real, first real eigenvalue if w1 is complex;
-        None if there is no such w at this anchor."""
+        None if there is no such w at this sample."""
         for i, w in enumerate(self.w[1:], 1):
             if (w.imag != 0) != self.oscillates:
                 return self.growth_gap(0, i)

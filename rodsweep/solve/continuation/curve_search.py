@@ -11,11 +11,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Generic, Protocol, TypeVar
 
-Curve = TypeVar("Curve")
+AnyCurve = TypeVar("AnyCurve")
 
 
-class BoundaryProblem(Protocol[Curve]):
-    """Interface of `trace_boundaries` to the curves through seed points. A seed point is identified by its
+class CurveSearchProblem(Protocol[AnyCurve]):
+    """Interface of `trace_all_curves` to the curves through seed points. A seed point is identified by its
     index."""
 
     def next_seed(self, left: Sequence[int]) -> int:
@@ -25,30 +25,30 @@ class BoundaryProblem(Protocol[Curve]):
         """Numbers of the work items (parts of a curve) whose results are missing for the curve through the
         seed point `seed`."""
 
-    def curve(self, seed: int) -> Curve | None:
+    def curve(self, seed: int) -> AnyCurve | None:
         """The curve through the seed point `seed`; None if this curve cannot be traced."""
 
-    def distance(self, curve: Curve, seed: int) -> float:
+    def distance(self, curve: AnyCurve, seed: int) -> float:
         """Distance of the seed point `seed` from a curve along its row, divided by the length of a row; inf
         if no point of the curve is near."""
 
-    def are_identical(self, one: Curve, other: Curve) -> bool:
+    def are_identical(self, one: AnyCurve, other: AnyCurve) -> bool:
         """Whether the curves `one` and `other` are identical."""
 
 
 @dataclass(frozen=True, slots=True)
-class Boundaries(Generic[Curve]):
+class TracedCurves(Generic[AnyCurve]):
     """All curves through the seed points of a plane. largest_seed_distance: largest distance of a seed point
     from its curve, divided by the length of a row; 0 if no seed point lies on a curve. untraced_count: number
     of seed points that lie on no traced curve."""
 
-    curves: tuple[Curve, ...]
+    curves: tuple[AnyCurve, ...]
     largest_seed_distance: float
     untraced_count: int
 
 
 @dataclass(slots=True)
-class BoundarySearch(Generic[Curve]):
+class CurveSearch(Generic[AnyCurve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
@@ -60,40 +60,40 @@ class BoundarySearch(Generic[Curve]):
 
     tolerance: float
     distances: dict[int, float]
-    curves: list[Curve] = field(default_factory=list)
+    curves: list[AnyCurve] = field(default_factory=list)
     missing_items: list[int] = field(default_factory=list)
-    open_seeds: list[int] = field(default_factory=list)
+    untried_seeds: list[int] = field(default_factory=list)
 
     @property
-    def boundaries(self) -> Boundaries[Curve]:
-        """All curves, with the agreement and the number of untraced seed points; valid if `missing_items` is
-        empty."""
+    def traced_curves(self) -> TracedCurves[AnyCurve]:
+        """All curves, with the largest distance of a seed point from its curve and the number of untraced
+        seed points; valid if `missing_items` is empty."""
         found = [distance for distance in self.distances.values() if distance <= self.tolerance]
-        return Boundaries(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
+        return TracedCurves(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
 
 
-def trace_boundaries(
-    problem: BoundaryProblem[Curve], seeds: Iterable[int], agree: float
-) -> BoundarySearch[Curve]:
+def trace_all_curves(
+    problem: CurveSearchProblem[AnyCurve], seeds: Iterable[int], tolerance: float
+) -> CurveSearch[AnyCurve]:
     """State of a search after curves were traced until every seed point lies on a curve or was tried, or
-    until the result of a work item is missing. seeds: indices of the seed points. agree:
-    `BoundarySearch.tolerance`."""
-    search: BoundarySearch[Curve] = BoundarySearch(agree, dict.fromkeys(seeds, math.inf))
+    until the result of a work item is missing. seeds: indices of the seed points. tolerance: a seed point
+    lies on a curve if its distance, divided by the length of a row, is at most this number."""
+    search: CurveSearch[AnyCurve] = CurveSearch(tolerance, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
-    while left := [i for i, off in search.distances.items() if off > agree and i not in tried]:
+    while left := [i for i, off in search.distances.items() if off > tolerance and i not in tried]:
         seed = problem.next_seed(left)
         search.missing_items = problem.missing_items(seed)
         if search.missing_items:
             # Idle processes may trace curves from these seeds meanwhile. Some seeds may lie on the missing
             # curve.
-            search.open_seeds = [i for i in left if i != seed]
+            search.untried_seeds = [i for i in left if i != seed]
             break
         tried.add(seed)
         curve = problem.curve(seed)
         if curve is None:
             continue
         for i, off in search.distances.items():
-            if off > agree:
+            if off > tolerance:
                 search.distances[i] = min(off, problem.distance(curve, i))
         if not any(problem.are_identical(curve, other) for other in search.curves):
             search.curves.append(curve)

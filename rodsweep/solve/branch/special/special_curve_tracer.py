@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ....determinant.parameter_plane import PlaneAxis
-from ...continuation.boundaries import Boundaries, BoundarySearch, trace_boundaries
+from ...continuation.curve_search import CurveSearch, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...point_outcome import FAILURES
 from ...unsolvable import Unsolvable
@@ -14,7 +14,7 @@ from .curve_problem import END_SETTINGS, SpecialCurveProblem
 from .solved_curve_point import SolvedPoint
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
-    CurveEnd,
+    CurveEndReason,
     CurvePoint,
     HalfCurve,
     HalfCurveArrays,
@@ -28,7 +28,7 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 
 
 @dataclass(frozen=True, slots=True)
-class SpecialBoundaries:
+class SpecialCurveTracer:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
     line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points of
     all rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i
@@ -48,22 +48,22 @@ class SpecialBoundaries:
             likely += curves.possible_items(search)
         return needed + likely if needed else []
 
-    def curves(self, results: Mapping[int, HalfCurveArrays]) -> Boundaries[SpecialPointCurve]:
+    def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
-        found = [search.boundaries for _, search in self._searches(results)]
+        found = [search.traced_curves for _, search in self._searches(results)]
         curves = tuple(traced.curve for one in found for traced in one.curves)
-        return Boundaries(
+        return TracedCurves(
             curves, max(one.largest_seed_distance for one in found), sum(one.untraced_count for one in found)
         )
 
     def _searches(
         self, results: Mapping[int, HalfCurveArrays]
-    ) -> "Iterator[tuple[_CurvesOfKind, BoundarySearch[_TracedCurve]]]":
+    ) -> "Iterator[tuple[_CurvesOfKind, CurveSearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, results)
             seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
-            yield curves, trace_boundaries(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
+            yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -83,10 +83,10 @@ class SpecialBoundaries:
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
-        index, behind = divmod(item, 2)
-        one = self.special_points[index]
-        way = "down" if behind else "up"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {self.row_axis.name} = {one.row_value:.5g} {way}"
+        one = self.special_points[item // 2]
+        start = f"{self.row_axis.name} = {one.row_value:.5g}"
+        way = "smaller" if item % 2 else "larger"
+        return f"curve of {FOLLOWED_KINDS[one.kind]} from {start} to {way} values"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,8 +99,8 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_boundaries`; other fields as in `SpecialBoundaries`. results:
-    arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_all_curves`; other fields as in `SpecialCurveTracer`.
+    results: arrays of half curves, by number."""
 
     kind: SpecialKind
     line_axis: PlaneAxis
@@ -120,15 +120,15 @@ class _CurvesOfKind:
             return [item for item in (ahead, behind) if item not in self.results]
         half = TracedHalfCurve.from_arrays(self.results[ahead]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        on = half is not None and half.end is not CurveEnd.closed
+        on = half is not None and half.end is not CurveEndReason.closed
         return [behind] if on and behind not in self.results else []
 
-    def possible_items(self, search: "BoundarySearch[_TracedCurve]") -> list[int]:
+    def possible_items(self, search: "CurveSearch[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
         beside = sorted(
-            (i for i in search.open_seeds if self.special_points[i].row_value in rows), key=self._sort_key
+            (i for i in search.untried_seeds if self.special_points[i].row_value in rows), key=self._sort_key
         )
         return [item for i in beside for item in self.missing_items(i)]
 
@@ -137,7 +137,7 @@ class _CurvesOfKind:
         ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
         if ahead.half is None:
             return None
-        closed = ahead.half.end is CurveEnd.closed
+        closed = ahead.half.end is CurveEndReason.closed
         behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
         if behind.half is None and not closed:
             return None
@@ -176,7 +176,7 @@ class _CurvesOfKind:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
         if one.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
-        for end, last in zip(curve.vanishing_points, (curve.points[0], curve.points[-1]), strict=True):
+        for end, last in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
             x = self.line_axis.coordinate(end.at)
@@ -225,7 +225,7 @@ def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], o
     best = math.inf
     for a, b in zip(points[:-1], points[1:], strict=True):
         low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _near_chord(problem, a, b, one):
+        if not low <= row_coordinate <= high or not _may_be_near(problem, a, b, one):
             continue
         try:
             crossing = problem.point_on_row(a, b, row_coordinate)
@@ -239,7 +239,7 @@ def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], o
     return best
 
 
-def _near_chord(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
+def _may_be_near(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
     """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
     x = problem.line_axis.coordinate(one.at)
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))

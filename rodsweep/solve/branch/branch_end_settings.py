@@ -1,0 +1,50 @@
+"""Settings for the ends of a branch: at a Hopf point, at a symmetry breaking, or at an end of the parameter
+range.
+"""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BranchEndSettings:
+    """Settings for the ends of a branch at a Hopf point, at a symmetry breaking, or at an end of the
+    parameter range."""
+
+    max_last_amplitude: float = 0.06
+    """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
+    at most this number; otherwise the step is shortened."""
+    max_last_asymmetry: float = 0.2
+    """The symmetric cycle at the end of a branch is extrapolated only from a cycle whose asymmetry, divided
+    by its largest bending moment, is at most this number; otherwise the step is shortened."""
+    min_asymmetry: float = 0.02
+    """If the asymmetry, divided by the largest bending moment, is at most this number, the step is not
+    shortened: the extrapolation to the symmetric cycle would not improve."""
+    lost_asymmetry_ratio: float = 0.1
+    """A step has reached or passed a symmetric cycle if the ratio of the asymmetry at its end to the
+    asymmetry at its start is less than this number."""
+    allowed_asymmetry_ratios: tuple[float, float] = 0.5, 2.0
+    """Smallest and largest allowed ratio of the solved to the predicted asymmetry of the first asymmetric
+    cycle."""
+    extrapolation_tolerance: float = 0.3
+    """Tolerance of the extrapolated parameter and period of a Hopf point or a symmetry breaking, divided by
+    the difference between their values at the last cycle and at this point."""
+    parameter_tolerance: float = 1e-6
+    """Relative tolerance of the extrapolated parameter, added to the tolerance by `extrapolation_tolerance`;
+    the larger of this number and the accuracy is used."""
+    period_tolerance: float = 1e-3
+    """Relative tolerance of the extrapolated period, added to the tolerance by `extrapolation_tolerance`; at
+    a symmetry breaking the larger of this number and the accuracy is used."""
+    range_end_tolerance: float = 1e-6
+    """Tolerance of the predicted arc length to the end of the parameter range, divided by the step. Newton's
+    method then solves the cycle exactly at this end."""
+    range_end_error: float = 1e-15
+    """Relative error of the parameter at an end of the range."""
+    max_peak_shift: float = 0.05
+    """If the times of the largest tip y of two successive cycles differ by more than this fraction of the
+    period, the largest tip y is attained at different maxima of y(t)."""
+    max_step_with_corner: float = 0.02
+    """Longest last step, in arc length, if the curve of the largest tip y has a corner on this step; a longer
+    step is halved."""
+
+
+BRANCH_END_SETTINGS = BranchEndSettings()
