@@ -21,9 +21,9 @@ class NumericalAbscissaSettings:
     max_shifts: int = 60
     """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
     large."""
-    close_shift: float = 0.05
-    """Relative distance of the last shift above the numerical abscissa: so small that shift + 1/eigenvalue
-    loses no digits by cancellation."""
+    final_shift_distance: float = 0.05
+    """Distance of the last shift above the numerical abscissa a, divided by 1 + |a|: so small that
+    shift + 1/eigenvalue loses no digits by cancellation. A shift up to twice as far away is the last, too."""
     min_positive_ratio: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
@@ -59,8 +59,8 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         abscissa = shift + 1 / float(values[0])
         close = (
             abscissa
-            + NUMERICAL_ABSCISSA_SETTINGS.close_shift * abs(abscissa)
-            + NUMERICAL_ABSCISSA_SETTINGS.close_shift
+            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance * abs(abscissa)
+            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance
         )
         if shift - abscissa <= 2 * (close - abscissa):
             return abscissa

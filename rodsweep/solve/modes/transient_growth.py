@@ -37,9 +37,9 @@ class GrowthSettings:
     """Tolerance of `largest_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
     """Smallest tolerance of `largest_propagator_norm`: rounding error of the norm."""
-    first_order_increase: int = 4
+    order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
-    order_factor: float = 1.4
+    further_order_ratio: float = 1.4
     """Element order of a further mesh, divided by the order of the mesh before; boundary layers at the tip
     need high orders."""
     max_meshes: int = 5
@@ -100,9 +100,9 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     coarse = None
     for step in range(GROWTH_SETTINGS.max_meshes):
         order = (
-            mesh.order + GROWTH_SETTINGS.first_order_increase
+            mesh.order + GROWTH_SETTINGS.order_increase
             if step == 0
-            else ceil(GROWTH_SETTINGS.order_factor * mesh.order)
+            else ceil(GROWTH_SETTINGS.further_order_ratio * mesh.order)
         )
         last = mesh
         mesh = replace(mesh, order=order)

@@ -30,7 +30,7 @@ class IntegratorSettings:
     """Settings for runs of the time integration: tolerances, limits, and the run in
     `relax_fast_components`."""
 
-    stage_rounding: float = 1e-9
+    stagnation_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
     first_step_ratio: float = 1e-3
@@ -57,7 +57,7 @@ class IntegratorSettings:
 INTEGRATOR_SETTINGS = IntegratorSettings()
 
 
-RELAXATION = TimeScheme(
+RELAXATION_SCHEME = TimeScheme(
     "beuler", "", tolerance=INTEGRATOR_SETTINGS.relaxation_tolerance, prefix="cycle_relaxation_"
 )
 """Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
@@ -95,7 +95,8 @@ class RunLimit:
     max_steps: int = INTEGRATOR_SETTINGS.max_steps
 
 
-UNLIMITED = RunLimit()
+DEFAULT_RUN_LIMIT = RunLimit()
+"""Limit of a run by the default maximum number of steps only."""
 
 
 class Integrator:
@@ -111,7 +112,7 @@ class Integrator:
         self.matrix.assemble()
         self.ts = self._create()
         self.is_broken = False
-        self._limit = UNLIMITED
+        self._limit = DEFAULT_RUN_LIMIT
 
     def _create(self) -> "PETSc.TS":
         database = PETSc.Options()
@@ -146,7 +147,7 @@ class Integrator:
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
     def run(
-        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
+        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = DEFAULT_RUN_LIMIT
     ) -> Trajectory:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
         returned as a `RunEnding`, never raised.
@@ -162,7 +163,7 @@ class Integrator:
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * size
-        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stage_rounding * size)
+        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
@@ -236,5 +237,5 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     """
     duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
     step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
-    run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
+    run = integrator(beam.mesh, RELAXATION_SCHEME).run(beam, z, duration, step)
     return run.states[-1] if run.ending == RunEnding.reached else z

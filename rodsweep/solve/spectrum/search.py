@@ -148,8 +148,8 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error
-        settings = SEARCH_SETTINGS
-        allowed = settings.largest_displacement if self.problem.has_bound else settings.unbounded_displacement
+        limits = SEARCH_SETTINGS
+        allowed = limits.max_displacement if self.problem.has_bound else limits.max_displacement_without_bound
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.needs_vectors else allowed))
 
@@ -209,10 +209,10 @@ class Search:
         if self.disagreement is not None:
             lost = self.disagreement
             number, found = lost.count.number, lost.found_count
-            counted = f"the winding number counts {number} eigenvalues where {found} are found"
+            counted = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.is_leader_unresolved:
-            why = "no mesh resolves all eigenvalues that may lead"
+            why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return failed_spectrum(SpectrumStatus.failed, self.request, self.failure_reason)
 

@@ -585,7 +585,7 @@ def test_no_time_within_an_interval_exceeds_its_bound(seed):
     propagator = toy(generator)
     abscissa = abscissa_of(propagator)
     for t, h in ((0.1, 1e-3), (0.1, 0.03), (0.4, 0.2), (1.0, 1.0)):
-        squares, bends = propagator.squared_norms_and_bounds(np.array([t, t + h]))
+        squares, bends = propagator.squared_norms_and_curvature_bounds(np.array([t, t + h]))
         inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
         assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
         for bend in (bends[0], INF):  # both orders together, and the first alone
@@ -600,7 +600,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
     propagator = toy([[0.0, 9.0], [-1 / 9, 0.0]])
     h = 1e-4
     ends = np.pi / 2 + np.array([-h / 2, h / 2])
-    squares, bends = propagator.squared_norms_and_bounds(ends)
+    squares, bends = propagator.squared_norms_and_curvature_bounds(ends)
     bound = peak_module._squared_norm_bound(
         np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator)
     )
@@ -624,10 +624,12 @@ def test_the_bend_is_that_of_the_most_concave_square():
     matrices = [expm(propagator.generator * x) for x in (t - h, t, t + h)]
     low, middle, high = (E.T @ E for E in matrices)
     exact = -np.linalg.eigvalsh((low - 2 * middle + high) / h**2)[0]
-    assert propagator.squared_norms_and_bounds(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
+    assert propagator.squared_norms_and_curvature_bounds(np.array([t]))[1][0] == pytest.approx(
+        exact, rel=1e-4
+    )
     assert exact > 1
     symmetric = toy(np.diag([-1.0, -2.0]) + 0.1 * np.ones((2, 2)))
-    assert symmetric.squared_norms_and_bounds(np.array([t]))[1][0] == 0
+    assert symmetric.squared_norms_and_curvature_bounds(np.array([t]))[1][0] == 0
 
 
 def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only():

@@ -191,7 +191,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.computed_hulls_per_interval)
+        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
         W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first).max())
         line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first[modes - 1].real), 0.0)
