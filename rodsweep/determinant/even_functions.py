@@ -37,7 +37,8 @@ class EvenFunctionSettings(CompiledSettings):
         n = self.series_terms
         if self.by_series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
             raise ValueError(
-                f"a series of {n} terms is not accurate to rounding at |M| + 2 |P| = {self.by_series_below}"
+                f"series_terms = {n} is too small at |M| + 2 |P| = {self.by_series_below}: the sum is not "
+                "accurate to rounding"
             )
 
 

@@ -27,7 +27,7 @@ class BoundaryPointSettings:
     """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
-    min_determinant: float = EXPONENT_SETTINGS.least_divisor
+    min_jacobian_determinant: float = EXPONENT_SETTINGS.least_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
     converging_step_ratio: float = 0.5
@@ -98,7 +98,7 @@ class Boundary:
             right = np.append(-residual, -normal @ (v - guess))
             if (
                 not np.isfinite(matrix).all()
-                or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_determinant
+                or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_jacobian_determinant
             ):
                 return None
             inverse = np.linalg.inv(matrix)
@@ -137,7 +137,7 @@ class Boundary:
             stencil, h = (
                 self.plane.difference_stencil(v[0], v[1], i)
                 if i < 2
-                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.difference_step)
+                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
             )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:

@@ -180,10 +180,12 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return self.visit(part) if isinstance(part, ast.AST) else part
 
     def _has_known_value(self, node: ast.AST) -> bool:
+        """Whether an expression contains names, and all of them have known values."""
         names = self._names_read_by(node)
         return bool(names) and names <= self.known_values.keys()
 
     def _names_read_by(self, node: ast.AST) -> frozenset[str]:
+        """Names in a syntax node and all its children, cached."""
         names = self.shared_state.names_read.get(node)
         if names is None:
             own = {node.id} if isinstance(node, ast.Name) else ()

@@ -53,6 +53,7 @@ class LawUnknowns(NamedTuple):
 
 @compiled
 def _section_of_side(side: Array) -> LocalSection:
+    """The section on one side of a jump; side: a row of `sides`, (7,)."""
     return LocalSection(side[0], side[1], side[2])
 
 
@@ -79,6 +80,7 @@ def _largest_step_fraction(at: LocalSection, q1: float, step: float) -> float:
 
 @compiled
 def _is_negligible(step: LawUnknowns, at: LawUnknowns) -> bool:
+    """Whether a Newton step is small enough to stop; at: the unknowns after the step."""
     return abs(step.q1) <= CONVERGED_STEP * abs(at.q1) and abs(step.q3) <= CONVERGED_STEP * abs(at.q3)
 
 

@@ -85,6 +85,8 @@ def warm_up() -> None:
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.max_cached_searches)
 def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdList:
+    """Crossings of the imaginary axis at forces from 0 to `end`, cached; arguments as of
+    `find_axis_crossings`."""
     return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
@@ -98,6 +100,7 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 
 
 def _empty_criticality(cause: str) -> Criticality:
+    """The result of a failed search, without Hopf points; cause: its message."""
     return Criticality(
         status=CriticalityStatus.failed,
         search_result=ThresholdList(proved=False),

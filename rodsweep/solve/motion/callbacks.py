@@ -152,6 +152,7 @@ class CallbackWorkspace:
         self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
     def _set_context_fields(self, values: Mapping[str, float]) -> None:
+        """Sets fields of the context record; values: new values by name of the field."""
         for name, value in values.items():
             self.context[name] = value
 
@@ -202,6 +203,7 @@ class CallbackWorkspace:
             call_petsc("SNESSetConvergenceTest", snes.handle, test_newton_convergence.address, context, 0)
 
     def _register_stage_solver(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
+        """Registers `solve_stage` as the method of `snes`, a SNES of type shell."""
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors

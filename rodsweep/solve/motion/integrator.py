@@ -110,11 +110,12 @@ class Integrator:
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
         self.matrix.assemble()
-        self.ts = self._create()
+        self.ts = self._create_ts()
         self.is_broken = False
         self._limit = DEFAULT_RUN_LIMIT
 
-    def _create(self) -> "PETSc.TS":
+    def _create_ts(self) -> "PETSc.TS":
+        """A TS with the options of the scheme, which the user's PETSc options override."""
         database = PETSc.Options()
         prefix = self.scheme.prefix
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
@@ -184,9 +185,10 @@ class Integrator:
         rows = np.concatenate([[np.append(0.0, z)], take_steps(self.workspace.context)])
         times = np.ascontiguousarray(rows[:, 0])
         states = np.ascontiguousarray(rows[:, 1:])
-        return Trajectory(self._ending(message, states[-1]), times, states, message)
+        return Trajectory(self._run_ending(message, states[-1]), times, states, message)
 
-    def _ending(self, message: str, end: Array) -> RunEnding:
+    def _run_ending(self, message: str, end: Array) -> RunEnding:
+        """Reason why the run ended. message: PETSc's error message, or empty. end: last state."""
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
         if message or reason < 0 or not np.isfinite(end).all():

@@ -23,6 +23,7 @@ def _int_function(name: str, *arguments: Any) -> Any:
 
 
 def _compiled_symbol(name: str, signature: Any) -> Any:
+    """The C function `name` for compiled code. signature: numba's signature of the function."""
     binding.add_symbol(name, ctypes.cast(getattr(PETSC_LIBRARY, name), ctypes.c_void_p).value)
     return types.ExternalFunction(name, signature)
 

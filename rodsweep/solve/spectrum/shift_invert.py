@@ -143,10 +143,11 @@ class ShiftInvertSolver(ABC):
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
         self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
         self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
-        self.eps = self._solver("petsc" if self.is_dense else package)
+        self.eps = self._create_eps("petsc" if self.is_dense else package)
         self.loaded_pencil = LoadedPencil(0, 0.0)
 
-    def _solver(self, package: str | None) -> "SLEPc.EPS":
+    def _create_eps(self, package: str | None) -> "SLEPc.EPS":
+        """SLEPc's Krylov-Schur solver with shift-and-invert; package: PETSc's name of the LU package."""
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
         eps.setOptionsPrefix(SPECTRUM_PREFIX)
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)

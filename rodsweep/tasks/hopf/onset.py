@@ -8,7 +8,7 @@ needed, so that files can be merged without PETSc.
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.stability_changes import CoefficientsOverForce, ForceChange, onset_between
+from ...determinant.stability_changes import CoefficientsAlongForce, StabilityChange, onset_between
 from ...discretization.elements.resolution import expected_wave_number, resolution_for
 from ...discretization.straight.dense_form import dense_form
 from ...discretization.straight.transverse_mesh import pencil_on
@@ -27,8 +27,8 @@ MESH_ACCURACY = 1e-6
 
 
 def locate_onset(
-    rods: CoefficientsOverForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
-) -> ForceChange | None:
+    rods: CoefficientsAlongForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
+) -> StabilityChange | None:
     """The force between the forces `ends` at which the two leading real eigenvalues merge into a pair; None
     if no such force is found.
 
@@ -51,7 +51,7 @@ def locate_onset(
     return None
 
 
-def _leads(rod: Rod, change: ForceChange) -> bool:
+def _leads(rod: Rod, change: StabilityChange) -> bool:
     """Whether the double eigenvalue `change` is the leading eigenvalue of the rod at this force. Between two
     forces far from each other, other eigenvalues can merge too."""
     pair = leading_pair_on_mesh(rod.with_coordinate("F", change.F))

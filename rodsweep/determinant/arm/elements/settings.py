@@ -78,7 +78,7 @@ class ArmElementSettings(CompiledSettings):
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:
-            raise ValueError(f"{self.stages} stages are not a multiple of 4")
+            raise ValueError(f"stages = {self.stages} is not a multiple of 4")
 
 
 ARM_ELEMENT_SETTINGS = ArmElementSettings()

@@ -91,8 +91,7 @@ def _refine_all_eigenvalues(
     """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track.
 
     guess: (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm.
-    Returns True if all eigenvalues converged, no two
-    coincide, and every complex pair stayed complex.
+    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
