@@ -10,8 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.rod import Rod
-from ..arm_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..elements.mesh import Mesh, interpolation_matrix
+from ..material_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..nodal_rod import NodalChange, NodalRod, nodal_change
 from ..rod_on_mesh import RodOnMesh
 from ..state_layout import PLANE_COMPONENT_COUNT, plane_layout

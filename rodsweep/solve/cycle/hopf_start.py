@@ -12,9 +12,9 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
-from ...discretization.at_jumps import interpolate_stress
 from ...discretization.elements.mesh import interpolation_matrix
 from ...discretization.stress.form import StressForm
+from ...discretization.stresses_at_jumps import interpolate_stress
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem

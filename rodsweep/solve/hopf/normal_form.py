@@ -139,7 +139,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
-    if form.law.is_nonlinear:
+    if form.law_derivatives.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
     slope = np.vdot(p, form.times_force_derivative_of_A(q))
     return NormalForm(

@@ -9,7 +9,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
 from ....discretization.nodal_rod import NodalChange, NodalRod
-from ....discretization.plane import write_balance, write_balance_derivative, write_jacobian
+from ....discretization.plane_equations import write_balance, write_balance_derivative, write_jacobian
 from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENT_COUNT, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.nodal_rod import NodalChange
-from ....discretization.plane import (
+from ....discretization.plane_equations import (
     write_balance,
     write_balance_derivative,
     write_jacobian,
