@@ -117,8 +117,8 @@ class Plane:
         (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
-        blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
+        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
@@ -155,8 +155,8 @@ class Plane:
                 slope += weight * neighbour.D * exp(neighbour.S - S) / h
             slopes.append(slope)
         D_x, D_y = slopes
-        blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
+        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     @staticmethod
     def _determinant_along_axis(

@@ -91,7 +91,7 @@ class Boundary:
         last = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):
             try:
-                residual, jacobian, blur = self.residual_and_jacobian(v)
+                residual, jacobian, rounding = self.residual_and_jacobian(v)
             except (ValueError, ArithmeticError):
                 return None
             matrix = np.vstack([jacobian, normal])
@@ -103,7 +103,7 @@ class Boundary:
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
-            error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
+            error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
             size = float(np.abs(step).max())
             v = v + step
             if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
@@ -119,11 +119,11 @@ class Boundary:
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`residual_and_jacobian` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
-        D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
+        D, D_w, D_x, D_y, _, rounding = self.plane.determinant(w, v[0], v[1])
         rows = np.array([D_x, D_y, D_w * w])
         scale = float(np.abs(rows).max())
         jacobian = np.array([rows.real, rows.imag]) / scale
-        return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
+        return np.array([D.real, D.imag]) / scale, jacobian, rounding / scale
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`residual_and_jacobian` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w =

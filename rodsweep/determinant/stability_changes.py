@@ -16,7 +16,7 @@ from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .roots.newton import crossing_newton, double_newton
+from .roots.newton import crossing_newton, double_eigenvalue_newton
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,7 +67,7 @@ def onset_between(
     rise = pair.imag**2
     guess = low + (high - low) * gap / (gap + rise)
     centre = ((first.real + second.real) / 2 + pair.real) / 2
-    zero = double_newton(centre, guess, *rods, high - low)
+    zero = double_eigenvalue_newton(centre, guess, *rods, high - low)
     if not low <= zero.p <= high:
         return None
     return StabilityChange("onset", zero.p, zero.error_of_p, zero.eta_or_x, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.material.laws import LINEAR
-from ..model.material.response import LocalSection, stress_tangent
+from ..model.material.stress_strain import LocalSection, stress_tangent
 from ..model.rod import Rod
 from .element_strains import write_element_strain_changes, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains

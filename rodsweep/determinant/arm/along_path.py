@@ -171,12 +171,12 @@ class ArmAlongPath:
         if cross == 0 or not math.isfinite(cross):
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
         rounding = rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
-        blur = rounding + ROUND_OFF * abs(p * D_p)
-        blur_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
+        total_rounding = rounding + ROUND_OFF * abs(p * D_p)
+        rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
         in_x = (D_p * D_w - D_wp * D) / cross
         in_p = (D_ww * D - D_w * D_w) / cross
-        e_x = (blur * abs(D_wp) + blur_of_slope * abs(D_p)) / abs(cross)
-        return _DoubleEigenvalueStep(in_x, in_p, e_x, blur * abs(D_ww) / abs(cross))
+        e_x = (total_rounding * abs(D_wp) + rounding_of_slope * abs(D_p)) / abs(cross)
+        return _DoubleEigenvalueStep(in_x, in_p, e_x, total_rounding * abs(D_ww) / abs(cross))
 
     def _usable_family(self, x: float, p: float) -> ArmFamily | None:
         """The family of arms that contains p, if it is valid at w = x; else None."""

@@ -59,7 +59,7 @@ def refine_mesh_eigenvalues(
     stands = [
         k
         for k, i in enumerate(chosen)
-        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.largest_correction * scale[i]
+        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.max_correction * scale[i]
     ]
     found = _refine_guesses([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))

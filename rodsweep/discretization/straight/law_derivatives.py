@@ -1,7 +1,7 @@
 """Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
-s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the material
-jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
+s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.stress_strain`; s2 = S2. At a node where the
+material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass

@@ -1,8 +1,8 @@
 """Compiled stress of a rod at a jump of its material as a function of the mean strain, for every law.
 
-Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `response` on the base side and
-on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a + w_b =
-1 for each component. Then
+Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `stress_strain` on the base side
+and on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a +
+w_b = 1 for each component. Then
 
     N(a) = N(b),    M(a) = M(b),    w_a a + w_b b = q,
 
@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import (
+from .stress_strain import (
     LINEAR_LAW,
     LocalSection,
     Stress,
@@ -45,7 +45,8 @@ because the law is defined for h1 > 0 only."""
 
 
 class LawUnknowns(NamedTuple):
-    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in `response`."""
+    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in
+    `stress_strain`."""
 
     q1: float
     q3: float

@@ -28,12 +28,13 @@ cancellation."""
 class Law:
     """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
-    Kernels use the compiled twin of all laws in `rodsweep.model.material.response`; a change of a law is a
-    change in both modules. All functions take and return floats or arrays. energy: W(h1). energy_over_square:
-    W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W'''
-    and W''''. bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''.
-    shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
-    crushing_load: the load x that crushes the rod; inf if no force crushes the rod."""
+    Kernels use the compiled twin of all laws in `rodsweep.model.material.stress_strain`; a change of a law is
+    a change in both modules. All functions take and return floats or arrays. energy: W(h1).
+    energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope,
+    stiffness_second_derivative: W''' and W''''. bending_factor: B(h1). bending_factor_slope,
+    bending_factor_second_derivative: B' and B''. shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x,
+    without cancellation for small loads. crushing_load: the load x that crushes the rod; inf if no force
+    crushes the rod."""
 
     law: str
     section: str

@@ -49,7 +49,7 @@ from .step_record import take_steps
 
 _get_dense = petsc_function("MatDenseGetArray")
 _restore_dense = petsc_function("MatDenseRestoreArray")
-_object_state = petsc_function("PetscObjectStateGet")
+_get_object_state = petsc_function("PetscObjectStateGet")
 
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
@@ -103,7 +103,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     n = c.unknowns
     at = context + OUTPUTS_OFFSET
     outputs = integers_at(at, 1)
-    _object_state(B, at)
+    _get_object_state(B, at)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
@@ -123,7 +123,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
         M[i, i] += shift
     _restore_dense(B, at)
     c.last_matrix = B
-    _object_state(B, context + MATRIX_STATE_OFFSET)
+    _get_object_state(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
     c.shift = shift
     c.factorisations += 1

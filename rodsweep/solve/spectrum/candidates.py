@@ -47,11 +47,11 @@ class CandidateSettings(CompiledSettings):
     part, is at most this."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
-    proof_line_errors: float = 3.0
+    proof_line_distance_in_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
     error of w plus `proof_line_distance` * |w|, to the left."""
     proof_line_distance: float = 1e-9
-    """Part of the distance in `proof_line_errors` that is proportional to |w|, divided by |w|."""
+    """Part of the distance in `proof_line_distance_in_errors` that is proportional to |w|, divided by |w|."""
 
 
 CANDIDATE_SETTINGS = CandidateSettings()
@@ -149,7 +149,7 @@ def line_for_proof(last: complex, error: float) -> float:
     """
     return min(
         last.real
-        - CANDIDATE_SETTINGS.proof_line_errors * error
+        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
         - CANDIDATE_SETTINGS.proof_line_distance * abs(last),
         0.0,
     )

@@ -19,7 +19,7 @@ from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stress
 from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
-from rodsweep.model.material.response import LocalSection, stress_beyond_rest
+from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.kinds import ChangeKind

@@ -103,7 +103,7 @@ def _node_inside(
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
-    least = CONTOUR_SETTINGS.smallest_radius * unit
+    least = CONTOUR_SETTINGS.min_circle_radius * unit
     room = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
     best = node

@@ -43,17 +43,17 @@ class ContourSettings(CompiledSettings):
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
     reach_overlap: float = 0.95
     """Distance to the next node divided by the sum of the expected reaches of both nodes."""
-    largest_growth: float = 0.5
+    max_reach_growth: float = 0.5
     """Largest expected growth of the reach per distance; the next node is then at most 3.6 reaches away."""
     min_reach_ratio: float = 0.2
     """If the reach is below this fraction of a circle's radius, the next smaller circle is tried at once."""
     first_radius: float = 12.0
     """Radius of the first circle at a node without a previous circle, in units of the length over which D
     changes."""
-    smallest_radius: float = 0.75
+    min_circle_radius: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
-    largest_radius: float = 48.0
+    max_circle_radius: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
     """Circles up to this radius, in units of Im w, use `dominant_wave`, which may have branch points on the
@@ -67,7 +67,7 @@ class ContourSettings(CompiledSettings):
         "max_change": (0.0, 1.0),
         "max_wave_radius": (0.0, 1.0),
         "reach_overlap": (0.0, 1.0),
-        "largest_growth": (0.0, 1.0),
+        "max_reach_growth": (0.0, 1.0),
         "max_step_ratio": (0.0, 1.0),
         "safe_step": (0.0, 1.0),
     }

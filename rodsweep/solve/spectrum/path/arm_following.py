@@ -132,7 +132,7 @@ def proved_count_right_of_line(
     k = track.descending_order[i, modes - 1]
     line = min(
         w[k].real
-        - CANDIDATE_SETTINGS.proof_line_errors * error[k]
+        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
         - CANDIDATE_SETTINGS.proof_line_distance * abs(w[k]),
         0.0,
     )
