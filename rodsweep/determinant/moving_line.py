@@ -17,7 +17,7 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX_SETTINGS, box_from_amplification, squared_amplification_between_rods
+from .certificate.box import BOX_SETTINGS, box_from_sqrt_bound, frequency_bound_between_rods
 from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
@@ -140,12 +140,11 @@ def proves_no_crossing(
         first, last = last, first
     depth = -min(first.line, last.line)
     a = math.sqrt(
-        (1 + BOX_SETTINGS.bound_excess)
-        * squared_amplification_between_rods(first.coefficients, last.coefficients)
+        (1 + BOX_SETTINGS.bound_excess) * frequency_bound_between_rods(first.coefficients, last.coefficients)
     )
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
-    top = box_from_amplification(a, depth)[1]
+    top = box_from_sqrt_bound(a, depth)[1]
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0

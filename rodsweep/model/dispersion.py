@@ -25,9 +25,11 @@ SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
 """Maximum number of arms, and of builds, in the caches of this module."""
-MIN_K_FRACTION = 1e-4
+MIN_SQUARED_WAVE_NUMBER_RATIO = 1e-4
 """Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
-K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
+SQUARED_WAVE_NUMBER_RATIOS: Array = MIN_SQUARED_WAVE_NUMBER_RATIO ** (
+    1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT
+)
 """Ratios K/(F g) of all samples of K = kappa^2, increasing, (SAMPLE_COUNT,)."""
 
 
@@ -89,7 +91,7 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     top = np.maximum(rod.F * c3 * g, 0.0)
     _, rates = _growth_rates(*(x[:, None] for x in (top, g * nu, c2 / c3, gamma3 / gamma2)))
     largest = rates.max(axis=-1)
-    wave = np.where(largest > 0, np.sqrt(top * K_FRACTIONS[rates.argmax(axis=-1)]), 0.0)
+    wave = np.where(largest > 0, np.sqrt(top * SQUARED_WAVE_NUMBER_RATIOS[rates.argmax(axis=-1)]), 0.0)
     return largest / (gamma2 * c3), wave
 
 
@@ -110,7 +112,7 @@ def _growth_rates(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Arra
     rotational drag. All arguments are numbers, or arrays (n, 1) for n rods.
     """
     square = c2 * gamma3
-    K = top * K_FRACTIONS
+    K = top * SQUARED_WAVE_NUMBER_RATIOS
     with np.errstate(all="ignore"):
         # Waves with K < F g grow.
         drive = K * (top - K)

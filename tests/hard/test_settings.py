@@ -29,7 +29,7 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
-from rodsweep.determinant.certificate.box import box_from_amplification
+from rodsweep.determinant.certificate.box import box_from_sqrt_bound
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
@@ -806,12 +806,12 @@ def test_settings_are_frozen_and_have_keywords_only():
 
 
 def test_a_changed_setting_reaches_compiled_functions():
-    before = box_from_amplification(0.0, 1.0)
+    before = box_from_sqrt_bound(0.0, 1.0)
     with replaced("BOX_SETTINGS", "padding", 2.0):
-        assert box_from_amplification(0.0, 1.0)[0] - before[0] == pytest.approx(
+        assert box_from_sqrt_bound(0.0, 1.0)[0] - before[0] == pytest.approx(
             settings()["BOX_SETTINGS"].padding
         )
-    assert box_from_amplification(0.0, 1.0) == before
+    assert box_from_sqrt_bound(0.0, 1.0) == before
 
 
 @pytest.mark.long

@@ -18,7 +18,7 @@ import numpy as np
 Values = Any
 """A float, or an array of floats of any shape."""
 
-POLISHING_STEPS = 2
+SHORTENING_NEWTON_STEPS = 2
 """Number of Newton steps for the shortening e = 1 - nu, which double the number of correct digits. Cardano's
 formula gives nu, so that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no
 cancellation."""
@@ -65,7 +65,7 @@ def _neo_hookean_shortening(x: Values) -> Values:
         angle = np.arccos(np.minimum(0.5 / load**1.5, 1.0)) / 3
         nu = np.where(square < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
     e = 1 - nu
-    for _ in range(POLISHING_STEPS):
+    for _ in range(SHORTENING_NEWTON_STEPS):
         nu = 1 - e
         residual = 3 * x * nu**2 - e * (3 - 3 * e + e**2)
         e = e + residual / (3 * nu * (nu + 2 * x))

@@ -25,7 +25,7 @@ from ..point_outcome import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import MODE_MESH_SETTINGS, converged_modes
-from .inverse_iteration import ModeVectors, placeholder_vectors
+from .inverse_iteration import ModeVectors, nan_mode_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -79,7 +79,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = placeholder_vectors(
+    vectors = nan_mode_vectors(
         Resolution(spectrum.elements, spectrum.order), request.modes, request.node_count
     )
     outcome = Modes(

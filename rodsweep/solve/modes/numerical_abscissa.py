@@ -7,7 +7,7 @@ import numpy as np
 
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
-from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.tip_layer import tip_layer_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
@@ -40,7 +40,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
     with `Rod.g` < 0.
     """
-    form = dense_form(rod, pencil)
+    form = dense_eigenproblem(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()

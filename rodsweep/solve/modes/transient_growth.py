@@ -15,7 +15,7 @@ from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
 
-from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
 from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
@@ -134,7 +134,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
 
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
     """exp(L t) of the rod on the mesh of `pencil`, in coordinates in which the Gamma norm is Euclidean."""
-    form = dense_form(rod, pencil)
+    form = dense_eigenproblem(rod, pencil)
     return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 

@@ -38,17 +38,17 @@ class StagePredictorSettings(CompiledSettings):
 
 STAGE_PREDICTOR_SETTINGS = StagePredictorSettings()
 
-NO_POINT = -1
+UNUSED_POINT = -1
 """Value of the unused entries in the array of extrapolation points."""
 
 
 def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
-    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are NO_POINT.
+    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are UNUSED_POINT.
 
     Stage k of this step has the index k, stage k of the last step the index MAX_STAGES + k.
     """
-    points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
+    points = np.full((MAX_STAGES, MAX_STAGE_POINTS), UNUSED_POINT)
     for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
         known = [*this, *(MAX_STAGES + k for k in last)]
         points[stage, : len(known)] = known
@@ -118,7 +118,7 @@ def predict_stage(c: Any, guess: Array) -> None:
     points = integers_at(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[
         c.stages
     ]
-    points = points[: np.sum(points != NO_POINT)]
+    points = points[: np.sum(points != UNUSED_POINT)]
     times = times_of(c)
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now

@@ -19,7 +19,7 @@ from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
-from ...determinant.certificate.box import squared_amplification
+from ...determinant.certificate.box import frequency_bound
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
@@ -107,8 +107,8 @@ class UniformProblem(TransverseProblem):
         self.rod = rod
         growth, self._wave_number = most_amplified_wave(rod)
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * growth
-        self._amplification_bound = sqrt(squared_amplification(rod))
-        self.has_bound = isfinite(self._amplification_bound)
+        self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
+        self.has_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave_number), accuracy)
@@ -121,7 +121,7 @@ class UniformProblem(TransverseProblem):
 
     def refined_roots(self, raw: Complex, max_q: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""
-        return refined_roots(raw, self.rod.coefficients, self._amplification_bound, max_q)
+        return refined_roots(raw, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)

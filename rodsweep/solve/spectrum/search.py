@@ -19,7 +19,7 @@ from .search_settings import SEARCH_SETTINGS
 from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
-__all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
+__all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _spectrum_by_equivalent_rod(rod, request)
-    return outcome_or_failure(lambda: Search(rod, request).outcome(), failed)
+    return outcome_or_failure(lambda: SpectrumSearch(rod, request).outcome(), failed)
 
 
 def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -62,10 +62,10 @@ def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first rod takes no extra time."""
-    Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
+    SpectrumSearch(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
-class Search:
+class SpectrumSearch:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
     requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`.
     """

@@ -68,7 +68,7 @@ class KrylovSettings:
 
 KRYLOV_SETTINGS = KrylovSettings()
 
-SPECTRUM_PREFIX = "spectrum_"
+SPECTRUM_OPTIONS_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
 
 
@@ -141,15 +141,15 @@ class ShiftInvertSolver(ABC):
             KRYLOV_SETTINGS.start_vector_rotation * first[: pattern.node_count]
         )
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
-        self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
-        self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
+        self.krylov_size_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getInt("eps_ncv", 0)
+        self.tolerance_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getReal("eps_tol", 0.0)
         self.eps = self._create_eps("petsc" if self.is_dense else package)
         self.loaded_pencil = LoadedPencil(0, 0.0)
 
     def _create_eps(self, package: str | None) -> "SLEPc.EPS":
         """SLEPc's Krylov-Schur solver with shift-and-invert; package: PETSc's name of the LU package."""
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
-        eps.setOptionsPrefix(SPECTRUM_PREFIX)
+        eps.setOptionsPrefix(SPECTRUM_OPTIONS_PREFIX)
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)

@@ -10,7 +10,7 @@ import numpy as np
 from ...arrays import Complex
 from ...determinant.stability_changes import CoefficientsAlongForce, StabilityChange, onset_between
 from ...discretization.elements.resolution import expected_wave_number, resolution_for
-from ...discretization.straight.dense_form import dense_form
+from ...discretization.straight.dense_eigenproblem import dense_eigenproblem
 from ...discretization.straight.transverse_mesh import pencil_on
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
@@ -62,7 +62,7 @@ def leading_pair_on_mesh(rod: Rod) -> Complex:
     """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
     MESH_ACCURACY."""
     wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
-    form = dense_form(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
+    form = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
     inverses = np.linalg.eigvals(shifted_inverse(form.A, form.B, 0.0)).astype(complex)
     w = 1 / inverses[inverses != 0]
     return w[np.lexsort((-w.imag, -w.real))[:2]]

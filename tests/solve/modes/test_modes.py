@@ -15,7 +15,7 @@ from rodsweep.determinant.value import distance_to_next_root
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
-from rodsweep.discretization.straight.dense_form import dense_form
+from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import (
     assemble_pencil,
     factors_to_unit_tip,
@@ -217,9 +217,9 @@ def test_modes_are_those_of_appendix_c(parameters):
         y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
         assert relative(result.vectors.right_modes[0, n], y) < 1e-11
         assert relative(result.vectors.right_modes[1, n], theta) < 1e-11
-        assert relative(result.vectors.deformation[1, n], m) < 1e-11
+        assert relative(result.vectors.mode_strains[1, n], m) < 1e-11
         if rod.c2:
-            assert relative(result.vectors.deformation[0, n], rod.c2 * s) < 1e-11
+            assert relative(result.vectors.mode_strains[0, n], rod.c2 * s) < 1e-11
         y, theta, *_ = ClosedForm(rod, w, 1).fields(POINTS)
         assert relative(result.vectors.left_modes[0, n], y) < 1e-11
         assert relative(result.vectors.left_modes[1, n], theta) < 1e-11
@@ -279,7 +279,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     left_over = []
     for order in (8, 12, 16):
         pencil = assemble_pencil(1, order)
-        form = dense_form(rod, pencil)
+        form = dense_eigenproblem(rod, pencil)
         _, z = null_vectors(form.A, form.B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
@@ -405,7 +405,7 @@ def test_abscissa_is_the_supremum_over_the_domain(parameters):
 def test_unshearable_limit_is_reached_at_first_order():
     """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
     limit = solve_modes(Rod(F=15.0, k1=1e4, k2=INF, gamma3=1e-2), TIGHT)
-    assert (limit.vectors.deformation[0] == 0).all()
+    assert (limit.vectors.mode_strains[0] == 0).all()
     differences = []
     for k2 in (1e5, 1e6):
         near = solve_modes(Rod(F=15.0, k1=1e4, k2=k2, gamma3=1e-2), TIGHT)
@@ -416,7 +416,7 @@ def test_unshearable_limit_is_reached_at_first_order():
                 abs(near.vectors.condition - limit.vectors.condition).max(),
                 abs(near.vectors.left_modes - limit.vectors.left_modes).max(),
                 abs(near.vectors.right_modes - limit.vectors.right_modes).max(),
-                abs(near.vectors.deformation[0]).max(),
+                abs(near.vectors.mode_strains[0]).max(),
             ]
         )
     assert np.array(differences[0]) / np.array(differences[1]) == pytest.approx(10, rel=0.01)
@@ -428,7 +428,7 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
     near, nearer = (
         solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=gamma3), TIGHT) for gamma3 in (1e-6, 1e-8)
     )
-    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.deformation")
+    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.mode_strains")
     for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
         value = attrgetter(name)
         far, close = (np.max(abs(value(x) - value(limit))) for x in (near, nearer))
@@ -739,7 +739,7 @@ def test_a_point_that_fails_is_a_status():
     assert (
         result.vectors.right_modes.shape
         == result.vectors.left_modes.shape
-        == result.vectors.deformation.shape
+        == result.vectors.mode_strains.shape
         == (2, 4, NODES)
     )
 

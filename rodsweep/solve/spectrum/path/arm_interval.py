@@ -29,7 +29,7 @@ from ....determinant.roots.roots import Roots
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURES
 from ..candidates import line_for_proof
-from ..search import Search
+from ..search import SpectrumSearch
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
@@ -235,7 +235,7 @@ def _leading_roots(path: Path, p: float, request: SpectrumRequest, further: int)
     """
     try:
         modes = request.modes + further
-        search = Search(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
+        search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:
