@@ -37,7 +37,7 @@ class NormMaximumSettings:
     """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
     max_regula_falsi_steps: int = 40
     """Maximum number of regula falsi steps to a maximum of the norm."""
-    max_remaining_rise: float = 1e-14
+    max_relative_rise_in_bracket: float = 1e-14
     """Tolerance of the search for a maximum: largest possible relative increase of the norm within the final
     bracket. The relative error of the time is about the square root of this tolerance."""
 
@@ -123,7 +123,7 @@ def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[flo
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm_and_log_slope(t)
         best = max(best, (value, t))
-        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_remaining_rise:
+        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_relative_rise_in_bracket:
             break
         if rate > 0:
             low = t

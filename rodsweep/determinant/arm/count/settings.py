@@ -18,7 +18,7 @@ class ContourSettings(CompiledSettings):
     than pi."""
     circle_points: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
-    between_points_factor: float = 1.5
+    circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_change: float = 0.9
     """Within the reach of a node, the change of f is at most this number times |D|."""
@@ -92,7 +92,7 @@ class NoCrossingSettings(CompiledSettings):
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
-    between_arms_factor: float = 1.5
+    arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0
     """Known eigenvalues whose distance from a node is below this number times the radius of its disc are
@@ -119,7 +119,7 @@ class NoCrossingSettings(CompiledSettings):
 
     ranges: ClassVar = {
         "arm_count": (2, math.inf),
-        "between_arms_factor": (1.0, math.inf),
+        "arms_safety_factor": (1.0, math.inf),
         "overlap": (0.0, 1.0),
         "radius_divisor": (1.0, math.inf),
     }
@@ -127,9 +127,7 @@ class NoCrossingSettings(CompiledSettings):
     @property
     def max_change(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
-        return CONTOUR_SETTINGS.max_change / (
-            CONTOUR_SETTINGS.between_points_factor * self.between_arms_factor
-        )
+        return CONTOUR_SETTINGS.max_change / (CONTOUR_SETTINGS.circle_safety_factor * self.arms_safety_factor)
 
 
 NO_CROSSING_SETTINGS = NoCrossingSettings()

@@ -64,7 +64,8 @@ def follow_interval(
     before: ArmInterval | None = None,
     counts_follow: bool = False,
 ) -> ArmInterval | None:
-    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
+    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails,
+    if no family is found, or if n is below `ARM_FOLLOWING_SETTINGS.min_points`.
 
     If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
     proved complete, unless counts follow at these points. before: the previous interval of the path, whose
