@@ -7,7 +7,7 @@ from rodsweep.arrays import Array, Complex
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh
-from rodsweep.discretization.straight.dense_form import dense_form
+from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.model.rod import Rod
 
@@ -30,7 +30,7 @@ def whole_matrices(rod: Rod, mesh: Resolution | ArmMesh) -> tuple[Array, Array]:
         A = np.zeros((pencil.unknown_count, pencil.unknown_count))
         A[pencil.rows, pencil.columns] = found.A
         return A, found.B
-    form = dense_form(rod, assemble_pencil(mesh.element_count, mesh.order))
+    form = dense_eigenproblem(rod, assemble_pencil(mesh.element_count, mesh.order))
     return form.A, form.B
 
 

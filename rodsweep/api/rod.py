@@ -18,7 +18,7 @@ from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
-from ..model.arm.as_rod import material_section_of, parameters_of
+from ..model.arm.as_config import material_config_of, rod_parameters_of
 from ..model.material.build import DEFAULT_BUILD
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
@@ -78,9 +78,9 @@ class SoftRod:
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
-            given = parameters_of(with_load_in_si(arm)) | given
+            given = rod_parameters_of(with_load_in_si(arm)) | given
             beside = {name: value for name, value in material.items() if value is not None}
-            material = material_section_of(arm) | beside
+            material = material_config_of(arm) | beside
         for name in REQUIRED_PARAMETERS:
             if name not in given:
                 raise InputError(

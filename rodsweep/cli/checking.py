@@ -19,7 +19,7 @@ from ..sweep.points.points import Points
 from ..tasks.arm.point_solver import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
-from ..verdict.checks import wall_check
+from ..verdict.checks import tube_wall_check
 from ..wording import counted
 
 
@@ -100,7 +100,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     tubes = bore < radius
     effect = wall_flattening_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
     worst = int(np.argmax(effect.value))
-    warning = wall_check(replace(effect, value=effect.value[worst])).text
+    warning = tube_wall_check(replace(effect, value=effect.value[worst])).text
     some = int((effect.validity > 0).sum())
     return [f"{warning} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
 

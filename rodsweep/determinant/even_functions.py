@@ -22,22 +22,23 @@ class EvenFunctionSettings(CompiledSettings):
 
     series_terms: int = 13
     """Number of terms of the series of s and d."""
-    by_series_below: float = 1.5
+    series_below: float = 1.5
     """If |M| + 2 |P| is below this number, `even_functions_by_series` computes s and d."""
-    by_squares_below: float = 0.1
+    squares_below: float = 0.1
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
-    rounding_of_scale: float = 3.0
+    scale_rounding: float = 3.0
     """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT."""
-    scale_without_rounding: float = 8.0
+    max_scale_without_rounding: float = 8.0
     """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
     the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
 
     def __post_init__(self) -> None:
         n = self.series_terms
-        if self.by_series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
+        if self.series_below**n > ROUND_OFF * math.factorial(2 * n + 2):
             raise ValueError(
-                f"a series of {n} terms is not accurate to rounding at |M| + 2 |P| = {self.by_series_below}"
+                f"series_terms = {n} is too small at |M| + 2 |P| = {self.series_below}: the sum is not "
+                "accurate to rounding"
             )
 
 
@@ -65,12 +66,12 @@ def _noise_by_roots(
     of_u: HyperbolicFunctions,
     of_v: HyperbolicFunctions,
     results: tuple[complex, complex],
-    blurs: tuple[float, float, float],
+    roundings: tuple[float, float, float],
 ) -> tuple[float, float]:
     """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order.
 
     squares: (M, P^2, u, v). apart: u - v. of_u, of_v: hyperbolic functions of sqrt(u) and sqrt(v). results:
-    (s, d). blurs: (exp(-S), rounding error of M, rounding error of P^2).
+    (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2).
     """
     M = modulus(squares[0])
     square = modulus(squares[1])
@@ -78,7 +79,7 @@ def _noise_by_roots(
     v = modulus(squares[3])
     s = modulus(results[0])
     d = modulus(results[1])
-    one, blur_M, blur_square = blurs
+    one, rounding_M, rounding_square = roundings
     c1 = modulus(of_u.cosh)
     f1 = modulus(of_u.sinhc)
     g1 = modulus(of_u.sinhc_slope)
@@ -86,28 +87,31 @@ def _noise_by_roots(
     f2 = modulus(of_v.sinhc)
     g2 = modulus(of_v.sinhc_slope)
     per_root = 1 / modulus(apart)
-    blur_u = (u * blur_M + blur_square) * per_root + u
-    blur_v = (v * blur_M + blur_square) * per_root + v
+    rounding_u = (u * rounding_M + rounding_square) * per_root + u
+    rounding_v = (v * rounding_M + rounding_square) * per_root + v
     C = c1 * c2 + one
     H = f1 * f2
-    blur_C = (f1 * c2 * blur_u + c1 * f2 * blur_v) / 2 + C
-    blur_H = (g1 * f2 * blur_u + f1 * g2 * blur_v) / 2 + H
-    blur_R = 2 * M * (blur_M + M) + 4 * (blur_square + square)
-    noise_s = 2 * (blur_M * C + M * blur_C + 2 * (blur_square * H + square * blur_H)) + s * blur_R
-    noise_d = (blur_M * H + M * blur_H) / 2 + blur_C + d * blur_R
+    rounding_C = (f1 * c2 * rounding_u + c1 * f2 * rounding_v) / 2 + C
+    rounding_H = (g1 * f2 * rounding_u + f1 * g2 * rounding_v) / 2 + H
+    rounding_R = 2 * M * (rounding_M + M) + 4 * (rounding_square + square)
+    noise_s = (
+        2 * (rounding_M * C + M * rounding_C + 2 * (rounding_square * H + square * rounding_H))
+        + s * rounding_R
+    )
+    noise_d = (rounding_M * H + M * rounding_H) / 2 + rounding_C + d * rounding_R
     return noise_s * per_root * per_root, noise_d * per_root * per_root
 
 
 @compiled
 def even_functions_by_roots(
-    M: complex, square: complex, blur_M: float, blur_square: float
+    M: complex, square: complex, rounding_M: float, rounding_square: float
 ) -> tuple[EvenFunctions, float, float]:
     """Returns (s and d with derivatives, rounding error of s, rounding error of d), from the roots q1 and q2
     of the dispersion relation; for z+ and z- that are not small.
 
-    square: P^2. blur_M, blur_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 - M t +
-    P^2 = 0. With C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 =
-    (u - v)^2,
+    square: P^2. rounding_M, rounding_square: rounding errors of M and P^2. u = q1^2 and v = q2^2 solve t^2 -
+    M t + P^2 = 0. With C = cosh q1 cosh q2 - 1, H = sinh q1 sinh q2/(q1 q2) and R = z+ z- = M^2 - 4 P^2 = (u
+    - v)^2,
 
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
     """
@@ -142,19 +146,19 @@ def even_functions_by_roots(
     d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
     squares = (M, square, u, v)
-    blurs = (one, blur_M, blur_square)
-    noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), blurs)
+    roundings = (one, rounding_M, rounding_square)
+    noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), roundings)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
 
 
 @compiled
 def even_functions_by_series(
-    M: complex, P: complex, blur_M: float, blur_square: float
+    M: complex, P: complex, rounding_M: float, rounding_square: float
 ) -> tuple[EvenFunctions, float, float]:
     """Returns (s and d with derivatives, rounding error of s, rounding error of d), by the series E(z) =
     sum z^n/(2n + 2)!; for small z+ and z-.
 
-    blur_M, blur_square: rounding errors of M and P^2.
+    rounding_M, rounding_square: rounding errors of M and P^2.
     """
     plus = M + 2 * P
     minus = M - 2 * P
@@ -188,6 +192,6 @@ def even_functions_by_series(
         pair = minus * pair + power_plus
         s += factor * (power_plus + power_minus)
     # Bounds of the first terms of the series, times the rounding errors of M and P^2.
-    noise_s = size * (1 + blur_M / 10 + blur_square / 80)
-    noise_d = size * (0.1 + blur_M / 300 + blur_square / 8000)
+    noise_s = size * (1 + rounding_M / 10 + rounding_square / 80)
+    noise_d = size * (0.1 + rounding_M / 300 + rounding_square / 8000)
     return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d

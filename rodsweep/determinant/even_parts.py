@@ -33,55 +33,57 @@ def _noise_by_squares(
     coefficients: Coefficients,
     roots: tuple[complex, complex],
     slopes: tuple[complex, complex],
-    blurs: tuple[float, float],
+    roundings: tuple[float, float],
 ) -> float:
     """Rounding error of the sum z+' E(z+) + z-' E(z-) as computed by `even_sum_by_squares`, in units of
     `NOISE_UNIT`, like all rounding errors of the arguments.
 
-    sizes: (|w|, |P|). roots: (sqrt z+, sqrt z-). slopes: (z+', z-'). blurs: rounding errors of M and P^2. The
-    error of z follows from the terms that cancel in z; the error of an exponent q = sqrt z is half the error
-    of z divided by |q|, plus |q|/4.
+    sizes: (|w|, |P|). roots: (sqrt z+, sqrt z-). slopes: (z+', z-'). roundings: rounding errors of M and P^2.
+    The error of z follows from the terms that cancel in z; the error of an exponent q = sqrt z is half the
+    error of z divided by |q|, plus |q|/4.
     """
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     T = c2 + gamma3
     X = c2 * gamma3
     size, size_P = sizes
-    blur_M, blur_square = blurs
+    rounding_M, rounding_square = roundings
     S = max(roots[0].real, roots[1].real)
     soft = abs(g) + abs(F) * c2 / 2
     unlike = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
     large = max(modulus(roots[0]), modulus(roots[1])) ** 2
-    blur_P = blur_square / size_P
-    blur_large = blur_M + 2 * blur_P
-    blur_product = unlike * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
-    steepest = T + (nu * soft + 2 * X * size) / size_P * (1 + blur_P / size_P / 2)
+    rounding_P = rounding_square / size_P
+    rounding_large = rounding_M + 2 * rounding_P
+    rounding_product = unlike * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
+    steepest = T + (nu * soft + 2 * X * size) / size_P * (1 + rounding_P / size_P / 2)
     noise = 0.0
     for i in range(2):
         root = roots[i]
         slope = slopes[i]
         q = modulus(root)
         z = q * q
-        blur = blur_large
+        rounding = rounding_large
         steep = modulus(slope)
-        blur_slope = steepest
+        rounding_slope = steepest
         if z < large / 2:
-            blur = (blur_product + z * blur_large) / large
-            blur_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
-            blur_slope = blur_slope / large + steep * blur_large / large
+            rounding = (rounding_product + z * rounding_large) / large
+            rounding_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
+            rounding_slope = rounding_slope / large + steep * rounding_large / large
         bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENT_SETTINGS.least_divisor))
-        noise += bound * (blur_slope + steep * (1 + q / 4 + blur / 2 / max(1.0, q)))
+        noise += bound * (rounding_slope + steep * (1 + q / 4 + rounding / 2 / max(1.0, q)))
     return noise
 
 
 @compiled
-def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, blur_square: float) -> EvenSum:
+def even_sum_by_squares(
+    w: complex, coefficients: Coefficients, rounding_M: float, rounding_square: float
+) -> EvenSum:
     """Returns (s and d with derivatives, sum z+' E(z+) + z-' E(z-), rounding error of the sum), for z+ and z-
     of very different moduli.
 
     The derivative of the smaller of z+ and z- follows from the derivative of the product z+ z-, because
-    z+-' = T +- 2 P' cancels for large w. blur_M, blur_square: rounding errors of M and P^2. All rounding
-    errors are in units of `NOISE_UNIT`.
+    z+-' = T +- 2 P' cancels for large w. rounding_M, rounding_square: rounding errors of M and P^2. All
+    rounding errors are in units of `NOISE_UNIT`.
     """
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = squared_exponents(w, coefficients)
@@ -111,7 +113,7 @@ def even_sum_by_squares(w: complex, coefficients: Coefficients, blur_M: float, b
     sizes = (modulus(w), modulus(P))
     roots = (root_plus, root_minus)
     slopes = (slope_plus, slope_minus)
-    noise = _noise_by_squares(sizes, coefficients, roots, slopes, (blur_M, blur_square))
+    noise = _noise_by_squares(sizes, coefficients, roots, slopes, (rounding_M, rounding_square))
     return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
 
 
@@ -134,22 +136,24 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     size = modulus(w)
     soft = abs(g) + abs(F) * c2 / 2  # includes the rounding errors of c2 and F c2, since nu may cancel F c2
     stiffness = nu * soft + X * size
-    blur_M = T * size + abs(F) * soft
-    blur_square = size * stiffness
+    rounding_M = T * size + abs(F) * soft
+    rounding_square = size * stiffness
     # Three formulas: a series for small z+ and z-, the roots q if neither z+ nor z- is small, else z+ and z-.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.by_series_below
-    close = EVEN_FUNCTION_SETTINGS.by_squares_below * (size_M * size_M + 4 * size_square)
+    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.series_below
+    close = EVEN_FUNCTION_SETTINGS.squares_below * (size_M * size_M + 4 * size_square)
     if small or modulus(M * M - 4 * square) > close:
         if small:
-            even, noise_s, noise_d = even_functions_by_series(M, cmath.sqrt(square), blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_series(
+                M, cmath.sqrt(square), rounding_M, rounding_square
+            )
         else:
-            even, noise_s, noise_d = even_functions_by_roots(M, square, blur_M, blur_square)
+            even, noise_s, noise_d = even_functions_by_roots(M, square, rounding_M, rounding_square)
         total = T * even.s + 4 * N * even.d
         noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
     else:
-        even, total, noise = even_sum_by_squares(w, coefficients, blur_M, blur_square)
-    beyond = even.S - EVEN_FUNCTION_SETTINGS.scale_without_rounding
-    scale_noise = max(1.0, EVEN_FUNCTION_SETTINGS.rounding_of_scale * beyond)
+        even, total, noise = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
+    beyond = even.S - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
+    scale_noise = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * beyond)
     return even, total, NOISE_UNIT * (scale_noise * math.exp(-even.S) + size / 2 * noise)

@@ -17,7 +17,7 @@ from typing import ClassVar, NamedTuple
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .certificate.box import BOX_SETTINGS, box_from_amplification, squared_amplification_between_rods
+from .certificate.box import BOX_SETTINGS, box_from_sqrt_bound, frequency_bound_between_rods
 from .certificate.covering import (
     distance_from_zero_bound,
     exponent_changes,
@@ -36,7 +36,7 @@ class MovingLineSettings(CompiledSettings):
     """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
     half_height_growth: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
-    largest_half_height: float = 0.6
+    max_half_height: float = 0.6
     """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
     rectangle must not contain w = 0."""
     overlap: float = 1e-7
@@ -45,7 +45,7 @@ class MovingLineSettings(CompiledSettings):
     min_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
-    ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "largest_half_height": (0.0, 1.0)}
+    ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "max_half_height": (0.0, 1.0)}
 
 
 MOVING_LINE_SETTINGS = MovingLineSettings()
@@ -140,12 +140,11 @@ def proves_no_crossing(
         first, last = last, first
     depth = -min(first.line, last.line)
     a = math.sqrt(
-        (1 + BOX_SETTINGS.bound_excess)
-        * squared_amplification_between_rods(first.coefficients, last.coefficients)
+        (1 + BOX_SETTINGS.bound_excess) * frequency_bound_between_rods(first.coefficients, last.coefficients)
     )
     if not (first.p < last.p and max(first.line, last.line) < 0 and a < math.inf):
         return False, 0
-    top = box_from_amplification(a, depth)[1]
+    top = box_from_sqrt_bound(a, depth)[1]
     width = last.p - first.p
     tilt = (last.line - first.line) / width
     examined = 0
@@ -165,7 +164,7 @@ def proves_no_crossing(
             proved, cost_y, cost_p = examine_rectangle(at, middle, direction, half, tilt)
             if proved:
                 y = middle + half_y
-                largest = MOVING_LINE_SETTINGS.largest_half_height * math.hypot(at.line, y)
+                largest = MOVING_LINE_SETTINGS.max_half_height * math.hypot(at.line, y)
                 half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, largest)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.

@@ -20,9 +20,9 @@ class PlaneDifferenceSettings:
     end_tolerance: float = 1e-12
     """A coordinate beyond an end of a scaled axis by less than this number is moved to the end: the excess is
     rounding error."""
-    difference_step: float = 1e-3
+    max_difference_step: float = 1e-3
     """Largest step of differences along a scaled axis, which has length 1."""
-    step_to_crushing: float = 0.01
+    max_step_over_crushing_distance: float = 0.01
     """Largest step of a difference, as a fraction of the distance along the axis to a crushed rod."""
 
 
@@ -99,7 +99,7 @@ class Plane:
     axes: tuple[PlaneAxis, PlaneAxis]
 
     @cached_property
-    def has_standard_rods(self) -> bool:
+    def are_rods_uniform_and_linear(self) -> bool:
         """Whether all rods of the plane are uniform and of linear material, so that D has a closed form."""
         return self.rod.is_uniform_and_linear and all(axis.name != "taper" for axis in self.axes)
 
@@ -112,20 +112,20 @@ class Plane:
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        if not self.has_standard_rods:
+        if not self.are_rods_uniform_and_linear:
             return self._determinant_of_arms(w, x, y)
         (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
-        blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
+        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         return (
             scaled_determinant(w, rod.coefficients)
-            if self.has_standard_rods
+            if self.are_rods_uniform_and_linear
             else arm_determinant(rod).value(w)
         )
 
@@ -135,7 +135,7 @@ class Plane:
         """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
         (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
-        h = self.difference_step_at(x, y, which, PLANE_DIFFERENCE_SETTINGS.difference_step)
+        h = self.difference_step_at(x, y, which, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
         back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid_at(*back) else ONE_SIDED_STENCIL), h
 
@@ -155,8 +155,8 @@ class Plane:
                 slope += weight * neighbour.D * exp(neighbour.S - S) / h
             slopes.append(slope)
         D_x, D_y = slopes
-        blur = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
-        return ValueOnPlane(D, D_w, D_x, D_y, S, blur)
+        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     @staticmethod
     def _determinant_along_axis(
@@ -170,8 +170,8 @@ class Plane:
 
     def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:
         """A difference step along axis number `which` at (x, y): the smaller of `largest` and the fraction
-        `step_to_crushing` of the distance to a crushed rod. The step is `largest` if no value on the axis
-        crushes the rod.
+        `max_step_over_crushing_distance` of the distance to a crushed rod. The step is `largest` if no value
+        on the axis crushes the rod.
         """
         rod = self.rod_at(x, y)
         axis = self.axes[which]
@@ -181,7 +181,9 @@ class Plane:
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
         slope = rate * axis.parameter_per_coordinate(getattr(rod, axis.name))
-        return min(largest, PLANE_DIFFERENCE_SETTINGS.step_to_crushing * (force - rod.F) / slope)
+        return min(
+            largest, PLANE_DIFFERENCE_SETTINGS.max_step_over_crushing_distance * (force - rod.F) / slope
+        )
 
     def is_valid_at(self, x: float, y: float) -> bool:
         """Whether the rod at scaled coordinates (x, y) is valid."""

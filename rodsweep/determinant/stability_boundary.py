@@ -27,7 +27,7 @@ class BoundaryPointSettings:
     """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
-    min_determinant: float = EXPONENT_SETTINGS.least_divisor
+    min_jacobian_determinant: float = EXPONENT_SETTINGS.least_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
     converging_step_ratio: float = 0.5
@@ -91,19 +91,19 @@ class Boundary:
         last = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):
             try:
-                residual, jacobian, blur = self.residual_and_jacobian(v)
+                residual, jacobian, rounding = self.residual_and_jacobian(v)
             except (ValueError, ArithmeticError):
                 return None
             matrix = np.vstack([jacobian, normal])
             right = np.append(-residual, -normal @ (v - guess))
             if (
                 not np.isfinite(matrix).all()
-                or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_determinant
+                or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_jacobian_determinant
             ):
                 return None
             inverse = np.linalg.inv(matrix)
             step = inverse @ right
-            error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * blur
+            error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
             size = float(np.abs(step).max())
             v = v + step
             if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
@@ -119,11 +119,11 @@ class Boundary:
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`residual_and_jacobian` of Hopf points at v = (x, y, h): D(i exp(h); x, y) = 0."""
         w = complex(0.0, math.exp(v[2]))
-        D, D_w, D_x, D_y, _, blur = self.plane.determinant(w, v[0], v[1])
+        D, D_w, D_x, D_y, _, rounding = self.plane.determinant(w, v[0], v[1])
         rows = np.array([D_x, D_y, D_w * w])
         scale = float(np.abs(rows).max())
         jacobian = np.array([rows.real, rows.imag]) / scale
-        return np.array([D.real, D.imag]) / scale, jacobian, blur / scale
+        return np.array([D.real, D.imag]) / scale, jacobian, rounding / scale
 
     def _double_equations(self, v: Array) -> tuple[Array, Array, float]:
         """`residual_and_jacobian` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w =
@@ -137,7 +137,7 @@ class Boundary:
             stencil, h = (
                 self.plane.difference_stencil(v[0], v[1], i)
                 if i < 2
-                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.difference_step)
+                else (CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
             )
             jacobian[1, i] = 0.0
             for offset, weight in stencil:

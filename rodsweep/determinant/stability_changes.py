@@ -16,7 +16,7 @@ from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
 from ..model.compiled.settings import CompiledSettings
 from ..model.rod import Coefficients
-from .roots.newton import crossing_newton, double_newton
+from .roots.newton import crossing_newton, double_eigenvalue_newton
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,7 +31,7 @@ class StabilityChangeSettings(CompiledSettings):
 STABILITY_CHANGE_SETTINGS = StabilityChangeSettings()
 
 
-class ForceChange(NamedTuple):
+class StabilityChange(NamedTuple):
     """A change of stability at the force F.
 
     kind: a kind of change listed in `rodsweep.results.layouts.thresholds`. F, error: the force and its
@@ -46,13 +46,13 @@ class ForceChange(NamedTuple):
     frequency: float
 
 
-CoefficientsOverForce = tuple[Coefficients, Coefficients]
+CoefficientsAlongForce = tuple[Coefficients, Coefficients]
 """Rods that differ in F only: (coefficients at F = 0, derivative of the coefficients by F)."""
 
 
 def onset_between(
-    rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex
-) -> ForceChange | None:
+    rods: CoefficientsAlongForce, ends: tuple[float, float], before: Complex, after: Complex
+) -> StabilityChange | None:
     """The double real eigenvalue between the two forces `ends`; None if Newton's method does not find it.
 
     before, after: leading eigenvalues at the first and second force, (modes,). The two leading eigenvalues
@@ -67,15 +67,15 @@ def onset_between(
     rise = pair.imag**2
     guess = low + (high - low) * gap / (gap + rise)
     centre = ((first.real + second.real) / 2 + pair.real) / 2
-    zero = double_newton(centre, guess, *rods, high - low)
+    zero = double_eigenvalue_newton(centre, guess, *rods, high - low)
     if not low <= zero.p <= high:
         return None
-    return ForceChange("onset", zero.p, zero.error_of_p, zero.eta_or_x, 0.0)
+    return StabilityChange("onset", zero.p, zero.error_of_p, zero.eta_or_x, 0.0)
 
 
 def stability_change_between(
-    rods: CoefficientsOverForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
-) -> ForceChange | None:
+    rods: CoefficientsAlongForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
+) -> StabilityChange | None:
     """The loss or return of stability between the two forces `ends`: the first crossing if stability is lost,
     the last crossing if stability returns.
 
@@ -87,7 +87,7 @@ def stability_change_between(
         return None
     destabilises = after[0].real > 0
     F, eta, error = zeros[0 if destabilises else -1]
-    return ForceChange("hopf" if destabilises else "restabilization", F, error, 0.0, eta)
+    return StabilityChange("hopf" if destabilises else "restabilization", F, error, 0.0, eta)
 
 
 @compiled

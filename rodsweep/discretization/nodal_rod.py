@@ -22,7 +22,7 @@ class NodalRod(NamedTuple):
     nodes + 1). compliance, drag: (d, nodes + 1). mobility: 1/drag, but 0 for the components of V that are
     unknowns, (d, nodes + 1). mobility_laplacian: -D^T W mobility D, (d, nodes + 1, nodes + 1).
     unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law,
-    see `rodsweep.model.material.response`. jumps: nodes at which the material jumps, increasing, (k,).
+    see `rodsweep.model.material.stress_strain`. jumps: nodes at which the material jumps, increasing, (k,).
     jump_sides: the material on both sides of each jump, (k, 2, 7), see `rodsweep.model.material.jump`."""
 
     tip_stress: Array
@@ -46,12 +46,12 @@ class Jumps(NamedTuple):
 
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(SIDE_COLUMNS))))
 """Jumps of a rod with a continuous material: arrays of length 0."""
-NO_JUMP_CHANGE = np.zeros((0, 2, 3))
+NO_JUMP_DERIVATIVE = np.zeros((0, 2, 3))
 """Derivatives of the material on both sides of jumps, for a rod without jumps or with a linear law: an array
 of length 0."""
 
 
-class NodalChange(NamedTuple):
+class NodalRodDerivative(NamedTuple):
     """The derivatives of fields of a `NodalRod` with respect to the coordinate of a parameter, with the
     shapes of the fields.
     """
@@ -83,12 +83,14 @@ def nodal_rod(
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
-def nodal_change(change: Material, grid: Mesh, sides: Array = NO_JUMP_CHANGE) -> NodalChange:
-    """The `NodalChange` of a mesh. change: derivative of the material by a parameter. sides: derivatives at
-    the jumps, (k, 2, 3), as in `NodalChange`."""
+def nodal_rod_derivative(
+    change: Material, grid: Mesh, sides: Array = NO_JUMP_DERIVATIVE
+) -> NodalRodDerivative:
+    """The `NodalRodDerivative` of a mesh. change: derivative of the material by a parameter. sides:
+    derivatives at the jumps, (k, 2, 3), as in `NodalRodDerivative`."""
     fields = change.rest_strain, change.compliance, change.drag
     rest, compliance, drag = (_expanded_to_nodes(field, grid.node_count + 1) for field in fields)
-    return NodalChange(change.tip_stress, rest, compliance, drag, sides)
+    return NodalRodDerivative(change.tip_stress, rest, compliance, drag, sides)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

@@ -14,14 +14,14 @@ import numpy as np
 from ..arrays import Array
 from ..model.balance import Values
 from ..model.material.laws import LINEAR
-from ..model.material.response import LocalSection, stress_tangent
+from ..model.material.stress_strain import LocalSection, stress_tangent
 from ..model.rod import Rod
-from .arm_on_mesh import jumps_on_mesh, material_at_nodes
-from .at_jumps import interpolate_stress, stresses_beside_jumps
 from .element_strains import write_element_strain_changes, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains
+from .material_on_mesh import jumps_on_mesh, material_at_nodes
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
+from .stresses_at_jumps import interpolate_stress, stresses_beside_jumps
 
 
 @dataclass(frozen=True, eq=False)

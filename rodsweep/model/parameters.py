@@ -201,7 +201,7 @@ def parameter_names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETE
     return tuple(name for name in names if name != varied)
 
 
-def with_parameters(cls: type[Decorated]) -> type[Decorated]:
+def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
     """Class decorator that adds every parameter of `PARAMETERS`, in this order, as a field with its
     default.
     """

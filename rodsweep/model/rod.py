@@ -14,7 +14,7 @@ import numpy as np
 from ..arrays import Array
 from .balance import Material, axial_vector
 from .material.build import DEFAULT_BUILD, Build, LocalCoefficients, Sections
-from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameters
+from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameter_fields
 from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
 
@@ -44,7 +44,7 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-@with_parameters
+@with_parameter_fields
 class Rod:
     """A rod under its follower force, with every parameter of the table.
 

@@ -27,6 +27,7 @@ from .spectrum.path.prediction import Track
 from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
+"""A uniform rod; any rod compiles the same functions."""
 SAMPLE_CONE = Rod(F=6.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5)
 """An arm whose properties vary smoothly along its length."""
 SAMPLE_SEGMENTS = Rod(
@@ -39,14 +40,14 @@ SAMPLE_SEGMENTS = Rod(
 """An arm whose properties jump at its middle."""
 SAMPLE_ACCURACY = 1e-4
 """Accuracy of the spectra and thresholds of both arms."""
-SAMPLE_INTERVALS = 2
+SAMPLE_TIME_INTERVALS = 2
 """Number of time intervals of the sample orbit: the smallest number for which an orbit has a mesh."""
-SAMPLE_STAGES = 3
+SAMPLE_COLLOCATION_STAGES = 3
 """Number of collocation stages per interval of the sample orbit; other numbers need no new compilation."""
 
 
 def warm_up() -> None:
-    """Compiles the functions for uniform rods and for arms."""
+    """Compiles the seldom used functions for uniform rods and for arms."""
     warm_up_uniform()
     warm_up_arms()
 
@@ -64,17 +65,19 @@ def warm_up_arms() -> None:
 
 
 def warm_up_uniform() -> None:
-    """Calls each function with arguments of the types used in runs; the values of the arguments have no
-    meaning."""
+    """Compiles the seldom used functions for uniform rods, by calls with arguments of the types used in runs;
+    the values of the arguments have no meaning."""
     w = np.ones((1, 2), dtype=complex)
     stability_change_between(
         (SAMPLE_ROD.coefficients, SAMPLE_ROD.coefficient_derivative("F")), (1.0, 2.0), -w[0], w[0], 2
     )
     widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
-    states = np.zeros((1 + SAMPLE_INTERVALS * SAMPLE_STAGES, form.unknown_count))
-    orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_STAGES)
-    memory = MatrixMemory(NewtonWorkspace(), SAMPLE_INTERVALS, SAMPLE_STAGES, form.unknown_count)
+    states = np.zeros((1 + SAMPLE_TIME_INTERVALS * SAMPLE_COLLOCATION_STAGES, form.unknown_count))
+    orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_COLLOCATION_STAGES)
+    memory = MatrixMemory(
+        NewtonWorkspace(), SAMPLE_TIME_INTERVALS, SAMPLE_COLLOCATION_STAGES, form.unknown_count
+    )
     variations = np.zeros((1, len(orbit.values) + 1))
     of_rod = orbit.semidiscrete_equations
     reduced_variation_sides(

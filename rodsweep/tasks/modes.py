@@ -97,7 +97,7 @@ def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     values |= outcome_values(MODE_NUMBERS, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(
-        fields, (*vectors.right_modes, *vectors.deformation, *vectors.left_modes), strict=True
+        fields, (*vectors.right_modes, *vectors.mode_strains, *vectors.left_modes), strict=True
     ):
         values[f"{name}_real"] = field.real
         values[f"{name}_imag"] = field.imag

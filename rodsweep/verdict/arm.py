@@ -9,7 +9,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.neglected import Validity
 from .assessment import Assessment
 from .checks import Check, checks_of
-from .load import Load
+from .load import LoadFormatter
 from .number_rows import NumberRow, number_rows
 from .planes import planes_of, with_absolute_load
 from .sentences import verdict_sentences
@@ -80,11 +80,11 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     assessment = Assessment(first.arm, first.thresholds)
     checks = checks_of(assessment)
     applies = assessment.validity_of_verdict < Validity.does_not_apply
-    above = tuple(check for check in checks if applies and check.doubts_the_verdict)
+    above = tuple(check for check in checks if applies and check.makes_verdict_doubtful)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()
-        others.insert(0, f"{Load(first.arm).typed_text} is {load} with the likeliest drag.")
+        others.insert(0, f"{LoadFormatter(first.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
         validity=assessment.validity_of_verdict,
         warnings=above,

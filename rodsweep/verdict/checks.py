@@ -34,16 +34,16 @@ class Check:
 
     validity: Validity
     sentence: str
-    concerns_verdict: bool = False
+    can_change_verdict: bool = False
     """Whether the effect can change the verdict. False for effects only on beating of large amplitude, or
     only on the width of the range of drag."""
 
     @property
-    def doubts_the_verdict(self) -> bool:
+    def makes_verdict_doubtful(self) -> bool:
         """Whether the check makes the verdict doubtful. False for an effect beyond the limit of the model,
         because the verdict itself then says that the model does not apply.
         """
-        return self.concerns_verdict and self.validity == Validity.doubtful
+        return self.can_change_verdict and self.validity == Validity.doubtful
 
     @property
     def is_negligible(self) -> bool:
@@ -80,7 +80,7 @@ def slenderness_check(arm: SlenderArm) -> Check:
         if fine
         else f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     )
-    return Check(_doubtful_or_fine(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
+    return Check(_doubtful_if(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
 
 
 def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
@@ -105,7 +105,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     )[validity]
     shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
     where = " at the weakest section" if assessment.arm.shape.varies else ""
-    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", concerns_verdict=True)
+    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", can_change_verdict=True)
 
 
 def _rubber_compression_check(assessment: "Assessment") -> Check:
@@ -164,7 +164,7 @@ def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
         f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
         f"{float(of_fluid.value):.2g} for the fluid beside it; {ending}."
     )
-    return [Check(validity, sentence, concerns_verdict=True)]
+    return [Check(validity, sentence, can_change_verdict=True)]
 
 
 def reynolds_checks(number: Effect) -> list[Check]:
@@ -187,10 +187,10 @@ def wall_checks(effect: Effect | None) -> list[Check]:
     """Check of the flattening of a tube's section in beating of large amplitude; an empty list if the section
     is not a tube (`effect` is None).
     """
-    return [] if effect is None else [wall_check(effect)]
+    return [] if effect is None else [tube_wall_check(effect)]
 
 
-def wall_check(effect: Effect) -> Check:
+def tube_wall_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
     tip moves by L/2.
     """
@@ -226,7 +226,7 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     )[validity]
     upright = f"weight less buoyancy is {share:.2g} of the weight that buckles an upright arm"
     sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
-    return Check(validity, f"Weight: {upright}{sags}; {ending}.", concerns_verdict=True)
+    return Check(validity, f"Weight: {upright}{sags}; {ending}.", can_change_verdict=True)
 
 
 def poisson_check(arm: SlenderArm) -> Check:
@@ -234,7 +234,7 @@ def poisson_check(arm: SlenderArm) -> Check:
     fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
     why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
     return Check(
-        _doubtful_or_fine(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only."
+        _doubtful_if(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only."
     )
 
 
@@ -242,8 +242,8 @@ def _validity_of_effect(effect: Effect) -> Validity:
     return Validity(int(effect.validity))
 
 
-def _doubtful_or_fine(doubtful: bool) -> Validity:
-    return Validity.doubtful if doubtful else Validity.applies
+def _doubtful_if(condition: bool) -> Validity:
+    return Validity.doubtful if condition else Validity.applies
 
 
 def _percent_text(effect: Effect) -> str:

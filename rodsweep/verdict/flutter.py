@@ -11,14 +11,14 @@ from ..solve.changes.kinds import ChangeKind, Threshold
 from ..solve.changes.status import ThresholdStatus
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.solve_lock import exclusive_solve
-from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARIED, rod_with_drag
+from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
 
 SEARCH_REQUEST = ThresholdsRequest(F_max=SEARCH_END, accuracy=1e-6, certify=True, max_thresholds=1000)
 """Request for all thresholds of an arm, with relative accuracy 1e-6 and a proof that none is missing."""
 MIN_SEARCH_RATIO = 2.0
 """For an arm that is not uniform or not of linear material, the search is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
-KINDS_OF_VERDICT = (
+KINDS_USED_BY_VERDICT = (
     ChangeKind.onset,
     ChangeKind.hopf,
     ChangeKind.hopf_reverse,
@@ -49,12 +49,14 @@ class ThresholdsWithDrag:
 
     @property
     def doubt(self) -> str:
-        """Why usable thresholds are uncertain: a threshold of a kind in KINDS_OF_VERDICT misses the accuracy,
-        or the list is not proved complete; empty if the thresholds are certain.
+        """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
+        accuracy, or the list is not proved complete; empty if the thresholds are certain.
         """
         found = self.thresholds
         accuracy = SEARCH_REQUEST.accuracy
-        if any(c.error > accuracy * abs(c.value) for c in found.thresholds if c.kind in KINDS_OF_VERDICT):
+        if any(
+            c.error > accuracy * abs(c.value) for c in found.thresholds if c.kind in KINDS_USED_BY_VERDICT
+        ):
             return f"a threshold misses the relative accuracy of {accuracy:g}"
         if found.search_result.proved:
             return ""
@@ -98,7 +100,7 @@ class ThresholdsWithDrag:
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class RangeOverDrags:
     """Range of a quantity over the drags of an arm; drags for which the quantity does not exist are left out.
 
     low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag.
@@ -134,33 +136,33 @@ class ThresholdsOverDrags:
         """Largest force of the search, in k3/L^2; the same for all drags."""
         return self.by_drag[0].thresholds.end
 
-    def first_forces(self, kind: ChangeKind) -> Span | None:
+    def first_forces(self, kind: ChangeKind) -> RangeOverDrags | None:
         """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
         drag has such a threshold.
         """
-        return span_of([f.first_force(kind) for f in self.by_drag])
+        return range_over_drags([f.first_force(kind) for f in self.by_drag])
 
     @property
-    def second_flutter_forces(self) -> Span | None:
+    def second_flutter_forces(self) -> RangeOverDrags | None:
         """Range, over the drags, of the force at which the arm flutters again, in k3/L^2; None if it does not
         for any drag."""
-        return span_of([f.second_flutter_force for f in self.by_drag])
+        return range_over_drags([f.second_flutter_force for f in self.by_drag])
 
-    def first_frequencies(self, kind: ChangeKind) -> Span | None:
+    def first_frequencies(self, kind: ChangeKind) -> RangeOverDrags | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
         drag has such a threshold.
         """
-        return span_of([f.first_frequency(kind) for f in self.by_drag])
+        return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
 
     def is_unstable_by_drag(self, F: float) -> list[bool]:
         """For each drag: whether the straight arm is unstable at the force F."""
         return [f.is_unstable_at(F) for f in self.by_drag]
 
 
-def span_of(values: list[float | None]) -> Span | None:
+def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
     """Smallest and largest number in `values`, which may contain None; None if there is no number."""
     known = [value for value in values if value is not None]
-    return Span(min(known), max(known), len(known) == len(values)) if known else None
+    return RangeOverDrags(min(known), max(known), len(known) == len(values)) if known else None
 
 
 def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> ThresholdsWithDrag:
@@ -185,12 +187,12 @@ def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
     """Returns (end, found): the largest force requested, and the thresholds up to this force. `end` is
-    SEARCH_END; for an arm that is not uniform or not of linear material, the first of SEARCH_ENDS_OF_VARIED
-    that exceeds the first flutter force and a known load by at least the factor MIN_SEARCH_RATIO, or before
-    which the search ended, else the last.
+    SEARCH_END; for an arm that is not uniform or not of linear material, the first of
+    SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
+    MIN_SEARCH_RATIO, or before which the search ended, else the last.
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
-    for end in SEARCH_ENDS_OF_VARIED if arm.shape.varies else (SEARCH_END,):
+    for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
         found = thresholds_with_drag(arm, drag, end)
         flutter = found.first_force(ChangeKind.hopf)
         reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)

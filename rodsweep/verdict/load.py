@@ -3,7 +3,7 @@
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
-from .flutter import Span
+from .flutter import RangeOverDrags
 from .rounding import range_text, three_digits_rounded_down
 
 TYPICAL_FLUTTER_FORCE = 36.0
@@ -14,8 +14,8 @@ MAX_TYPED_LENGTH = 6
 four digits."""
 
 
-class Load:
-    """Load of an arm in the user's unit; a pressure if the user gave no load."""
+class LoadFormatter:
+    """LoadFormatter of an arm in the user's unit; a pressure if the user gave no load."""
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
@@ -37,7 +37,7 @@ class Load:
         self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 
-    def range_of_forces_text(self, forces: Span) -> str:
+    def range_of_forces_text(self, forces: RangeOverDrags) -> str:
         """A range of forces in k3/L^2, as text in the unit of the load."""
         low, high = (F * self.load_at_unit_force for F in (forces.low, forces.high))
         return f"{range_text(low, high)} {self.unit}"

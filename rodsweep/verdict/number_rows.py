@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
 from ..model.material.laws import LINEAR
-from .material_words import law_words, station_words
+from .material_phrases import law_phrase, station_phrase
 from .planes import PlaneOfMotion
 from .rounding import range_text
 
@@ -58,10 +58,10 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
         for number, station in enumerate(arm.shape.stations, 1):
             place = f"u = {start:.4g} to {station.end:.4g}"
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
-            rows.append(NumberRow(f"segment {number}", place, station_words(station), source))
+            rows.append(NumberRow(f"segment {number}", place, station_phrase(station), source))
             start = station.end
     if arm.law != LINEAR.law:
-        rows.append(NumberRow("law", law_words(arm), LAW_FORMULA, "E is the modulus at small strain"))
+        rows.append(NumberRow("law", law_phrase(arm), LAW_FORMULA, "E is the modulus at small strain"))
     return rows
 
 

@@ -31,7 +31,7 @@ force crushes is searched only up to the crushing force."""
 FIRST_SEARCH_END = 200.0
 """Largest force of the first search, in k3/L^2. Most arms flutter at a smaller force, and the first search
 takes half the time of the full search."""
-SEARCH_ENDS_OF_VARIED = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
+SEARCH_ENDS_OF_VARYING_ARM = (3.0, 10.0, 30.0, 100.0, 300.0, SEARCH_END)
 """Largest forces of successive searches, in k3/L^2 at the base, for an arm that is not uniform or not of
 linear material. The first search that finds flutter is the last: far beyond flutter, where many modes are
 unstable, a search takes up to half a minute for each drag."""
@@ -54,7 +54,7 @@ def with_exchanged_sides(arm: A) -> A:
     return replace(arm, width=arm.height, height=arm.width)
 
 
-def plane_rods(
+def rods_by_plane(
     arm: SlenderArm, build: Build | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
     """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
@@ -72,7 +72,8 @@ def plane_rods(
 
 
 def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
-    """The arm as a rod that bends in the plane of the section's height. build, taper: as in `plane_rods`."""
+    """The arm as a rod that bends in the plane of the section's height. build, taper: as in
+    `rods_by_plane`."""
     rod = rod_with_drag(arm, arm.drags[0], build)
     return rod if taper is None else replace(rod, taper=taper)
 
@@ -93,9 +94,13 @@ def first_hopf_force(rod: Rod) -> float:
     overflows or cannot exclude a Hopf point at a smaller F.
     """
     path = Path(rod, "F")
-    first_up_to = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varied
+    first_up_to = (
+        _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
+    )
     try:
-        for end in (FIRST_SEARCH_END, SEARCH_END) if rod.is_uniform_and_linear else SEARCH_ENDS_OF_VARIED:
+        for end in (
+            (FIRST_SEARCH_END, SEARCH_END) if rod.is_uniform_and_linear else SEARCH_ENDS_OF_VARYING_ARM
+        ):
             first = first_up_to(path, end_below_crushing(rod, end))
             if first < inf:
                 return float(f"{first:.{REFERENCE_DIGITS}g}")
@@ -128,7 +133,7 @@ def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
     return first
 
 
-def _first_hopf_force_of_varied(path: Path, end: float) -> float:
+def _first_hopf_force_of_varying_arm(path: Path, end: float) -> float:
     """For arms that are not uniform or not of linear material (others: `_first_hopf_force_by_boxes`):
     smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
     FlutterSearchFailed if the search along F fails or a smaller F is not excluded.

@@ -10,9 +10,9 @@ from ..model.arm.neglected import Effect, Validity
 from ..model.arm.quantities import UNITS
 from ..model.units import unit_of, value_in_unit
 from .assessment import Assessment, rounded_down, rounded_up, thickness_factor, viscosity_factor
-from .load import Load
+from .load import LoadFormatter
 
-FOUR_DIGIT_EXCESS = 1.1
+MAX_FOUR_DIGIT_RATIO = 1.1
 """Ratios of an effect to its limit below this number are printed with four digits; two digits could read
 1.0."""
 
@@ -23,7 +23,11 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     """
     first, *others = _first_effect_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
-    at = f" at {Load(arm).typed_text}" if assessment.validity_at_flutter != Validity.does_not_apply else ""
+    at = (
+        f" at {LoadFormatter(arm).typed_text}"
+        if assessment.validity_at_flutter != Validity.does_not_apply
+        else ""
+    )
     says = [
         f"The model does not apply{at}: {first.name} is {excess_text(first)} what the model allows; {remedy}."
     ]
@@ -35,7 +39,7 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     return says
 
 
-def effect_kinds_in_words(effects: Iterable[Effect]) -> str:
+def effect_kinds_text(effects: Iterable[Effect]) -> str:
     """Distinct kinds of the neglected effects, joined by "and": "inertia and weight"."""
     return " and ".join(dict.fromkeys(map(effect_kind, effects)))
 
@@ -49,10 +53,10 @@ def effect_kind(effect: Effect) -> str:
 
 def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
-    FOUR_DIGIT_EXCESS.
+    MAX_FOUR_DIGIT_RATIO.
     """
     excess = float(effect.value_over_limit)
-    return f"{float(f'{excess:.2g}'):g} times" if excess >= FOUR_DIGIT_EXCESS else f"{excess:.4g} times"
+    return f"{float(f'{excess:.2g}'):g} times" if excess >= MAX_FOUR_DIGIT_RATIO else f"{excess:.4g} times"
 
 
 def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
@@ -72,7 +76,9 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
         return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
     if any(effect is each for each in assessment.under_load):
         pulls = "a pull" if arm.F < 0 else "a load"
-        return f"the model needs {pulls} of at most {Load(arm).rounded_down_text(abs(arm.F) * share)}"
+        return (
+            f"the model needs {pulls} of at most {LoadFormatter(arm).rounded_down_text(abs(arm.F) * share)}"
+        )
     return "the model needs a longer or a thinner arm"
 
 

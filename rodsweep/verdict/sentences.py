@@ -7,10 +7,10 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 from ..model.arm.neglected import Validity
 from ..solve.changes.kinds import ChangeKind
 from .assessment import Assessment
-from .flutter import Span, ThresholdsOverDrags
-from .load import Load
+from .flutter import RangeOverDrags, ThresholdsOverDrags
+from .load import LoadFormatter
 from .planes import PlaneOfMotion, Planes
-from .remedies import effect_kinds_in_words, not_applicable_sentences
+from .remedies import effect_kinds_text, not_applicable_sentences
 from .rounding import percent_range_text, range_text
 
 
@@ -47,21 +47,21 @@ def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
     if assessment.validity_at_flutter == Validity.does_not_apply:
         return [
             *headline,
-            *_flutter_without_effects(plane, effect_kinds_in_words(beyond)),
+            *_flutter_without_effects(plane, effect_kinds_text(beyond)),
             *_second_plane_sentences(planes, "would be"),
         ]
     flutter = plane.thresholds.first_forces(ChangeKind.hopf)
     known = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
-    return [*headline, f"{known} is within the model; {Load(plane.arm).typed_text} is not."]
+    return [*headline, f"{known} is within the model; {LoadFormatter(plane.arm).typed_text} is not."]
 
 
 def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     """Sentences on flutter and return to stability of an arm to which the model applies."""
     arm = plane.arm
     found = plane.thresholds
-    load = Load(plane.arm)
+    load = LoadFormatter(plane.arm)
     flutter = found.first_forces(ChangeKind.hopf)
     back = found.first_forces(ChangeKind.restabilization)
     if flutter is None:
@@ -79,7 +79,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
             f"Above, the straight arm gives way and{beats}.",
         ]
     if not flutter.for_every_drag:
-        says.append("Part of the range of drag has no flutter at all.")
+        says.append("For part of the range of drag the arm does not flutter at all.")
     if back is not None:
         some = "" if back.for_every_drag else ", for part of the range of drag"
         where = f"{load.range_of_forces_text(back)}{some}"
@@ -89,7 +89,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     return says + _oscillation_sentences(found, load)
 
 
-def _second_flutter_clause(found: ThresholdsOverDrags, load: Load) -> str:
+def _second_flutter_clause(found: ThresholdsOverDrags, load: LoadFormatter) -> str:
     """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
     flutter again.
     """
@@ -100,15 +100,15 @@ def _second_flutter_clause(found: ThresholdsOverDrags, load: Load) -> str:
     return f", and flutters again above {load.range_of_forces_text(second)}{some}"
 
 
-def _flutter_load_text(plane: PlaneOfMotion, flutter: Span) -> str:
+def _flutter_load_text(plane: PlaneOfMotion, flutter: RangeOverDrags) -> str:
     """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
     the plane of motion.
     """
-    where = Load(plane.arm).range_of_forces_text(flutter)
+    where = LoadFormatter(plane.arm).range_of_forces_text(flutter)
     return f"{where} in {plane.name}" if plane.name else where
 
 
-def _load_comparison_sentence(plane: PlaneOfMotion, flutter: Span, load: Load) -> str:
+def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, load: LoadFormatter) -> str:
     """Sentence that compares the arm's load with the range of the flutter load over the drags and says
     whether the arm beats.
     """
@@ -121,7 +121,7 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: Span, load: Load) -
         percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
         return f"{load.typed_text} is {percent} % below flutter, at {where}: the arm stays straight."
     if found.end < F:
-        end = load.range_of_forces_text(Span(found.end, found.end))
+        end = load.range_of_forces_text(RangeOverDrags(found.end, found.end))
         unknown = f"whether the arm beats at {load.typed_text} is not known"
         return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
     unstable = found.is_unstable_by_drag(F)
@@ -132,7 +132,7 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: Span, load: Load) -
     return f"{load.typed_text} is {_excess_text(F, flutter)} flutter, at {where}: the arm beats."
 
 
-def _excess_text(F: float, flutter: Span) -> str:
+def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
     "3 times", if the factor is larger than 2.
     """
@@ -144,7 +144,7 @@ def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
     found = plane.thresholds
-    load = Load(plane.arm)
+    load = LoadFormatter(plane.arm)
     flutter = found.first_forces(ChangeKind.hopf)
     rate = found.first_frequencies(ChangeKind.hopf)
     if flutter is None:
@@ -171,26 +171,27 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
         return []
     if second.thresholds.failures:
         return [f"The threshold in {second.name} could not be found."]
+    load = LoadFormatter(second.arm)
     flutter = second.thresholds.first_forces(ChangeKind.hopf)
     if flutter is None:
-        return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, Load(second.arm))}."]
+        return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, load)}."]
     decides = (
         ""
         if planes.is_first_for_every_drag
         else "; for part of the range of drag, flutter starts in this plane"
     )
-    return [f"In {second.name} flutter {verb} at {Load(second.arm).range_of_forces_text(flutter)}{decides}."]
+    return [f"In {second.name} flutter {verb} at {load.range_of_forces_text(flutter)}{decides}."]
 
 
-def _search_end_clause(plane: PlaneOfMotion, load: Load) -> str:
+def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
     """Clause that states the load at which the search ends, and whether this load crushes the arm."""
-    end = load.range_of_forces_text(Span(plane.thresholds.end, plane.thresholds.end))
+    end = load.range_of_forces_text(RangeOverDrags(plane.thresholds.end, plane.thresholds.end))
     if plane.thresholds.end > 0.999 * plane.arm.crushing_force:
         return f"before it is crushed at {end}"
     return f"up to {end}, where the search ends"
 
 
-def _oscillation_sentences(found: ThresholdsOverDrags, load: Load) -> list[str]:
+def _oscillation_sentences(found: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
     found.
     """

@@ -22,7 +22,7 @@ from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
-from rodsweep.verdict.load import Load
+from rodsweep.verdict.load import LoadFormatter
 from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_absolute_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
@@ -295,7 +295,7 @@ def test_the_report_is_a_table_in_a_notebook():
 @pytest.mark.parametrize("share", [0.9986, 1.0, 1.0004, 0.1])
 def test_a_load_of_at_most_so_much_is_rounded_down(share):
     """1.3381 kPa was told as 1.34 kPa, which is beyond the limit."""
-    load = Load(SlenderArm(**THICK, pressure="1.34 kPa"))
+    load = LoadFormatter(SlenderArm(**THICK, pressure="1.34 kPa"))
     force = share * 1.34 / load.load_at_unit_force
     told = float(load.rounded_down_text(force).split()[0])
     assert 0.99 * share * 1.34 < told <= share * 1.34 * (1 + 1e-9)

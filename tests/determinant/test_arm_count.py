@@ -13,7 +13,7 @@ from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import EigenvalueHull, distance_and_normal
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_error
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
-from rodsweep.determinant.certificate.box import eigenvalue_box, squared_amplification
+from rodsweep.determinant.certificate.box import eigenvalue_box, frequency_bound
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -69,7 +69,7 @@ def test_uniform_rods_are_counted_as_by_the_closed_form(seed):
 def test_hull_of_a_uniform_rod_has_the_box_of_the_closed_form(rod):
     hull = hull_of(rod)
     assert hull.c == 0
-    assert hull.a == pytest.approx(1.05 * squared_amplification(rod) ** 0.5, rel=1e-9)
+    assert hull.a == pytest.approx(1.05 * frequency_bound(rod) ** 0.5, rel=1e-9)
     for own, closed in zip(hull.box(30.0), eigenvalue_box(rod, 30.0), strict=True):
         assert closed <= own <= 1.15 * closed
 

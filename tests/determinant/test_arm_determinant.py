@@ -113,7 +113,7 @@ def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
 def test_sizes_that_no_elements_resolve_are_refused(size):
     """A number of elements beyond the integers once became one element, and D was wrong without a word."""
     determinant = ArmDeterminant(Rod(F=10.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5))
-    with pytest.raises(FloatingPointError, match="too few to resolve"):
+    with pytest.raises(FloatingPointError, match="needs more than the maximum of .* elements"):
         determinant.value(complex(size))
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.certificate.box import (
-    squared_amplification,
-    squared_amplification_on_path,
+    frequency_bound,
+    frequency_bound_on_path,
     zero_free_radius,
 )
 from rodsweep.determinant.certificate.covering import cover_with_boxes, distance_from_zero_bound, examine_box
@@ -156,12 +156,12 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
     value = getattr(path.rod, path.name)
     shares = (1.01, 2.5) if path.name == "k1" else (0.4, 0.99)
     ends = sorted(path.coordinate(share * value) for share in shares)
-    largest = squared_amplification_on_path(path, *ends)
+    largest = frequency_bound_on_path(path, *ends)
     radius = zero_free_radius(path, *ends, 1e3)
     assert radius > 0
     for p in np.linspace(*ends, 9):
         rod = path.rod_at(float(p))
-        assert squared_amplification(rod) <= largest * (1 + 1e-12)
+        assert frequency_bound(rod) <= largest * (1 + 1e-12)
         for eta in radius * np.array([1e-6, 0.1, 0.5, 1.0]):
             D, _, S, _ = scaled_determinant(complex(0, eta), rod.coefficients)
             assert abs(D * math.exp(S) - 1) < 0.5

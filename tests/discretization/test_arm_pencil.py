@@ -9,7 +9,7 @@ from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
 from rodsweep.discretization.elements.elements import Elements
 from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
-from rodsweep.discretization.straight.dense_form import dense_form
+from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import assemble_pencil
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -20,7 +20,7 @@ SHIFT = 500.0
 
 def leading(rod, mesh, number):
     """The eigenvalues of the pencil nearest to a shift, by dense shift-and-invert."""
-    form = dense_form(rod, ArmPencil(mesh))
+    form = dense_eigenproblem(rod, ArmPencil(mesh))
     M = np.diag(form.B)
     inverse = np.linalg.solve(form.A - SHIFT * M, M)
     m = np.linalg.eigvals(inverse)
@@ -32,8 +32,8 @@ def leading(rod, mesh, number):
     "rod", [Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3), Rod(F=9.0, k1=40.0, k2=np.inf, gamma3=0.0)]
 )
 def test_uniform_arm_has_the_pencil_of_the_uniform_rod(rod):
-    form = dense_form(rod, ArmPencil(ArmMesh((0.0, 0.5, 1.0), 10)))
-    expected = dense_form(rod, assemble_pencil(2, 10))
+    form = dense_eigenproblem(rod, ArmPencil(ArmMesh((0.0, 0.5, 1.0), 10)))
+    expected = dense_eigenproblem(rod, assemble_pencil(2, 10))
     np.testing.assert_allclose(form.A, expected.A, rtol=0, atol=1e-14 * np.abs(expected.A).max())
     np.testing.assert_allclose(form.B, expected.B, rtol=1e-14)
 

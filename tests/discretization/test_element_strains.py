@@ -10,7 +10,7 @@ from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
-from rodsweep.model.material.response import LocalSection, stress_beyond_rest
+from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.rod import Rod
 
 LINEAR_ARM = "linear", "fixed"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
-from rodsweep.discretization.plane import write_balance
+from rodsweep.discretization.plane_equations import write_balance
 from rodsweep.discretization.state_layout import StateLayout
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm

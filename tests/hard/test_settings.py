@@ -29,7 +29,7 @@ from numba.core.dispatcher import Dispatcher
 import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
-from rodsweep.determinant.certificate.box import box_from_amplification
+from rodsweep.determinant.certificate.box import box_from_sqrt_bound
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
@@ -53,7 +53,7 @@ from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.hopf.bautin_curves import BautinSpace, as_curve_point, bautin_curve
+from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
 from rodsweep.solve.hopf.generalised import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
@@ -176,7 +176,7 @@ def curve_of_generalised_hopf(accuracy: float) -> Answer:
     plane, curve = hopf_curve()
     (point,) = curve_criticality(plane, curve, 1e-10).points
     asked = np.array([8e3, 1.2e4, 1e4])
-    space = BautinSpace(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
+    space = BautinProblem(plane.rod, (*plane.axes, PlaneAxis("k2", 8e3, 1.2e4)), asked, accuracy)
     found = bautin_curve(space, as_curve_point(point, 1e4))
     answer = {}
     for value in asked[:2]:
@@ -806,12 +806,12 @@ def test_settings_are_frozen_and_have_keywords_only():
 
 
 def test_a_changed_setting_reaches_compiled_functions():
-    before = box_from_amplification(0.0, 1.0)
+    before = box_from_sqrt_bound(0.0, 1.0)
     with replaced("BOX_SETTINGS", "padding", 2.0):
-        assert box_from_amplification(0.0, 1.0)[0] - before[0] == pytest.approx(
+        assert box_from_sqrt_bound(0.0, 1.0)[0] - before[0] == pytest.approx(
             settings()["BOX_SETTINGS"].padding
         )
-    assert box_from_amplification(0.0, 1.0) == before
+    assert box_from_sqrt_bound(0.0, 1.0) == before
 
 
 @pytest.mark.long

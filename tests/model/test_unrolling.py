@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
-from rodsweep.discretization.nodal_rod import nodal_change, nodal_rod
+from rodsweep.discretization.nodal_rod import nodal_rod, nodal_rod_derivative
 from rodsweep.discretization.stress.balance import write_balance, write_balance_derivative
 from rodsweep.model.algebra import SE2, SE3
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
@@ -23,7 +23,7 @@ BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
 def test_derivative_along_a_parameter_is_that_of_loops_in_python():
-    rod, change = nodal_rod(PLANE, GRID), nodal_change(ROD.material_derivative("k1"), GRID)
+    rod, change = nodal_rod(PLANE, GRID), nodal_rod_derivative(ROD.material_derivative("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.node_count)
     V, G = np.empty((2, 3, GRID.node_count + 1))
     write_balance(SE2, x, V, G, rod, GRID.matrices)

@@ -122,7 +122,7 @@ def of_modes(number, nodes):
     vectors = SimpleNamespace(
         resolution=Resolution(1, 20),
         right_modes=spectrum.vectors,
-        deformation=spectrum.vectors + 100,
+        mode_strains=spectrum.vectors + 100,
         left_modes=spectrum.vectors + 200,
         pairing=np.full(number, 2 + 1j),
         condition=np.full(number, 3.0),

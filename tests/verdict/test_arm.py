@@ -318,7 +318,11 @@ def verdict(rod, *forces):
         ),
         (
             False,
-            ["drag decides", "Part of the range of drag has no", "is stable again above 2.5 kPa, for part"],
+            [
+                "drag decides",
+                "For part of the range of drag the arm does not flutter",
+                "is stable again above 2.5 kPa, for part",
+            ],
         ),
     ],
 )

@@ -24,7 +24,7 @@ from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.point_solver import rod_numbers
 from rodsweep.verdict.flutter import ChangeKind
-from rodsweep.verdict.relative_load import first_hopf_force, plane_rods
+from rodsweep.verdict.relative_load import first_hopf_force, rods_by_plane
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
 QUICK = {"accuracy": 1e-3, "harmonics": 2}
@@ -105,7 +105,7 @@ def test_a_relative_force_is_told_as_a_force():
 
 
 def first_flutter_force(arm):
-    return min(first_hopf_force(rod) * scale for rod, scale in plane_rods(arm))
+    return min(first_hopf_force(rod) * scale for rod, scale in rods_by_plane(arm))
 
 
 def test_a_rectangle_is_loaded_relative_to_the_plane_that_goes_first():

@@ -33,7 +33,7 @@ FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
 class ArmDoubleEigenvalueSettings:
     """Settings for double eigenvalues of arms along a path, and for differences by the path variable."""
 
-    max_shortenings: int = 20
+    max_step_divisions: int = 20
     """Maximum number of divisions of a difference step by `step_divisor`, to 1e-12 of the first step."""
     step_divisor: float = 4.0
     """A difference step is divided by this number if a neighbour is not a valid arm."""
@@ -171,12 +171,12 @@ class ArmAlongPath:
         if cross == 0 or not math.isfinite(cross):
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
         rounding = rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
-        blur = rounding + ROUND_OFF * abs(p * D_p)
-        blur_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
+        total_rounding = rounding + ROUND_OFF * abs(p * D_p)
+        rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
         in_x = (D_p * D_w - D_wp * D) / cross
         in_p = (D_ww * D - D_w * D_w) / cross
-        e_x = (blur * abs(D_wp) + blur_of_slope * abs(D_p)) / abs(cross)
-        return _DoubleEigenvalueStep(in_x, in_p, e_x, blur * abs(D_ww) / abs(cross))
+        e_x = (total_rounding * abs(D_wp) + rounding_of_slope * abs(D_p)) / abs(cross)
+        return _DoubleEigenvalueStep(in_x, in_p, e_x, total_rounding * abs(D_ww) / abs(cross))
 
     def _usable_family(self, x: float, p: float) -> ArmFamily | None:
         """The family of arms that contains p, if it is valid at w = x; else None."""
@@ -200,13 +200,13 @@ class ArmAlongPath:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
         step: at most `largest`.
 
-        The step is shortened, at most `max_shortenings` times, until both neighbouring arms are valid: not
+        The step is shortened, at most `max_step_divisions` times, until both neighbouring arms are valid: not
         crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
         """
         step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), largest)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE_STENCIL, step
-        for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_shortenings):
+        for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_step_divisions):
             if self._is_valid_at(p + step) and self._is_valid_at(p - step):
                 break
             step /= ARM_DOUBLE_EIGENVALUE_SETTINGS.step_divisor

@@ -203,7 +203,7 @@ def remainder_of_sum(
     """
     k = len(points)
     R = 0.0
-    blur = 0.0
+    rounding = 0.0
     for j in range(k):
         weight = 1.0
         for i in range(k):
@@ -213,7 +213,7 @@ def remainder_of_sum(
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.
-        blur += abs(weight * slope) * COMPLETENESS_SETTINGS.rounding_of_slope * value.noise / abs(value.D)
+        rounding += abs(weight * slope) * COMPLETENESS_SETTINGS.rounding_of_slope * value.noise / abs(value.D)
     for n in range(len(known)):
         w = known[n]
         phi = 1 + 0j
@@ -222,8 +222,8 @@ def remainder_of_sum(
             phi /= x - w
             rate += 1 / abs(x - w)
         R -= phi.real
-        blur += abs(phi) * rate * error[n]
-    return Remainder(R, blur, _least_term_right_of(line, points, hull[0], hull[1]))
+        rounding += abs(phi) * rate * error[n]
+    return Remainder(R, rounding, _least_term_right_of(line, points, hull[0], hull[1]))
 
 
 @compiled

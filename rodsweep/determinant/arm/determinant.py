@@ -88,6 +88,7 @@ class ArmDeterminant:
         return made
 
     def _propagators(self, W: float) -> Array:
+        """Propagators that are valid for |w| <= W, (elements, terms, PADDED), computed anew."""
         found = elements_for([self.rod], self._coefficient_samples, W)
         return element_propagators([self.rod.F], found.local, found.lengths, W)[0]
 
@@ -139,7 +140,7 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
             return PropagatorElements(lengths, local)
         edges = finer
     most = ARM_ELEMENT_SETTINGS.max_elements
-    raise FloatingPointError(f"{most} elements are too few to resolve this arm at |w| = {W:g}")
+    raise FloatingPointError(f"D of this arm at |w| = {W:g} needs more than the maximum of {most} elements")
 
 
 @lru_cache(maxsize=ARM_ELEMENT_SETTINGS.max_cached_arms)

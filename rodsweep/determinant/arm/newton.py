@@ -70,8 +70,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     propagators of `level`.
 
     last: length of the previous step; the iteration ends at a step that hardly decreases
-    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The
-    error is -1 if |w| exceeds the bound W of the level.
+    (`ROOT_NEWTON_SETTINGS.converging_step_ratio`). The error is -1 if |w| exceeds the bound W of the level.
     """
     w = guess
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):

@@ -31,11 +31,11 @@ T = TypeVar("T")
 
 
 def refine_mesh_eigenvalues(
-    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, most_waves: float, largest: float = 0.0
+    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest: float = 0.0
 ) -> Roots:
     """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
-    most_waves: largest wave number |q| that the mesh resolves. largest: |w| at which D will be needed
+    max_q: largest wave number |q| that the mesh resolves. largest: |w| at which D will be needed
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
     have too large a |q|, or are far from every root.
     """
@@ -48,7 +48,7 @@ def refine_mesh_eigenvalues(
         np.array([first[i] for i in inside], complex), determinant.samples
     )
     scale = dict(zip(inside, w_scales.tolist(), strict=True))
-    resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= most_waves]
+    resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= max_q]
     start = [first[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, start), default=0.0), largest)
     errors = dict(zip(resolved, _values_at_roots(start, lambda w: root_error(w, determinant)), strict=True))
@@ -59,7 +59,7 @@ def refine_mesh_eigenvalues(
     stands = [
         k
         for k, i in enumerate(chosen)
-        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.largest_correction * scale[i]
+        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.max_correction * scale[i]
     ]
     found = _refine_guesses([(moved[k], reach[k]) for k in stands], determinant)
     found.sort(key=lambda root: (-root.w.real, -root.w.imag))

@@ -57,13 +57,13 @@ def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf if
     no bound exists.
     """
-    return box_from_amplification(sqrt(squared_amplification(rod)), depth)
+    return box_from_sqrt_bound(sqrt(frequency_bound(rod)), depth)
 
 
 @compiled
-def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
+def box_from_sqrt_bound(a: float, depth: float) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth; a: square root of
-    `squared_amplification`.
+    `frequency_bound`.
     """
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
@@ -72,8 +72,9 @@ def box_from_amplification(a: float, depth: float) -> tuple[float, float]:
 
 
 @lru_cache(maxsize=1)
-def squared_amplification(rod: Rod) -> float:
-    """The smallest a^2 of the module docstring over all weights rho; inf if no bound exists.
+def frequency_bound(rod: Rod) -> float:
+    """Upper bound of |Im w| of all eigenvalues with Re w >= 0, in 1/tau2; inf if no bound exists. It is the
+    smallest a^2 of the module docstring over all weights rho.
 
     For g >= 0 it is F^2 g/(nu + |F| sqrt(c2 gamma3)), also for c2 = 0 or gamma3 = 0. For g < 0 (a pull beyond
     the shear stiffness) the larger entry of the maximum is minimised over rho; c2 gamma3 = 0 then gives no
@@ -90,17 +91,17 @@ def squared_amplification(rod: Rod) -> float:
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
 
 
-def squared_amplification_on_path(path: Path, start: float, stop: float) -> float:
-    """An upper bound of `squared_amplification` over all rods of a path with p from start to stop; inf if no
+def frequency_bound_on_path(path: Path, start: float, stop: float) -> float:
+    """An upper bound of `frequency_bound` over all rods of a path with p from start to stop; inf if no
     bound is known.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
-    return squared_amplification_between_rods(ends[0], ends[1])
+    return frequency_bound_between_rods(ends[0], ends[1])
 
 
 @compiled
-def squared_amplification_between_rods(first: Coefficients, last: Coefficients) -> float:
-    """An upper bound of `squared_amplification` over all rods between two rods of a path; inf if no
+def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> float:
+    """An upper bound of `frequency_bound` over all rods between two rods of a path; inf if no
     bound is known.
 
     Every factor of the bound is monotone along a path, so its extremes are at the two rods. The product nu g

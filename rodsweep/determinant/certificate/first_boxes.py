@@ -12,7 +12,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..parameter_path import Path, coefficients_at
-from .box import BOX_SETTINGS, squared_amplification_on_path, zero_free_radius
+from .box import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,7 +64,7 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):
-        top = (1 + BOX_SETTINGS.bound_excess) * squared_amplification_on_path(
+        top = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(
             path, a, b
         ) + COVERING_SETTINGS.padding
         if not math.isfinite(top):

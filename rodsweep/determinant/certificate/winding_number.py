@@ -56,7 +56,9 @@ class WindingSettings(CompiledSettings):
 
 WINDING_SETTINGS = WindingSettings()
 
-PHASE_LOST_MESSAGE = "an eigenvalue lies too close to the contour, or the contour is too long"
+PHASE_LOST_MESSAGE = (
+    "the winding number is undecided: an eigenvalue lies too close to its contour, or the contour is too long"
+)
 """Reason of a failed count: the change of arg D along the contour could not be proved."""
 NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding errors"
 """Reason of a failed count: rounding errors are too large."""

@@ -57,9 +57,9 @@ def crossing_newton(
         in_eta = -(D * D_p.conjugate()).imag / cross
         in_p = (D * a.conjugate()).imag / cross
         # The rounding errors of p and eta add to the rounding error of D.
-        blur = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
-        e_eta = blur * abs(D_p) / abs(cross)
-        e_p = blur * abs(a) / abs(cross)
+        rounding = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
+        e_eta = rounding * abs(D_p) / abs(cross)
+        e_p = rounding * abs(a) / abs(cross)
         step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
         # Negated comparisons are also true for NaN.
         if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + in_eta > 0:
@@ -79,7 +79,7 @@ def crossing_newton(
 
 
 @compiled
-def double_newton(
+def double_eigenvalue_newton(
     x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float
 ) -> LocatedZero:
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
@@ -106,9 +106,9 @@ def double_newton(
             return FAILED_ZERO
         in_x = (D_p * D_w - D_wp * D) / cross
         in_p = (D_ww * D - D_w * D_w) / cross
-        blur = noise + ROUND_OFF * abs(p * D_p)
-        e_p = blur * abs(D_ww) / abs(cross)
-        e_x = (blur * abs(D_wp) + noise / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)) / abs(
+        rounding = noise + ROUND_OFF * abs(p * D_p)
+        e_p = rounding * abs(D_ww) / abs(cross)
+        e_x = (rounding * abs(D_wp) + noise / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)) / abs(
             cross
         )
         x += in_x

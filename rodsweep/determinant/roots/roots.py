@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.rod import Coefficients
-from ..certificate.box import box_from_amplification
+from ..certificate.box import box_from_sqrt_bound
 from ..value import (
     DETERMINANT_SETTINGS,
     distance_to_next_root,
@@ -150,10 +150,10 @@ def sort_descending(w: Complex, order: NDArray) -> None:
 
 
 @compiled
-def refined_roots(raw: Complex, coefficients: Coefficients, amplification: float, most_waves: float) -> Roots:
+def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> Roots:
     """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
 
-    amplification: square root of `rodsweep.determinant.certificate.box.squared_amplification`. most_waves:
+    sqrt_bound: square root of `rodsweep.determinant.certificate.box.frequency_bound`. max_q:
     largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
     dropped: they lie outside the a-priori box, have too large a |q|, or are far from every root.
     """
@@ -170,18 +170,16 @@ def refined_roots(raw: Complex, coefficients: Coefficients, amplification: float
             first[i] = complex(raw[i].real, 0.0)
         error[i], length[i], wave[i] = root_error_and_scales(first[i], coefficients)
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
-        real, imag = box_from_amplification(amplification, max(-first[i].real, 0.0))
+        real, imag = box_from_sqrt_bound(sqrt_bound, max(-first[i].real, 0.0))
         inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
-        near[i] = (
-            inside[i] and wave[i] <= most_waves and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
-        )
+        near[i] = inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
     chosen = np.flatnonzero(near)
     first = first[chosen]
     error = error[chosen]
     length = length[chosen]
     wave = wave[chosen]
     w, stands = _refine_candidates(
-        first, error, wave, error <= ROOT_SETTINGS.largest_correction * length, coefficients
+        first, error, wave, error <= ROOT_SETTINGS.max_correction * length, coefficients
     )
     order = np.flatnonzero(stands)
     order = order[_descending_order(w[order])]

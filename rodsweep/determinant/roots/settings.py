@@ -9,7 +9,7 @@ from ...model.compiled.settings import CompiledSettings
 class RootSettings(CompiledSettings):
     """Settings for the refinement of eigenvalues of a mesh to roots of D."""
 
-    largest_correction: float = 1e-2
+    max_correction: float = 1e-2
     """An eigenvalue of the mesh approximates a root of D if |D/D'| <= this number times the length over which
     D changes; otherwise, unless it belongs to a close pair, it is an artefact of the mesh."""
     max_pair_correction: float = 0.1

@@ -28,7 +28,7 @@ class RadauSettings:
 RADAU_SETTINGS = RadauSettings()
 
 
-class Collocation(NamedTuple):
+class CollocationMethod(NamedTuple):
     """A collocation method with s stages on the interval [0, 1].
 
     nodes, weights: nodes and quadrature weights, (s,); the last node is 1. differentiation_matrix: (s, s +
@@ -50,7 +50,7 @@ class Collocation(NamedTuple):
 
 
 @cache
-def radau_method(stages: int) -> Collocation:
+def radau_method(stages: int) -> CollocationMethod:
     """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
     [0, 1]. P_s: Legendre polynomial.
     """
@@ -66,4 +66,4 @@ def radau_method(stages: int) -> Collocation:
     weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
     D = 2 * differentiation_matrix(np.append(-1.0, x))
     # The equations hold at the stages, not at the start, so the first row of D is not used.
-    return Collocation((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))
+    return CollocationMethod((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -79,7 +79,7 @@ def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: i
     edges = [0.0]
     largest = 0.0
     for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
-        ratio = abs(log(_radius_at(rod, stop) / _radius_at(rod, start)))
+        ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
         needed = _element_count_for(float(share), accuracy, largest_order)
         count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed)
         edges += _graded_edges(rod, start, stop, count)
@@ -112,7 +112,8 @@ def _element_count_for(share: float, accuracy: float, largest_order: int) -> int
     return count
 
 
-def _radius_at(rod: Rod, u: float) -> float:
+def _relative_radius_at(rod: Rod, u: float) -> float:
+    """Radius of a cone at u, divided by the radius at the base."""
     return 1 - (1 - rod.taper) * u
 
 
@@ -124,6 +125,6 @@ def _graded_edges(rod: Rod, start: float, stop: float, count: int) -> list[float
     if rod.taper == 1:
         inner: Array = np.linspace(start, stop, count + 1)[1:]
     else:
-        radii = np.geomspace(_radius_at(rod, start), _radius_at(rod, stop), count + 1)[1:]
+        radii = np.geomspace(_relative_radius_at(rod, start), _relative_radius_at(rod, stop), count + 1)[1:]
         inner = (1 - radii) / (1 - rod.taper)
     return [*inner[:-1].tolist(), float(stop)]

@@ -195,13 +195,14 @@ class ElementFactors:
         refinement follows.
         """
         elements = self.elements
-        x = self._eliminated_right_side(b, adjoint)
+        x = self._solve_unrefined(b, adjoint)
         if self.interior is None:
             return x
         rows = self.K.conj() if adjoint else self.K.T
-        return x + self._eliminated_right_side(b - elements.assemble(elements.gather(x) @ rows), adjoint)
+        return x + self._solve_unrefined(b - elements.assemble(elements.gather(x) @ rows), adjoint)
 
-    def _eliminated_right_side(self, b: Values, adjoint: bool) -> Complex:
+    def _solve_unrefined(self, b: Values, adjoint: bool) -> Complex:
+        """The solution of `solve` without the step of iterative refinement, (unknowns,)."""
         numbering = self.elements.numbering
         inside = self.interior
         within = numbering.state_indices[:, numbering.interior_positions]

@@ -27,12 +27,12 @@ import numpy as np
 from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
-from ..arm_on_mesh import jumps_on_mesh, material_at_nodes
 from ..elements.mesh import Mesh, shape_integration_matrices
+from ..material_on_mesh import jumps_on_mesh, material_at_nodes
 from ..nodal_rod import NodalRod, nodal_rod
 from ..rod_on_mesh import broadcast_to_field
 from ..state_layout import PLANE_COMPONENT_COUNT, StateLayout, plane_layout
-from .law_at_rest import LawAtRest, law_at_rest
+from .law_derivatives import LawDerivativesAtRest, law_derivatives_at_rest
 
 MIRROR_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of the components of a stress or a velocity under reflection in the axis of the straight rod."""
@@ -73,9 +73,9 @@ class MixedForm:
         return nodal_rod(material_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
 
     @cached_property
-    def law(self) -> LawAtRest:
+    def law_derivatives(self) -> LawDerivativesAtRest:
         """Derivatives of the constitutive law at rest, at all nodes."""
-        return law_at_rest(self.rod, self.nodal_rod)
+        return law_derivatives_at_rest(self.rod, self.nodal_rod)
 
     @cached_property
     def reflection_signs(self) -> Array:
@@ -101,7 +101,7 @@ class MixedForm:
         each = np.eye(PLANE_COMPONENT_COUNT)
         A = self._coupling_matrix()
         A[stresses, velocities] -= np.kron(each, WD.T[:N])
-        A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law.tangent[:, :N].ravel()
+        A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
         A[velocities, velocities] -= np.diag((self.nodal_rod.drag * self.mesh.quadrature).ravel())
         return A
 
@@ -111,7 +111,7 @@ class MixedForm:
         """
         S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
-        change = self.law.force_derivatives
+        change = self.law_derivatives.force_derivatives
         E = axial_field(change.nu)
         moved = broadcast_to_field(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
@@ -155,8 +155,8 @@ class MixedForm:
         CT = self._compliance_times_stress(T)
         W = self.mesh.quadrature
         forces: Values = W * (coad(CS, self._linearised_law(T)) + coad(CT, self._linearised_law(S)))
-        if self.law.is_nonlinear:
-            second = self.law.second_derivative_form(S, T)
+        if self.law_derivatives.is_nonlinear:
+            second = self.law_derivatives.second_derivative_form(S, T)
             forces = (
                 forces
                 + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second)
@@ -170,7 +170,7 @@ class MixedForm:
         """
         S, T, R = (self.stresses_and_velocities(each)[0] for each in (X, Y, Z))
         W = self.mesh.quadrature
-        law = self.law
+        law = self.law_derivatives
         third = law.third_derivative_form(S, T, R)
         forces = W * coad(
             broadcast_to_field(self.nodal_rod.rest_strain, S), third
@@ -187,7 +187,7 @@ class MixedForm:
 
     def _linearised_law(self, S: Values) -> Values:
         """The law s(S) to first order in S, at all nodes, (3, ..., nodes + 1)."""
-        return broadcast_to_field(self.law.tangent, S) * S
+        return broadcast_to_field(self.law_derivatives.tangent, S) * S
 
     def _weighted_derivative(self, field: Values) -> Values:
         """W D times a field at all nodes, both (3, ..., nodes + 1)."""
@@ -204,7 +204,7 @@ class MixedForm:
         each = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
         E = self.nodal_rod.rest_strain[:, None, :N]
         C = self.nodal_rod.compliance[:, None, :N]
-        T = self.law.tangent[:, None, :N]
+        T = self.law_derivatives.tangent[:, None, :N]
         Sigma = self.nodal_rod.tip_stress[:, None, None]
         s = np.arange(self.stress_count).reshape(PLANE_COMPONENT_COUNT, N)
         v = np.arange(self.stress_count, self.unknown_count).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]

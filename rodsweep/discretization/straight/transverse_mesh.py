@@ -11,7 +11,7 @@ from ..elements.elements import ELEMENT_SETTINGS
 from ..elements.resolution import Resolution, finer_resolution, resolution_for
 from .arm_pencil import ArmPencil
 from .arm_resolution import ArmMesh, arm_elements, finer_arm_mesh
-from .dense_form import AnyPencil
+from .dense_eigenproblem import AnyPencil
 from .pencil import assemble_pencil
 
 AnyMesh = Resolution | ArmMesh

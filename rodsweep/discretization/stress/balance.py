@@ -9,10 +9,10 @@ straight rod under its force,
     E = E0 + C S,    Sigma = Sigma(1) + s(S),    Gamma V = D*_E Sigma = D s(S) + ad*_E Sigma,
     W C dS/dt = G(S) = -D^T W V + W ad_E V.
 
-The constitutive law s(S) is local at each node (`rodsweep.model.material.response`); s(S) = S for a linear
-rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal. At a node
-where the material jumps, E is the mean strain of both sides, and s(S) is the stress, which is equal on both
-sides (`rodsweep.model.material.jump`).
+The constitutive law s(S) is local at each node (`rodsweep.model.material.stress_strain`); s(S) = S for a
+linear rod. The strain is affine in S for every law, so the matrix W C of dS/dt is constant and diagonal. At a
+node where the material jumps, E is the mean strain of both sides, and s(S) is the stress, which is equal on
+both sides (`rodsweep.model.material.jump`).
 
 A compliance may be 0, since no formula divides by a compliance; the corresponding stress then has no time
 derivative. At the tip G is the reaction r, and -r is the velocity of the tip: -r converges twice as fast as
@@ -35,9 +35,9 @@ from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import stress_at_jump, stress_change_at_jump
-from ...model.material.response import LINEAR_LAW, LocalSection, stress_beyond_rest, stress_change
+from ...model.material.stress_strain import LINEAR_LAW, LocalSection, stress_beyond_rest, stress_change
 from ..elements.mesh import NodeMatrices
-from ..nodal_rod import NodalChange, NodalRod
+from ..nodal_rod import NodalRod, NodalRodDerivative
 from ..state_layout import stress_index, velocity_index
 
 
@@ -164,7 +164,7 @@ def write_velocity_residuals(g: Algebra, x: Array, out: Array, c: NodalRod, m: N
 
 
 @compiled
-def write_law_derivative(x: Array, dS: Array, change: NodalChange, c: NodalRod) -> None:
+def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: NodalRod) -> None:
     """Writes the derivative of s(S) with respect to a parameter, at fixed S, into dS, (3, nodes + 1).
 
     x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to the parameter.
@@ -185,7 +185,7 @@ def write_law_derivative(x: Array, dS: Array, change: NodalChange, c: NodalRod) 
 
 @UnrolledOverAlgebra
 def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
-    g: Algebra, x: Array, V: Array, out: Array, change: NodalChange, c: NodalRod, m: NodeMatrices
+    g: Algebra, x: Array, V: Array, out: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivatives of the equations with respect to a parameter, at a fixed state x, (unknowns,),
     into out.

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.rod import Rod
-from ..arm_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..elements.mesh import Mesh, interpolation_matrix
-from ..nodal_rod import NodalChange, NodalRod, nodal_change
+from ..material_on_mesh import jump_derivatives, material_derivative_at_nodes
+from ..nodal_rod import NodalRod, NodalRodDerivative, nodal_rod_derivative
 from ..rod_on_mesh import RodOnMesh
 from ..state_layout import PLANE_COMPONENT_COUNT, plane_layout
 
@@ -75,19 +75,19 @@ class StressForm(RodOnMesh):
         V[list(self.unknown_velocities)] = self.layout.velocities(x) @ E.T
         return layout.state(self.stresses_on_mesh(grid, x), V)
 
-    def parameter_derivative(self, name: str) -> NodalChange:
+    def parameter_derivative(self, name: str) -> NodalRodDerivative:
         """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
         stiffness k, else the parameter itself.
         """
         change = material_derivative_at_nodes(self.rod, name, self.mesh)
-        return nodal_change(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
+        return nodal_rod_derivative(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
 
     @cached_property
     def mass_diagonal(self) -> Array:
         """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
         return self.mass_diagonal_of(self.nodal_rod)
 
-    def mass_diagonal_of(self, rod: NodalRod | NodalChange) -> Array:
+    def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:
         """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
         of a rod.
         """

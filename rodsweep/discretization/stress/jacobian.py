@@ -20,7 +20,7 @@ from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import tangent_at_jump
-from ...model.material.response import LINEAR_LAW, LocalSection, stress_tangent
+from ...model.material.stress_strain import LINEAR_LAW, LocalSection, stress_tangent
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
 from ..state_layout import stress_index, velocity_index

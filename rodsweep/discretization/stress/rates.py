@@ -9,7 +9,7 @@ from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod
-from ..plane import write_balance, write_jacobian
+from ..plane_equations import write_balance, write_jacobian
 from ..state_layout import stress_index
 
 

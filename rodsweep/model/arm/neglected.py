@@ -174,7 +174,7 @@ def compression_effect(arm: SlenderArm, F: Array) -> Effect:
     """Relative change of the length of the arm by compression or tension, abs(F)/k1, in the shape of F,
     (...,).
     """
-    return _independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
+    return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
 def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
@@ -194,7 +194,7 @@ def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
     value = arm.shape.weight_over_buckling_weight(heaviness) if arm.shape.varies else uniform
-    return _independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
+    return _effect_independent_of_viscosity("weight", np.full(F.shape, value), WEIGHT_LIMIT)
 
 
 def wall_flattening_effect(
@@ -217,7 +217,7 @@ def wall_flattening_effect(
     middle = (outer + inner) / 2
     thickness = outer - inner
     value = 1.5 * (1 - ratio**2) * (curvature * middle**2 / thickness) ** 2
-    return _independent_of_viscosity(
+    return _effect_independent_of_viscosity(
         "flattening of the wall", value, WALL_FLATTENING_LIMIT, of_cycles_only=True
     )
 
@@ -239,7 +239,9 @@ def reynolds_number_effect(arm: SlenderArm, rate: Array, amplitude: Array) -> Ef
     )
 
 
-def _independent_of_viscosity(name: str, value: Array, limit: float, of_cycles_only: bool = False) -> Effect:
+def _effect_independent_of_viscosity(
+    name: str, value: Array, limit: float, of_cycles_only: bool = False
+) -> Effect:
     """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
     `value` exceeds `limit`, otherwise 0. of_cycles_only: as in `Effect`.
     """

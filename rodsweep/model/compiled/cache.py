@@ -126,6 +126,7 @@ def _warn_once(sentence: str) -> None:
 
 
 def _read(path: Path) -> bytes | None:
+    """Content of the cache file `path` without its checksum; None if the file is missing or damaged."""
     try:
         held = path.read_bytes()
     except OSError:

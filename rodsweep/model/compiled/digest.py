@@ -85,6 +85,7 @@ def type_text(numba_type: Any) -> str:
 
 
 def _text_of_function(function: FunctionType, options: str) -> FunctionText:
+    """Name, options, bytecode and global values of a function as text, and the kernels that it calls."""
     lines = [_qualified_name(function), options]
     values = _ValueTextConverter(function)
     cells = [cell.cell_contents for cell in function.__closure__ or ()]
@@ -119,6 +120,7 @@ def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]
 
 
 def _code_objects(code: CodeType) -> Iterator[CodeType]:
+    """Yields a code object and all code objects inside it, as of inner functions."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
@@ -168,6 +170,8 @@ class _ValueTextConverter:
         return _array_or_type_text(value) or self._object_text(value)
 
     def _object_text(self, value: Any) -> str:
+        """Name of a function or module; a function of this package becomes a called kernel. Raises TypeError
+        for any other object."""
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
         if isinstance(value, Dispatcher):
@@ -184,6 +188,8 @@ class _ValueTextConverter:
         )
 
     def _class_text(self, kind: type) -> str:
+        """Name of a class, with the fields of a NamedTuple; raises TypeError for other classes of this
+        package."""
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"{_qualified_name(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"

@@ -71,7 +71,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
                 namespace[name] = value
         tree.body = [
             _UnrollingTransformer(
-                {first: g, **ALWAYS_KNOWN_VALUES}, _SharedState(set(), others, {}, {})
+                {first: g, **ALWAYS_KNOWN_VALUES}, _UnrollingState(set(), others, {}, {})
             ).visit(definition)
         ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
@@ -79,7 +79,7 @@ class UnrolledOverAlgebra(Generic[P, R]):
         return written
 
 
-class _SharedState(NamedTuple):
+class _UnrollingState(NamedTuple):
     """State shared by all `_UnrollingTransformer` objects that unroll one function.
 
     unrolled_lists: names of lists with elements that became variables. unrolled_functions: names of called
@@ -98,7 +98,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
     are unrolled.
     """
 
-    def __init__(self, known: Mapping[str, Any], shared: _SharedState) -> None:
+    def __init__(self, known: Mapping[str, Any], shared: _UnrollingState) -> None:
         self.known_values = known
         self.shared_state = shared
 
@@ -180,10 +180,12 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return self.visit(part) if isinstance(part, ast.AST) else part
 
     def _has_known_value(self, node: ast.AST) -> bool:
+        """Whether an expression contains names, and all of them have known values."""
         names = self._names_read_by(node)
         return bool(names) and names <= self.known_values.keys()
 
     def _names_read_by(self, node: ast.AST) -> frozenset[str]:
+        """Names in a syntax node and all its children, cached."""
         names = self.shared_state.names_read.get(node)
         if names is None:
             own = {node.id} if isinstance(node, ast.Name) else ()

@@ -86,7 +86,7 @@ class Build:
 
     @property
     def law_number(self) -> int:
-        """Number of the law in compiled code, see `response`."""
+        """Number of the law in compiled code, see `stress_strain`."""
         return list(LAWS).index((self.law, self.section))
 
     @cached_property

@@ -1,8 +1,8 @@
 """Compiled stress of a rod at a jump of its material as a function of the mean strain, for every law.
 
-Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `response` on the base side and
-on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a + w_b =
-1 for each component. Then
+Stress is continuous at a jump, strain is not. Let a and b be the unknowns of `stress_strain` on the base side
+and on the tip side of the jump. Let w_a and w_b be the weights of both sides in the mean strain, with w_a +
+w_b = 1 for each component. Then
 
     N(a) = N(b),    M(a) = M(b),    w_a a + w_b b = q,
 
@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ..compiled.compilation import compiled
-from .response import (
+from .stress_strain import (
     LINEAR_LAW,
     LocalSection,
     Stress,
@@ -45,7 +45,8 @@ because the law is defined for h1 > 0 only."""
 
 
 class LawUnknowns(NamedTuple):
-    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in `response`."""
+    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in
+    `stress_strain`."""
 
     q1: float
     q3: float
@@ -53,6 +54,7 @@ class LawUnknowns(NamedTuple):
 
 @compiled
 def _section_of_side(side: Array) -> LocalSection:
+    """The section on one side of a jump; side: a row of `sides`, (7,)."""
     return LocalSection(side[0], side[1], side[2])
 
 
@@ -79,6 +81,7 @@ def _largest_step_fraction(at: LocalSection, q1: float, step: float) -> float:
 
 @compiled
 def _is_negligible(step: LawUnknowns, at: LawUnknowns) -> bool:
+    """Whether a Newton step is small enough to stop; at: the unknowns after the step."""
     return abs(step.q1) <= CONVERGED_STEP * abs(at.q1) and abs(step.q3) <= CONVERGED_STEP * abs(at.q3)
 
 

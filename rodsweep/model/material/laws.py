@@ -18,7 +18,7 @@ import numpy as np
 Values = Any
 """A float, or an array of floats of any shape."""
 
-POLISHING_STEPS = 2
+SHORTENING_NEWTON_STEPS = 2
 """Number of Newton steps for the shortening e = 1 - nu, which double the number of correct digits. Cardano's
 formula gives nu, so that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no
 cancellation."""
@@ -28,12 +28,13 @@ cancellation."""
 class Law:
     """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
-    Kernels use the compiled twin of all laws in `rodsweep.model.material.response`; a change of a law is a
-    change in both modules. All functions take and return floats or arrays. energy: W(h1). energy_over_square:
-    W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W'''
-    and W''''. bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''.
-    shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads.
-    crushing_load: the load x that crushes the rod; inf if no force crushes the rod."""
+    Kernels use the compiled twin of all laws in `rodsweep.model.material.stress_strain`; a change of a law is
+    a change in both modules. All functions take and return floats or arrays. energy: W(h1).
+    energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope,
+    stiffness_second_derivative: W''' and W''''. bending_factor: B(h1). bending_factor_slope,
+    bending_factor_second_derivative: B' and B''. shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x,
+    without cancellation for small loads. crushing_load: the load x that crushes the rod; inf if no force
+    crushes the rod."""
 
     law: str
     section: str
@@ -64,7 +65,7 @@ def _neo_hookean_shortening(x: Values) -> Values:
         angle = np.arccos(np.minimum(0.5 / load**1.5, 1.0)) / 3
         nu = np.where(square < 0, 0.5 / (np.sqrt(load) * np.cos(angle)), nu)
     e = 1 - nu
-    for _ in range(POLISHING_STEPS):
+    for _ in range(SHORTENING_NEWTON_STEPS):
         nu = 1 - e
         residual = 3 * x * nu**2 - e * (3 - 3 * e + e**2)
         e = e + residual / (3 * nu * (nu + 2 * x))

@@ -36,7 +36,9 @@ for _name in PETSC_FUNCTIONS:
     binding.add_symbol(_name, ctypes.cast(getattr(PETSC_LIBRARY, _name), ctypes.c_void_p).value)
 
 POINTER = types.intp
+"""numba type of a memory address or of the handle of a PETSc object."""
 INT = types.int32 if PETSc.IntType == np.int32 else types.int64
+"""numba type of PetscInt, an integer argument of PETSc's functions."""
 
 
 def c_function(*arguments: Any) -> Callable[[Callable], Any]:

@@ -5,7 +5,7 @@ from abc import ABC, abstractmethod
 from ...determinant.certificate.first_boxes import path_intervals
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.parameter_path import Path, coefficients_at
-from ...determinant.roots.newton import LocatedZero, double_newton, eigenvalue_newton
+from ...determinant.roots.newton import LocatedZero, double_eigenvalue_newton, eigenvalue_newton
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 
@@ -69,7 +69,7 @@ class UniformPath(PathProblem):
         return eigenvalue_newton(guess, coefficients, self.path.direction)
 
     def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        return double_newton(x, p, self.path.origin, self.path.direction, reach)
+        return double_eigenvalue_newton(x, p, self.path.origin, self.path.direction, reach)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         return count_right_of(line, self.path.rod_at(p))

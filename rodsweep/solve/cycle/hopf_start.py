@@ -12,9 +12,9 @@ from math import isfinite, isnan
 import numpy as np
 
 from ...determinant.parameter_path import Path
-from ...discretization.at_jumps import interpolate_stress
 from ...discretization.elements.mesh import interpolation_matrix
 from ...discretization.stress.form import StressForm
+from ...discretization.stresses_at_jumps import interpolate_stress
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
 from ..changes.path_problem import PathProblem
@@ -170,8 +170,10 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
-        why = f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces"
-        raise Unsolvable(f"{why}; the task `branch` follows it")
+        raise Unsolvable(
+            f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces; the task "
+            "`branch` follows it"
+        )
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh_along_branch(rod))

@@ -5,7 +5,7 @@ from dataclasses import replace
 from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
 from ..backend.petsc import user_options_text
-from ..motion.time_scheme import CYCLE_PREFIX
+from ..motion.time_scheme import CYCLE_OPTIONS_PREFIX
 from .cycle import CycleRequest
 from .limit_cycle import solve_cycle
 from .status import CycleStatus
@@ -30,7 +30,7 @@ def warm_up() -> None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
     reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
-    given = user_options_text(CYCLE_PREFIX)
+    given = user_options_text(CYCLE_OPTIONS_PREFIX)
     if given and not reproduced:
         outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(

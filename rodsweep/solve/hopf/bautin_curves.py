@@ -72,10 +72,10 @@ class _CurvePoint:
 
 
 @dataclass(frozen=True, slots=True)
-class BautinSpace:
-    """Generalised Hopf points over three parameters, each with a range, as a problem for `follow_curve`. rod:
-    values of the fixed parameters. requested_values: values of the third parameter of further points, (m,).
-    accuracy: relative accuracy of c. direction: sign of the first step along the third parameter, 1 or -1."""
+class BautinProblem:
+    """Problem for `follow_curve`: generalised Hopf points over three parameters. axes: these parameters, with
+    ranges. rod: all other parameters. requested_values: values of the third parameter of further points,
+    (m,). accuracy: relative accuracy of c. direction: sign of the first step along the third parameter."""
 
     rod: Rod
     axes: tuple[PlaneAxis, PlaneAxis, PlaneAxis]
@@ -167,9 +167,9 @@ class BautinSpace:
         """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         before = 0.0
-        s = BAUTIN_SETTINGS.first_secant
+        s = BAUTIN_SETTINGS.first_secant_step
         last = hopf.hopf_point_on_plane(start, way, hopf.accuracy).relative_real_part
-        for _ in range(BAUTIN_SETTINGS.max_secants):
+        for _ in range(BAUTIN_SETTINGS.max_secant_steps):
             here = hopf.hopf_point_on_plane(start + s * way, way, hopf.accuracy)
             if here.relative_real_part == last:
                 break
@@ -186,13 +186,13 @@ class BautinSpace:
         raise Unsolvable("no generalised Hopf point is found near the predicted point")
 
 
-def bautin_curve(space: BautinSpace, start: BautinCurvePoint) -> BautinCurve:
+def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    here = _CurvePoint(space.scaled_coordinates(start.values, start.frequency), start)
-    back, first = _follow_in_direction(replace(space, direction=-1.0), here)
+    here = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
+    back, first = _follow_in_direction(replace(problem, direction=-1.0), here)
     if first is BautinEnd.closed:
         return BautinCurve(tuple(point.point for point in back), (first, first))
-    on, last = _follow_in_direction(space, here)
+    on, last = _follow_in_direction(problem, here)
     # Both lists begin with the start, which is taken once.
     return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
 
@@ -207,23 +207,23 @@ def as_curve_point(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoin
     )
 
 
-def lies_on_curve(space: BautinSpace, point: BautinCurvePoint, curve: BautinCurve) -> bool:
+def lies_on_curve(problem: BautinProblem, point: BautinCurvePoint, curve: BautinCurve) -> bool:
     """Whether `point`, at a requested third parameter, equals a point of `curve`."""
-    v = space.scaled_coordinates(point.values, point.frequency)
-    others = [space.scaled_coordinates(other.values, other.frequency) for other in curve.points]
+    v = problem.scaled_coordinates(point.values, point.frequency)
+    others = [problem.scaled_coordinates(other.values, other.frequency) for other in curve.points]
     return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
-def _follow_in_direction(space: BautinSpace, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
-    """(points from `start` in the direction `space.direction` of the third parameter, including points
+def _follow_in_direction(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
+    """(points from `start` in the direction `problem.direction` of the third parameter, including points
     at its requested values; reason for the end of the curve)."""
-    if not 0 < start.v[2] + space.direction * BAUTIN_STEP_CONTROL.min_length < 1:
+    if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEnd.range_end
-    curve = follow_curve(space, start, BAUTIN_STEP_CONTROL, _report_point_count)
+    curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, _report_point_count)
     places = curve.solutions[:1]
     for here, there in pairwise(curve.solutions):
         try:
-            places += [*_requested_points_between(space, here, there), there]
+            places += [*_requested_points(problem, here, there), there]
         except (*FAILURES, ValueError):
             return places, BautinEnd.not_found
     if curve.end_reason is CurveStop.zero_margin:
@@ -236,15 +236,15 @@ def _report_point_count(places: Sequence[_CurvePoint]) -> None:
     report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
 
 
-def _requested_points_between(space: BautinSpace, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
+def _requested_points(problem: BautinProblem, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
     """Points at the requested third parameters between `here` and `there`; raises Unsolvable, ValueError."""
     a = here.v[2]
     b = there.v[2]
-    inner = [z for z in map(space.axes[2].coordinate, space.requested_values) if min(a, b) < z < max(a, b)]
+    new = [z for z in map(problem.axes[2].coordinate, problem.requested_values) if min(a, b) < z < max(a, b)]
     found = []
-    for z in sorted(inner, reverse=bool(a > b)):
+    for z in sorted(new, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
             guess = here.v + (z - a) / (b - a) * (there.v - here.v)
             guess[2] = z
-            found.append(space.solve_point(guess, 2))
+            found.append(problem.solve_point(guess, 2))
     return found

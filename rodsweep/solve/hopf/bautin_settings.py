@@ -22,10 +22,10 @@ the step length."""
 class BautinSettings:
     """Settings of the corrector and of the ends of a curve of generalised Hopf points."""
 
-    max_secants: int = 10
+    max_secant_steps: int = 10
     """Maximum number of secant steps to a generalised Hopf point; if more are necessary, the step along the
     curve has failed."""
-    first_secant: float = 1e-3
+    first_secant_step: float = 1e-3
     """First secant step along the Hopf curve; each parameter's range has length 1."""
     tolerance: float = 1e-12
     """The secant method stops when the step is at most this number, or at most the error caused by the error

@@ -37,9 +37,9 @@ class GeneralisedHopfSettings:
     the requested accuracy."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
-    slope_step: float = 1e-3
+    relative_difference_step: float = 1e-3
     """Difference step for the derivative of Re c, as a fraction of the distance between two neighbours."""
-    max_zero_ratio: float = 1e-6
+    max_relative_real_part: float = 1e-6
     """A root found by Brent's method is a zero of Re c only if |Re c|/|c| is at most this number; otherwise
     Re c jumps from negative to positive values."""
 
@@ -146,7 +146,7 @@ class HopfCurve:
         `normal`, (3,), and its normal form; raises Unsolvable. accuracy: relative accuracy of c."""
         there = self.boundary.point_near(guess, normal)
         if there is None:
-            raise Unsolvable("no Hopf point is found between two points of the curve")
+            raise Unsolvable("Newton's method finds no Hopf point near a known point of the Hopf curve")
         x, y, h = map(float, there.v)
         rod = self.boundary.plane.rod_at(x, y)
         w = complex(0.0, math.exp(h))
@@ -180,14 +180,14 @@ class HopfCurve:
                 )
             )
             here, before, beyond = (
-                on_chord(s + side * GENERALISED_HOPF_SETTINGS.slope_step) for side in (0, -1, 1)
+                on_chord(s + side * GENERALISED_HOPF_SETTINGS.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
         slope = (beyond.relative_real_part - before.relative_real_part) / (
-            2 * GENERALISED_HOPF_SETTINGS.slope_step
+            2 * GENERALISED_HOPF_SETTINGS.relative_difference_step
         )
-        if abs(here.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_zero_ratio or slope == 0:
+        if abs(here.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_relative_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)

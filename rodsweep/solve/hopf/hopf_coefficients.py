@@ -21,7 +21,7 @@ from ..changes.kinds import Threshold
 from .normal_form import (
     NORMAL_FORM_SETTINGS,
     NormalForm,
-    elements_for_coefficient,
+    elements_for_landau_coefficient,
     elements_with_third_more_unknowns,
     normal_form_on,
 )
@@ -39,15 +39,15 @@ class HopfCoefficientSettings:
     coarsest_accuracy: float = 1e-2
     """Coarsest relative accuracy for which the first mesh is chosen: the eigenvalue must still be identified
     on this mesh."""
-    landau_rounding: float = 1.5e-14
+    landau_rounding_per_condition_number: float = 1.5e-14
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
     max_force_sensitivity: float = 20.0
     """Bound on |dc/dF|/|c|, divided by |w''|/|w'| + 1/|F| + 1/|k1 - F|. The largest measured value is 10, for
     high modes of rods soft in shear; where a flutter window closes the value is 1."""
-    force_step: float = 1e-5
+    relative_force_step: float = 1e-5
     """Force step of the difference quotient for the second derivative of w(F), divided by |F|."""
-    cached_searches: int = 8
+    max_cached_searches: int = 8
     """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 
 
@@ -107,10 +107,10 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     """
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
-    start = elements_for_coefficient(
+    start = elements_for_landau_coefficient(
         rod,
         w,
-        min(accuracy / NORMAL_FORM_SETTINGS.accuracy_ratio, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
+        min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
     )
     fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
     change = math.inf
@@ -176,7 +176,7 @@ def _coefficients_with_errors(
 
 def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
-    step = HOPF_COEFFICIENT_SETTINGS.force_step * abs(rod.F)
+    step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
@@ -186,4 +186,4 @@ def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
 def _landau_rounding_error(normal: NormalForm) -> float:
     """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
     sizes = straight_matrices(normal.form, TRANSVERSE).product_magnitude(normal.p, normal.q)
-    return HOPF_COEFFICIENT_SETTINGS.landau_rounding * sizes / abs(normal.w)
+    return HOPF_COEFFICIENT_SETTINGS.landau_rounding_per_condition_number * sizes / abs(normal.w)

@@ -45,7 +45,7 @@ class NormalFormSettings:
     two iterations with this shift reach rounding error."""
     max_shifts: int = 10
     """Maximum number of shifts of the inverse iteration."""
-    accuracy_ratio: float = 0.1
+    mesh_accuracy_ratio: float = 0.1
     """The mesh rule, made for eigenvalues, is applied with the requested accuracy of c times this factor: the
     error of c may be five times the error of the eigenvalue."""
     largest_order: int = 20
@@ -139,7 +139,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
     h20 = -longitudinal.lu_factors(2j * w.imag).solve(form.bilinear(q, q))
     h11 = -longitudinal.lu_factors(0).solve(form.bilinear(q, q.conj())).real
     c = np.vdot(p, form.bilinear(q.conj(), h20) / 2 + form.bilinear(q, h11))
-    if form.law.is_nonlinear:
+    if form.law_derivatives.is_nonlinear:
         c += np.vdot(p, form.trilinear(q, q, q.conj())) / 2
     slope = np.vdot(p, form.times_force_derivative_of_A(q))
     return NormalForm(
@@ -152,13 +152,13 @@ def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalFor
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.
     """
-    return normal_form_on(elements_for_coefficient(rod, w, accuracy), rod, w, accuracy)
+    return normal_form_on(elements_for_landau_coefficient(rod, w, accuracy), rod, w, accuracy)
 
 
-def elements_for_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
-    """Elements on which the coefficient c for the eigenvalue w has the relative accuracy `accuracy`, by the
-    mesh rule for eigenvalues."""
-    accuracy *= NORMAL_FORM_SETTINGS.accuracy_ratio
+def elements_for_landau_coefficient(rod: Rod, w: complex, accuracy: float) -> Elements:
+    """Elements on which the Landau coefficient c at the eigenvalue w has the relative accuracy `accuracy`, by
+    the mesh rule for eigenvalues."""
+    accuracy *= NORMAL_FORM_SETTINGS.mesh_accuracy_ratio
     waves = HARMONIC_WAVE_NUMBER_RATIO * wave_number(rod, w)
     if not rod.is_uniform_and_linear:
         return arm_elements(rod, waves, accuracy, NORMAL_FORM_SETTINGS.largest_order)
@@ -201,8 +201,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     normal = normal_form(MixedForm(rod, mesh_with_edges(elements.edges, elements.order)), w)
     if not abs(normal.w - w) <= max(accuracy, NORMAL_FORM_SETTINGS.converged_distance) * abs(w):
         raise Unsolvable(
-            f"w = {w:.12g} is no eigenvalue of the mesh at F = {rod.F:g}; the nearest eigenvalue is "
-            f"{normal.w:.12g}"
+            f"the mesh of the normal form misses the eigenvalue w = {w:.12g} of the rod at F = {rod.F:g}; "
+            f"the nearest eigenvalue of the mesh is {normal.w:.12g}"
         )
     return normal
 

@@ -88,7 +88,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array
     error = np.zeros(len(fine.condition))
     pairs = (
         (coarse.right_modes, fine.right_modes),
-        (coarse.deformation, fine.deformation),
+        (coarse.mode_strains, fine.mode_strains),
         (coarse.left_modes, fine.left_modes),
     )
     for old, new in pairs:

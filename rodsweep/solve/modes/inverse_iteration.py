@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...arrays import COMPLEX_NAN, Array, Complex
 from ...determinant.exponents import ROUND_OFF
 from ...discretization.elements.resolution import Resolution
-from ...discretization.straight.dense_form import AnyPencil, DenseForm, dense_form
+from ...discretization.straight.dense_eigenproblem import AnyPencil, DenseEigenproblem, dense_eigenproblem
 from ...discretization.straight.pencil import factors_to_unit_tip
 from ...model.rod import Rod
 
@@ -42,7 +42,7 @@ class ModeVectors:
     resolution: Resolution
     right_modes: Complex
     """Right modes (Y, Theta) with Y(1) = 1, in L and rad for a tip deflection L."""
-    deformation: Complex
+    mode_strains: Complex
     """Shear and curvature (h2, Pi) = (Y' - nu Theta, Theta') of the right modes (Sec. V); h2 is exactly 0 in
     an unshearable rod. At a jump of a stiffness: the value behind the jump."""
     left_modes: Complex
@@ -71,18 +71,16 @@ class ModeVectors:
 
 def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Array) -> ModeVectors:
     """Right and left modes of `eigenvalues` on the mesh of `pencil`, at `points` in [0, 1], (n,)."""
-    form = dense_form(rod, pencil)
+    form = dense_eigenproblem(rod, pencil)
     X, Z, rounding = _eigenvectors(form, eigenvalues)
     evaluation = form.mesh.evaluation_matrix(points)
     B = form.B[:, None]
     pairing = (B * Z * X).sum(axis=0)
     norms = [np.sqrt((B * np.abs(V) ** 2).sum(axis=0)) for V in (X, Z)]
     return replace(
-        placeholder_vectors(
-            Resolution(form.mesh.element_count, form.mesh.order), len(eigenvalues), len(points)
-        ),
+        nan_mode_vectors(Resolution(form.mesh.element_count, form.mesh.order), len(eigenvalues), len(points)),
         right_modes=np.stack([(evaluation @ field).T for field in form.displacements(X)]),
-        deformation=form.strains(X, points),
+        mode_strains=form.strains(X, points),
         left_modes=np.stack([(evaluation @ field).T for field in form.displacements(Z.conj())]),
         pairing=pairing,
         condition=norms[0] * norms[1] / np.abs(pairing),
@@ -90,7 +88,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
+def nan_mode_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
     """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
     points."""
     shape = np.full((2, modes, points), COMPLEX_NAN)
@@ -98,7 +96,7 @@ def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> Mode
     return ModeVectors(
         resolution=resolution,
         right_modes=shape,
-        deformation=shape,
+        mode_strains=shape,
         left_modes=shape,
         pairing=np.full(modes, COMPLEX_NAN),
         condition=numbers,
@@ -108,7 +106,7 @@ def placeholder_vectors(resolution: Resolution, modes: int, points: int) -> Mode
     )
 
 
-def _eigenvectors(form: DenseForm, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
+def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """Returns (right eigenvectors, left eigenvectors, rounding errors of `eigenvalues`), (unknowns, modes),
     (unknowns, modes) and (modes,). The eigenvectors have the tip deflection 1."""
     A = form.A

@@ -24,8 +24,8 @@ from ...model.rod import Rod
 from ..point_outcome import outcome_or_failure
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
-from .convergence import converged_modes
-from .inverse_iteration import ModeVectors, placeholder_vectors
+from .convergence import MODE_MESH_SETTINGS, converged_modes
+from .inverse_iteration import ModeVectors, nan_mode_vectors
 from .transient_growth import Growth, growth_of
 
 
@@ -33,10 +33,10 @@ from .transient_growth import Growth, growth_of
 class LeadingModeSettings:
     """Settings for the transient growth, and for the test whether a rod is unstable."""
 
-    growth_wave_number: float = 24.0
+    min_growth_wave_number: float = 24.0
     """The mesh for the growth resolves at least this wave number, the wave number of the eighth mode without
     load, because growth at short times needs more modes than are requested."""
-    significant_errors: float = 4.0
+    min_growth_rate_over_error: float = 4.0
     """A rod is treated as unstable if a growth rate exceeds this multiple of its error estimate."""
 
 
@@ -79,7 +79,7 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _modes_by_equivalent_rod(rod, request)
     spectrum = solve_spectrum(rod, SpectrumRequest(request.modes, request.accuracy, request.certify))
-    vectors = placeholder_vectors(
+    vectors = nan_mode_vectors(
         Resolution(spectrum.elements, spectrum.order), request.modes, request.node_count
     )
     outcome = Modes(
@@ -130,15 +130,17 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
         return replace(
             outcome,
             status=SpectrumStatus.failed,
-            message="no mesh small enough for dense matrices resolves the modes",
+            message=f"no mesh of at most {MODE_MESH_SETTINGS.max_unknowns} unknowns resolves the modes; "
+            "request fewer modes",
         )
     result = replace(outcome, vectors=vectors)
     errors = vectors.errors_by_name()
     if request.computes_growth:
         rate = float(abs(spectrum.eigenvalues[0]))
-        mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.growth_wave_number), request.accuracy)
+        mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.min_growth_wave_number), request.accuracy)
         grows = (
-            spectrum.eigenvalues.real > LEADING_MODE_SETTINGS.significant_errors * spectrum.error_estimate
+            spectrum.eigenvalues.real
+            > LEADING_MODE_SETTINGS.min_growth_rate_over_error * spectrum.error_estimate
         ).any()
         known = spectrum.status != SpectrumStatus.undecided
         stable = True if known else None

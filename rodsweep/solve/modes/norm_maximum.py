@@ -24,7 +24,7 @@ from .propagator import Propagator
 class NormMaximumSettings:
     """Settings for the search for the maximum over time of |exp(L t)|, L: operator of the rod."""
 
-    start_ratio: float = 2**0.25
+    first_grid_ratio: float = 2**0.25
     """Ratio of neighbouring times of the first grid."""
     max_halvings: int = 40
     """Maximum number of halvings of a time interval; after that the bound is not improved further."""
@@ -35,9 +35,9 @@ class NormMaximumSettings:
     """Number of times at which the propagator is evaluated in one call; limits the memory."""
     max_exponent: float = 300.0
     """Larger arguments of exp are replaced by this value, at which exp does not overflow."""
-    max_peak_steps: int = 40
+    max_regula_falsi_steps: int = 40
     """Maximum number of regula falsi steps to a maximum of the norm."""
-    max_remaining_rise: float = 1e-14
+    max_relative_rise_in_bracket: float = 1e-14
     """Tolerance of the search for a maximum: largest possible relative increase of the norm within the final
     bracket. The relative error of the time is about the square root of this tolerance."""
 
@@ -55,10 +55,10 @@ def largest_propagator_norm(
     bound, at least 0, of the numerical abscissa.
     """
     low, high = span
-    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.start_ratio))) + 1)
+    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.first_grid_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
-    squares, bends = _squared_norms_and_bends(propagator, times)
+    squares, bends = _squared_norms_and_curvature_bounds(propagator, times)
     i = int(squares.argmax())
     best = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
     t = times[:-1]
@@ -80,7 +80,7 @@ def largest_propagator_norm(
             break
         # Only intervals in which a larger norm may hide are halved.
         t, h, left, right, bend = (x[open_] for x in (t, h / 2, left, right, bend))
-        middle, new_bend = _squared_norms_and_bends(propagator, t + h)
+        middle, new_bend = _squared_norms_and_curvature_bounds(propagator, t + h)
         i = int(middle.argmax())
         if middle[i] > best[0] ** 2:
             best = max(best, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
@@ -92,11 +92,11 @@ def largest_propagator_norm(
     return best, max(ceiling, best[0])
 
 
-def _squared_norms_and_bends(propagator: Propagator, times: Array) -> tuple[Array, Array]:
+def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) -> tuple[Array, Array]:
     """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, evaluated in batches to
     limit the memory."""
     parts = [
-        propagator.squared_norms_and_bounds(part)
+        propagator.squared_norms_and_curvature_bounds(part)
         for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.times_per_batch + 1)
     ]
     return np.concatenate([part[0] for part in parts]), np.concatenate([part[1] for part in parts])
@@ -119,11 +119,11 @@ def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[flo
     if rate_low <= 0 or rate_high >= 0:
         return max((at_low, low), (at_high, high))
     best = (0.0, low)
-    for _ in range(NORM_MAXIMUM_SETTINGS.max_peak_steps):
+    for _ in range(NORM_MAXIMUM_SETTINGS.max_regula_falsi_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm_and_log_slope(t)
         best = max(best, (value, t))
-        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_remaining_rise:
+        if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_relative_rise_in_bracket:
             break
         if rate > 0:
             low = t

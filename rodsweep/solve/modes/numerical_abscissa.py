@@ -7,7 +7,7 @@ import numpy as np
 
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.certificate.box import eigenvalue_box
-from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.tip_layer import tip_layer_ratio
 from ...model.adjoint import hermitian_tip_coefficients
 from ...model.rod import Rod
@@ -21,9 +21,10 @@ class NumericalAbscissaSettings:
     max_shifts: int = 60
     """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
     large."""
-    close_shift: float = 0.05
-    """Relative distance of the last shift above the numerical abscissa: so small that shift + 1/eigenvalue
-    loses no digits by cancellation."""
+    final_shift_distance: float = 0.05
+    """Distance of the next shift above the present estimate a of the numerical abscissa, divided by 1 + |a|:
+    so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
+    at most twice this distance above it."""
     min_positive_ratio: float = 1e-9
     """The largest eigenvalue of the shifted inverse is positive, and not a rounding error, if it exceeds this
     fraction of the modulus of the most negative eigenvalue."""
@@ -40,7 +41,7 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
     with `Rod.g` < 0.
     """
-    form = dense_form(rod, pencil)
+    form = dense_eigenproblem(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
@@ -59,8 +60,8 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         abscissa = shift + 1 / float(values[0])
         close = (
             abscissa
-            + NUMERICAL_ABSCISSA_SETTINGS.close_shift * abs(abscissa)
-            + NUMERICAL_ABSCISSA_SETTINGS.close_shift
+            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance * abs(abscissa)
+            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance
         )
         if shift - abscissa <= 2 * (close - abscissa):
             return abscissa

@@ -28,7 +28,10 @@ class PropagatorSettings:
 
     def __post_init__(self) -> None:
         if self.taylor_terms % 4 or 0.5**self.taylor_terms > ROUND_OFF * factorial(self.taylor_terms):
-            raise ValueError(f"{self.taylor_terms} Taylor terms leave more than rounding error of exp")
+            raise ValueError(
+                f"taylor_terms = {self.taylor_terms} is not allowed: it must be a multiple of 4, and so "
+                "large that the remainder of exp is below rounding error"
+            )
 
 
 PROPAGATOR_SETTINGS = PropagatorSettings()
@@ -105,7 +108,7 @@ class Propagator:
         u, sizes, _ = np.linalg.svd(self.propagators_at(np.array([time]))[0])
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
-    def squared_norms_and_bounds(self, times: Array) -> tuple[Array, Array]:
+    def squared_norms_and_curvature_bounds(self, times: Array) -> tuple[Array, Array]:
         """Returns (N^2, c), (times,) each, at each of `times`, in tau2.
 
         N = |exp(L t)|. c bounds a curvature: f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1.

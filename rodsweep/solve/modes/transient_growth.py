@@ -15,7 +15,7 @@ from math import ceil, exp, inf, isnan, log, nan, pi, sqrt
 
 import numpy as np
 
-from ...discretization.straight.dense_form import AnyPencil, dense_form
+from ...discretization.straight.dense_eigenproblem import AnyPencil, dense_eigenproblem
 from ...discretization.straight.transverse_mesh import AnyMesh, pencil_on
 from ...model.rod import Rod
 from .norm_maximum import NORM_MAXIMUM_SETTINGS, largest_propagator_norm
@@ -37,9 +37,9 @@ class GrowthSettings:
     """Tolerance of `largest_propagator_norm`, as a fraction of the requested accuracy."""
     min_search_tolerance: float = 2e-13
     """Smallest tolerance of `largest_propagator_norm`: rounding error of the norm."""
-    first_order_increase: int = 4
+    order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
-    order_factor: float = 1.4
+    further_order_ratio: float = 1.4
     """Element order of a further mesh, divided by the order of the mesh before; boundary layers at the tip
     need high orders."""
     max_meshes: int = 5
@@ -100,9 +100,9 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     coarse = None
     for step in range(GROWTH_SETTINGS.max_meshes):
         order = (
-            mesh.order + GROWTH_SETTINGS.first_order_increase
+            mesh.order + GROWTH_SETTINGS.order_increase
             if step == 0
-            else ceil(GROWTH_SETTINGS.order_factor * mesh.order)
+            else ceil(GROWTH_SETTINGS.further_order_ratio * mesh.order)
         )
         last = mesh
         mesh = replace(mesh, order=order)
@@ -134,7 +134,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
 
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
     """exp(L t) of the rod on the mesh of `pencil`, in coordinates in which the Gamma norm is Euclidean."""
-    form = dense_form(rod, pencil)
+    form = dense_eigenproblem(rod, pencil)
     return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 

@@ -49,7 +49,7 @@ from .step_record import take_steps
 
 _get_dense = petsc_function("MatDenseGetArray")
 _restore_dense = petsc_function("MatDenseRestoreArray")
-_object_state = petsc_function("PetscObjectStateGet")
+_get_object_state = petsc_function("PetscObjectStateGet")
 
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
@@ -103,7 +103,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     n = c.unknowns
     at = context + OUTPUTS_OFFSET
     outputs = integers_at(at, 1)
-    _object_state(B, at)
+    _get_object_state(B, at)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     untouched = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
@@ -123,7 +123,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
         M[i, i] += shift
     _restore_dense(B, at)
     c.last_matrix = B
-    _object_state(B, context + MATRIX_STATE_OFFSET)
+    _get_object_state(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
     c.shift = shift
     c.factorisations += 1
@@ -152,6 +152,7 @@ class CallbackWorkspace:
         self._set_context_fields({name: array.ctypes.data for name, array in self._arrays.items()})
 
     def _set_context_fields(self, values: Mapping[str, float]) -> None:
+        """Sets fields of the context record; values: new values by name of the field."""
         for name, value in values.items():
             self.context[name] = value
 
@@ -202,6 +203,7 @@ class CallbackWorkspace:
             call_petsc("SNESSetConvergenceTest", snes.handle, test_newton_convergence.address, context, 0)
 
     def _register_stage_solver(self, ts: "PETSc.TS", snes: "PETSc.SNES", matrix: "PETSc.Mat") -> None:
+        """Registers `solve_stage` as the method of `snes`, a SNES of type shell."""
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
         objects = ts, matrix, ksp, *self._vectors

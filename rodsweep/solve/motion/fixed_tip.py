@@ -28,19 +28,19 @@ class FixedTipSettings:
     max_tip_distance: float = 0.98
     """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
     cannot be bent."""
-    first_angle: float = 0.8
+    start_angle: float = 0.8
     """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
     straight rod cannot move towards the clamp."""
     first_step: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
-    least_step: float = 1e-3
+    min_step: float = 1e-3
     """If a step of the target, as a fraction of the path, must be smaller than this, the search ends at the
     last target reached."""
     max_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
     target_tolerance: float = 1e-10
     """Tolerance of Newton's method: distance of the tip from its target, in L."""
-    largest_turn: float = 1.0
+    max_rotation: float = 1.0
     """Newton's method fails if a Newton step changes theta by more than this, in rad: a longer step may lead
     to a different shape."""
 
@@ -56,7 +56,7 @@ def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     bending = _BentRod(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP_SETTINGS.first_angle * (1 - beam.mesh.node_positions)
+    Pi = 2 * side * FIXED_TIP_SETTINGS.start_angle * (1 - beam.mesh.node_positions)
     first = bending.tip_position(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
@@ -64,7 +64,7 @@ def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     force = np.zeros(2)
     reached = 0.0
     step = FIXED_TIP_SETTINGS.first_step
-    while reached < 1 and step > FIXED_TIP_SETTINGS.least_step:
+    while reached < 1 and step > FIXED_TIP_SETTINGS.min_step:
         share = min(1.0, reached + step)
         radius, angle = start + share * (end - start)
         found = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
@@ -116,7 +116,7 @@ class _BentRod:
             misplaced = target - self.tip_position(Pi)
             change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
             # A step that turns the rod by a radian is outside the range of the linearisation.
-            if not np.abs(self.angle_matrix @ change[:size]).max() < FIXED_TIP_SETTINGS.largest_turn:
+            if not np.abs(self.angle_matrix @ change[:size]).max() < FIXED_TIP_SETTINGS.max_rotation:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]

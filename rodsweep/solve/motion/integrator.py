@@ -30,7 +30,7 @@ class IntegratorSettings:
     """Settings for runs of the time integration: tolerances, limits, and the run in
     `relax_fast_components`."""
 
-    stage_rounding: float = 1e-9
+    stagnation_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
     the largest component of the initial state, is below this."""
     first_step_ratio: float = 1e-3
@@ -57,7 +57,7 @@ class IntegratorSettings:
 INTEGRATOR_SETTINGS = IntegratorSettings()
 
 
-RELAXATION = TimeScheme(
+RELAXATION_SCHEME = TimeScheme(
     "beuler", "", tolerance=INTEGRATOR_SETTINGS.relaxation_tolerance, prefix="cycle_relaxation_"
 )
 """Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
@@ -95,7 +95,8 @@ class RunLimit:
     max_steps: int = INTEGRATOR_SETTINGS.max_steps
 
 
-UNLIMITED = RunLimit()
+DEFAULT_RUN_LIMIT = RunLimit()
+"""Limit of a run by the default maximum number of steps only."""
 
 
 class Integrator:
@@ -109,11 +110,12 @@ class Integrator:
         self.matrix = PETSc.Mat().createDense((unknowns, unknowns), comm=PETSc.COMM_SELF)
         self.matrix.setUp()
         self.matrix.assemble()
-        self.ts = self._create()
+        self.ts = self._create_ts()
         self.is_broken = False
-        self._limit = UNLIMITED
+        self._limit = DEFAULT_RUN_LIMIT
 
-    def _create(self) -> "PETSc.TS":
+    def _create_ts(self) -> "PETSc.TS":
+        """A TS with the options of the scheme, which the user's PETSc options override."""
         database = PETSc.Options()
         prefix = self.scheme.prefix
         ts = PETSc.TS().create(comm=PETSc.COMM_SELF)
@@ -146,7 +148,7 @@ class Integrator:
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
     def run(
-        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = UNLIMITED
+        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = DEFAULT_RUN_LIMIT
     ) -> Trajectory:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
         returned as a `RunEnding`, never raised.
@@ -162,7 +164,7 @@ class Integrator:
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * size
-        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stage_rounding * size)
+        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
@@ -183,9 +185,10 @@ class Integrator:
         rows = np.concatenate([[np.append(0.0, z)], take_steps(self.workspace.context)])
         times = np.ascontiguousarray(rows[:, 0])
         states = np.ascontiguousarray(rows[:, 1:])
-        return Trajectory(self._ending(message, states[-1]), times, states, message)
+        return Trajectory(self._run_ending(message, states[-1]), times, states, message)
 
-    def _ending(self, message: str, end: Array) -> RunEnding:
+    def _run_ending(self, message: str, end: Array) -> RunEnding:
+        """Reason why the run ended. message: PETSc's error message, or empty. end: last state."""
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
         if message or reason < 0 or not np.isfinite(end).all():
@@ -236,5 +239,5 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     """
     duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
     step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
-    run = integrator(beam.mesh, RELAXATION).run(beam, z, duration, step)
+    run = integrator(beam.mesh, RELAXATION_SCHEME).run(beam, z, duration, step)
     return run.states[-1] if run.ending == RunEnding.reached else z

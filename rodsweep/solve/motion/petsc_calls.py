@@ -23,6 +23,7 @@ def _int_function(name: str, *arguments: Any) -> Any:
 
 
 def _compiled_symbol(name: str, signature: Any) -> Any:
+    """The C function `name` for compiled code. signature: numba's signature of the function."""
     binding.add_symbol(name, ctypes.cast(getattr(PETSC_LIBRARY, name), ctypes.c_void_p).value)
     return types.ExternalFunction(name, signature)
 
@@ -33,7 +34,7 @@ write_array = _int_function("VecGetArray", POINTER, POINTER)
 release_write = _int_function("VecRestoreArray", POINTER, POINTER)
 
 time_of = _int_function("TSGetTime", POINTER, POINTER)
-step_of = _int_function("TSGetTimeStep", POINTER, POINTER)
+time_step_of = _int_function("TSGetTimeStep", POINTER, POINTER)
 solution_of = _int_function("TSGetSolution", POINTER, POINTER)
 context_of_ts = _int_function("TSGetApplicationContext", POINTER, POINTER)
 
@@ -41,12 +42,12 @@ set_ts_reason = _int_function("TSSetConvergedReason", POINTER, PETSC_ENUM)
 
 context_of_snes = _int_function("SNESShellGetContext", POINTER, POINTER)
 stage_residual = _int_function("SNESTSFormFunction", POINTER, POINTER, POINTER, POINTER)
-stage_matrix = _int_function("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
+stage_jacobian = _int_function("SNESTSFormJacobian", POINTER, POINTER, POINTER, POINTER, POINTER)
 right_side_of = _int_function("SNESGetRhs", POINTER, POINTER)
 set_reason = _int_function("SNESSetConvergedReason", POINTER, PETSC_ENUM)
 set_iterations = _int_function("SNESSetIterationNumber", POINTER, INT)
 
 solve_linear = _int_function("KSPSolve", POINTER, POINTER, POINTER)
 
-resized_memory = _compiled_symbol("realloc", typing.signature(POINTER, POINTER, POINTER))
+reallocate_memory = _compiled_symbol("realloc", typing.signature(POINTER, POINTER, POINTER))
 free_memory = _compiled_symbol("free", typing.signature(types.void, POINTER))

@@ -17,7 +17,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.settings import CompiledSettings
 from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from .context import AT_BASE, CONTEXT_DTYPE, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS_OFFSET, states_of, times_of
-from .petsc_calls import context_of_ts, read_array, release_read, solution_of, step_of, time_of
+from .petsc_calls import context_of_ts, read_array, release_read, solution_of, time_of, time_step_of
 from .time_scheme import EXTRAPOLATION_POINTS
 
 
@@ -26,29 +26,29 @@ class StagePredictorSettings(CompiledSettings):
     """Settings for the prediction of Runge-Kutta stages and for the state at which Newton's matrix is
     evaluated."""
 
-    largest_step_ratio: float = 2.0
-    """Stages are extrapolated only if this step is at most `largest_step_ratio` times as long as the last
-    step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
+    max_extrapolated_step_ratio: float = 2.0
+    """Stages are extrapolated only if this step is at most `max_extrapolated_step_ratio` times as long as the
+    last step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
     prediction, with errors of a motion five times as large."""
     matrix_time_fraction: float = 0.5
     """Time at which the state for Newton's matrix is predicted, as a fraction of the step; 0 (the start) for
     methods of a single stage."""
-    ranges: ClassVar = {"largest_step_ratio": (1.0, inf)}
+    ranges: ClassVar = {"max_extrapolated_step_ratio": (1.0, inf)}
 
 
 STAGE_PREDICTOR_SETTINGS = StagePredictorSettings()
 
-NO_POINT = -1
+UNUSED_POINT = -1
 """Value of the unused entries in the array of extrapolation points."""
 
 
 def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
-    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are NO_POINT.
+    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are UNUSED_POINT.
 
     Stage k of this step has the index k, stage k of the last step the index MAX_STAGES + k.
     """
-    points = np.full((MAX_STAGES, MAX_STAGE_POINTS), NO_POINT)
+    points = np.full((MAX_STAGES, MAX_STAGE_POINTS), UNUSED_POINT)
     for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
         known = [*this, *(MAX_STAGES + k for k in last)]
         points[stage, : len(known)] = known
@@ -80,7 +80,7 @@ def begin_step(ts: int) -> int:
     read_array(solution, at)
     states[now] = doubles_at(outputs[0], c.unknowns)
     release_read(solution, at)
-    step_of(ts, at)
+    time_step_of(ts, at)
     c.length = real[0]
     base[:] = states[now]
     if c.stages > 0:
@@ -118,12 +118,14 @@ def predict_stage(c: Any, guess: Array) -> None:
     points = integers_at(c.points, MAX_STAGES * MAX_STAGE_POINTS).reshape(MAX_STAGES, MAX_STAGE_POINTS)[
         c.stages
     ]
-    points = points[: np.sum(points != NO_POINT)]
+    points = points[: np.sum(points != UNUSED_POINT)]
     times = times_of(c)
     now = c.current * MAX_STAGES
     last = MAX_STAGES - now
     # Beyond this ratio the last step is too short to extrapolate from, and PETSc's guess is used.
-    if len(points) and c.length <= STAGE_PREDICTOR_SETTINGS.largest_step_ratio * (times[now] - times[last]):
+    if len(points) and c.length <= STAGE_PREDICTOR_SETTINGS.max_extrapolated_step_ratio * (
+        times[now] - times[last]
+    ):
         # Indices start at the present half; indices of the last step are larger by MAX_STAGES, modulo
         # 2 MAX_STAGES.
         extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)

@@ -39,9 +39,9 @@ from .petsc_calls import (
     set_iterations,
     set_reason,
     solve_linear,
-    stage_matrix,
+    stage_jacobian,
     stage_residual,
-    step_of,
+    time_step_of,
     write_array,
 )
 from .predictor import predict_stage, store_stage
@@ -159,7 +159,7 @@ def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0
-    c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)
+    c.error |= stage_jacobian(snes, X, c.matrix, c.matrix, c.ts)
     read_array(X, at)
     read_array(c.residual, at + 8)
     x = doubles_at(outputs[0], n)
@@ -222,7 +222,7 @@ def solve_stage(snes: int, X: int) -> int:
     context = address[0]
     c = record_at(context, CONTEXT_DTYPE)
     at = context + OUTPUTS_OFFSET
-    step_of(c.ts, at)
+    time_step_of(c.ts, at)
     if doubles_at(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
         c.length = doubles_at(at, 1)[0]
         c.stages = 1
@@ -234,7 +234,7 @@ def solve_stage(snes: int, X: int) -> int:
     iteration = 0
     while reason == ITERATING and not c.error:
         if c.matrix_due != UP_TO_DATE:
-            c.error |= stage_matrix(snes, X, c.matrix, c.matrix, c.ts)
+            c.error |= stage_jacobian(snes, X, c.matrix, c.matrix, c.ts)
         iteration += 1
         reason = convergence_reason(c, iteration, newton_step(c, at, X))
         if reason == ITERATING and iteration >= c.most_iterations:

@@ -16,8 +16,8 @@ from .petsc_calls import (
     context_of_ts,
     free_memory,
     read_array,
+    reallocate_memory,
     release_read,
-    resized_memory,
     set_ts_reason,
     solution_of,
     time_of,
@@ -50,7 +50,7 @@ def store_step(c: Any, at: int, ts: int) -> int:
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
         c.capacity = max(2 * c.capacity, STEP_RECORD_SETTINGS.first_capacity)
-        rows = resized_memory(c.rows, 8 * c.capacity * (n + 1))
+        rows = reallocate_memory(c.rows, 8 * c.capacity * (n + 1))
         if rows == 0:
             return OUT_OF_MEMORY
         c.rows = rows

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-CYCLE_PREFIX = "cycle_"
+CYCLE_OPTIONS_PREFIX = "cycle_"
 """Prefix of PETSc options with which a user overrides the time scheme, for example -cycle_ts_type bdf."""
 
 EXTRAPOLATION_POINTS: Mapping[str, Mapping[int, tuple[tuple[int, ...], tuple[int, ...]]]] = {
@@ -53,7 +53,7 @@ class TimeScheme:
     tolerance: float = 5e-6
     newton_tolerance_ratio: float = 0.1
     equal_steps: bool = False
-    prefix: str = CYCLE_PREFIX
+    prefix: str = CYCLE_OPTIONS_PREFIX
 
     def petsc_options(self, family: str) -> dict[str, str]:
         """PETSc options of this scheme, without prefix. family: TS type in use, which a user may have set in

@@ -15,7 +15,7 @@ from ...discretization.elements.periodic import (
     series_samples_of_columns,
 )
 from ...discretization.nodal_rod import NodalRod
-from ...discretization.plane import write_balance
+from ...discretization.plane_equations import write_balance
 from ...discretization.state_layout import stress_index
 from ...discretization.stress.tip_motion import TipMatrices, write_tip_motion
 from ...model.compiled.compilation import compiled_for_vectors

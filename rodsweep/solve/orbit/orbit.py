@@ -13,7 +13,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...arrays import Array
-from ...discretization.elements.collocation import Collocation, radau_method
+from ...discretization.elements.collocation import CollocationMethod, radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
 from ...discretization.stress.form import StressForm
@@ -77,7 +77,7 @@ class Orbit:
         return self.states_at_interval_starts[:-1]
 
     @property
-    def collocation(self) -> Collocation:
+    def collocation(self) -> CollocationMethod:
         return radau_method(self.stage_count)
 
     @property

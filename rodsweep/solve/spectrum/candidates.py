@@ -32,7 +32,7 @@ class CandidateSettings(CompiledSettings):
     wide_gap: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
-    wide_gap_of_flutter: float = 0.05
+    wide_gap_if_unstable: float = 0.05
     """Like `wide_gap`, for an unstable rod; less than `wide_gap`, because eigenvalues far to the left
     converge last and need a finer mesh."""
     last_line_distance: float = 0.05
@@ -47,11 +47,11 @@ class CandidateSettings(CompiledSettings):
     part, is at most this."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
-    proof_line_errors: float = 3.0
+    proof_line_distance_in_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
     error of w plus `proof_line_distance` * |w|, to the left."""
     proof_line_distance: float = 1e-9
-    """Part of the distance in `proof_line_errors` that is proportional to |w|, divided by |w|."""
+    """Part of the distance in `proof_line_distance_in_errors` that is proportional to |w|, divided by |w|."""
 
 
 CANDIDATE_SETTINGS = CandidateSettings()
@@ -84,14 +84,14 @@ class CountComparison:
 
     count: EigenvalueCount
     found_count: int
-    is_clear: bool
+    is_line_clear: bool
     """Whether the distance of every found eigenvalue from the line of the count is more than twice its
     error."""
 
     @property
     def agrees(self) -> bool:
         """Whether `count` and `found_count` are equal, and every found eigenvalue is clear of the line."""
-        return self.is_clear and self.count.number == self.found_count
+        return self.is_line_clear and self.count.number == self.found_count
 
 
 def candidates_on_mesh(
@@ -149,7 +149,7 @@ def line_for_proof(last: complex, error: float) -> float:
     """
     return min(
         last.real
-        - CANDIDATE_SETTINGS.proof_line_errors * error
+        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
         - CANDIDATE_SETTINGS.proof_line_distance * abs(last),
         0.0,
     )
@@ -167,10 +167,10 @@ def lines_for_count(w: list[complex], modes: int) -> list[float]:
     best first: middles of the widest gaps to the left of the `modes` leading and of all unstable eigenvalues.
 
     w: eigenvalues found, by descending real part. Gaps wider than `wide_gap` (unstable rod:
-    `wide_gap_of_flutter`) are equally good; the rightmost comes first. The last line lies to the left of all
+    `wide_gap_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left of all
     eigenvalues found.
     """
-    wide = CANDIDATE_SETTINGS.wide_gap_of_flutter if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
+    wide = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
     target = min(w[modes - 1].real, 0.0)
     below = [target] + [value.real for value in w if value.real < target]
     gaps = []

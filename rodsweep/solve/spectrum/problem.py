@@ -19,7 +19,7 @@ from ...determinant.arm.count.count import is_countable, largest_w_of_count
 from ...determinant.arm.determinant import arm_determinant
 from ...determinant.arm.hull.hull import hull_of
 from ...determinant.arm.roots import refine_mesh_eigenvalues as roots_of_arm
-from ...determinant.certificate.box import squared_amplification
+from ...determinant.certificate.box import frequency_bound
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
@@ -72,10 +72,10 @@ class TransverseProblem(ABC):
         return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
-    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
+    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw` of a mesh, (n,).
 
-        most_waves: largest wave number |q| that the mesh represents.
+        max_q: largest wave number |q| that the mesh represents.
         """
 
     @abstractmethod
@@ -106,9 +106,9 @@ class UniformProblem(TransverseProblem):
     def __init__(self, rod: Rod):
         self.rod = rod
         growth, self._wave_number = most_amplified_wave(rod)
-        self.shift = KRYLOV_SETTINGS.shift_above_growth * growth
-        self._amplification_bound = sqrt(squared_amplification(rod))
-        self.has_bound = isfinite(self._amplification_bound)
+        self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * growth
+        self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
+        self.has_bound = isfinite(self._sqrt_frequency_bound)
 
     def mesh_for(self, modes: int, accuracy: float) -> Resolution:
         return resolution_for(expected_wave_number(modes, self._wave_number), accuracy)
@@ -119,9 +119,9 @@ class UniformProblem(TransverseProblem):
         asked = resolution_for(float(waves.max()), accuracy)
         return max(asked, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
-    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
+    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""
-        return refined_roots(raw, self.rod.coefficients, self._amplification_bound, most_waves)
+        return refined_roots(raw, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
     def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
@@ -145,7 +145,7 @@ class ArmProblem(TransverseProblem):
             COMPLETENESS_SETTINGS.additional_eigenvalues if to_prove and self.has_bound else 0
         )
         growth, _ = most_amplified_local_waves(rod)
-        self.shift = KRYLOV_SETTINGS.shift_above_growth * float(growth.max())
+        self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
@@ -154,13 +154,11 @@ class ArmProblem(TransverseProblem):
         """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
-    def refined_roots(self, raw: Complex, most_waves: float) -> Roots:
+    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
         """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`; if a
         proof is requested, only from the eigenvalues that the proof needs."""
         in_proof, largest = self._eigenvalues_for_proof(raw)
-        return roots_of_arm(
-            np.where(in_proof, raw, np.inf), self._determinant, self._hull, most_waves, largest
-        )
+        return roots_of_arm(np.where(in_proof, raw, np.inf), self._determinant, self._hull, max_q, largest)
 
     def _eigenvalues_for_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest

@@ -19,7 +19,7 @@ from .search_settings import SEARCH_SETTINGS
 from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
-__all__ = ["Search", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
+__all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
     if rod.is_uniform and not rod.is_uniform_and_linear:
         return _spectrum_by_equivalent_rod(rod, request)
-    return outcome_or_failure(lambda: Search(rod, request).outcome(), failed)
+    return outcome_or_failure(lambda: SpectrumSearch(rod, request).outcome(), failed)
 
 
 def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
@@ -62,10 +62,10 @@ def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first rod takes no extra time."""
-    Search(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
+    SpectrumSearch(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(2, 1e-4, certify=True)).outcome()
 
 
-class Search:
+class SpectrumSearch:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
     requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`.
     """
@@ -148,8 +148,8 @@ class Search:
         error = found.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error
-        settings = SEARCH_SETTINGS
-        allowed = settings.largest_displacement if self.problem.has_bound else settings.unbounded_displacement
+        limits = SEARCH_SETTINGS
+        allowed = limits.max_displacement if self.problem.has_bound else limits.max_displacement_without_bound
         coarseness = float(found.roots.displacement[: self.modes].max())
         return max(error, coarseness / (self.request.accuracy if self.needs_vectors else allowed))
 
@@ -209,10 +209,10 @@ class Search:
         if self.disagreement is not None:
             lost = self.disagreement
             number, found = lost.count.number, lost.found_count
-            counted = f"the winding number counts {number} eigenvalues where {found} are found"
+            counted = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
         if self.is_leader_unresolved:
-            why = "no mesh resolves all eigenvalues that may lead"
+            why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         return failed_spectrum(SpectrumStatus.failed, self.request, self.failure_reason)
 

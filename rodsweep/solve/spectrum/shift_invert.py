@@ -24,7 +24,7 @@ from ..backend.petsc import PETSc, SLEPc, sparse_package
 class KrylovSettings:
     """Settings of Krylov-Schur by shift-and-invert, and of the solver objects stored for later rods."""
 
-    shift_above_growth: float = 1.05
+    shift_over_growth_rate: float = 1.05
     """Shift divided by the growth rate of the most amplified wave. This growth rate is above most spectra."""
     max_dense_unknowns: int = 300
     """Matrices with up to this number of unknowns are factorised as dense: as fast as the sparse
@@ -42,15 +42,15 @@ class KrylovSettings:
     refined."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
-    vectors_for_infinity: int = 2
+    max_vectors_beyond_finite: int = 2
     """The number of Krylov vectors is at most the number of finite eigenvalues plus this. Applying
     shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
     Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
-    first_vector_width: float = 3.3
+    start_vector_width: float = 3.3
     """Width of the first Krylov vector, a displacement concentrated at the tip, divided by the distance
     between nodes. Every mode moves the tip, and the vector is as smooth as the wanted modes, which saves two
     Krylov steps of eleven."""
-    first_vector_rotation: float = 0.1
+    start_vector_rotation: float = 0.1
     """Ratio of rotation and displacement in the first Krylov vector. Without rotation only rounding errors
     would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
     max_uniform_solvers: int = 24
@@ -58,17 +58,17 @@ class KrylovSettings:
     few."""
     max_arm_solvers: int = 8
     """Maximum number of stored solvers of arms, one per mesh."""
-    stored_dense_matrices: int = 9
+    dense_matrices_per_solver: int = 9
     """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constant
     matrices."""
-    stored_numbers_per_entry: int = 11
+    numbers_per_nonzero_entry: int = 11
     """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and
     constant matrices."""
 
 
 KRYLOV_SETTINGS = KrylovSettings()
 
-SPECTRUM_PREFIX = "spectrum_"
+SPECTRUM_OPTIONS_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
 
 
@@ -99,12 +99,12 @@ class PencilPattern(Protocol):
 class LoadedPencil(NamedTuple):
     """Data of the rod whose matrices a solver contains.
 
-    finite_eigenvalues: number of finite eigenvalues. shift: shift in the units of the pencil's eigenvalues.
-    deflection_ratio: eigenvalues of the rod = eigenvalues of the pencil / deflection_ratio^2; y of the rod =
-    y of the pencil * deflection_ratio.
+    finite_eigenvalue_count: number of finite eigenvalues. shift: shift in the units of the pencil's
+    eigenvalues. deflection_ratio: eigenvalues of the rod = eigenvalues of the pencil / deflection_ratio^2; y
+    of the rod = y of the pencil * deflection_ratio.
     """
 
-    finite_eigenvalues: int
+    finite_eigenvalue_count: int
     shift: float
     deflection_ratio: float = 1.0
 
@@ -135,20 +135,21 @@ class ShiftInvertSolver(ABC):
             [n, n], csr=(self.row_starts, self.row_starts[:-1], np.ones(n)), comm=PETSc.COMM_SELF
         )
         first = np.zeros(n)
-        distance = (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.first_vector_width
+        distance = (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.start_vector_width
         first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.node_count : 2 * pattern.node_count] = (
-            KRYLOV_SETTINGS.first_vector_rotation * first[: pattern.node_count]
+            KRYLOV_SETTINGS.start_vector_rotation * first[: pattern.node_count]
         )
         self.start_vector = PETSc.Vec().createWithArray(first, comm=PETSc.COMM_SELF)
-        self.krylov_size_option = PETSc.Options(SPECTRUM_PREFIX).getInt("eps_ncv", 0)
-        self.tolerance_option = PETSc.Options(SPECTRUM_PREFIX).getReal("eps_tol", 0.0)
-        self.eps = self._solver("petsc" if self.is_dense else package)
+        self.krylov_size_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getInt("eps_ncv", 0)
+        self.tolerance_option = PETSc.Options(SPECTRUM_OPTIONS_PREFIX).getReal("eps_tol", 0.0)
+        self.eps = self._create_eps("petsc" if self.is_dense else package)
         self.loaded_pencil = LoadedPencil(0, 0.0)
 
-    def _solver(self, package: str | None) -> "SLEPc.EPS":
+    def _create_eps(self, package: str | None) -> "SLEPc.EPS":
+        """SLEPc's Krylov-Schur solver with shift-and-invert; package: PETSc's name of the LU package."""
         eps = SLEPc.EPS().create(PETSc.COMM_SELF)
-        eps.setOptionsPrefix(SPECTRUM_PREFIX)
+        eps.setOptionsPrefix(SPECTRUM_OPTIONS_PREFIX)
         eps.setProblemType(SLEPc.EPS.ProblemType.GNHEP)
         eps.setType(SLEPc.EPS.Type.KRYLOVSCHUR)
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
@@ -185,13 +186,13 @@ class ShiftInvertSolver(ABC):
         self.loaded_pencil = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        most = self.loaded_pencil.finite_eigenvalues
+        most = self.loaded_pencil.finite_eigenvalue_count
         requested = min(requested, most - 1)  # a conjugate pair may add one
         spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
         tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
         krylov = self.krylov_size_option or max(2 * requested, requested + spare)
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
-        krylov = min(krylov, most + KRYLOV_SETTINGS.vectors_for_infinity)
+        krylov = min(krylov, most + KRYLOV_SETTINGS.max_vectors_beyond_finite)
         self.eps.setDimensions(requested, krylov, krylov)
         self.eps.setInitialSpace(self.start_vector)
         self.eps.solve()
@@ -221,9 +222,9 @@ class ShiftInvertSolver(ABC):
         n = len(self.row_starts) - 1
         krylov = self.eps.getDimensions()[1] + 1
         matrices = (
-            KRYLOV_SETTINGS.stored_dense_matrices * n * n
+            KRYLOV_SETTINGS.dense_matrices_per_solver * n * n
             if self.is_dense
-            else KRYLOV_SETTINGS.stored_numbers_per_entry * len(self.indices)
+            else KRYLOV_SETTINGS.numbers_per_nonzero_entry * len(self.indices)
         )
         return 8 * (matrices + 2 * n * krylov + 4 * krylov**2)
 

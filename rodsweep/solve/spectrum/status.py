@@ -24,7 +24,7 @@ class SpectrumStatus(PointStatus):
     )
     modes_missing = (
         4,
-        "fewer eigenvalues are found than the winding number counts, so no eigenvalue is stored; request "
-        "more modes",
+        "eigenvalues are missing: fewer are found than the winding number counts, or no mesh resolves all "
+        "that may lead; no eigenvalue is stored; request more modes",
     )
     failed = 5, "the solver failed, and results that it did not find are missing; the message says why"

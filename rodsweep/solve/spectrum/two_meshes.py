@@ -67,6 +67,7 @@ def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 
 def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
+    """The result of `solve_on_two_meshes`; raises Unsolvable if no mesh gives enough eigenvalues."""
     problem = transverse_problem(rod)
     modes = request.modes
     aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy

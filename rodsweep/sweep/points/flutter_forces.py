@@ -50,10 +50,10 @@ def rods_needing_flutter_force(
     """
     if section is None or section.load_key not in LOAD_OF_RATIO:
         return []
-    from ...verdict.relative_load import plane_rods
+    from ...verdict.relative_load import rods_by_plane
 
     shapes = ((arm, taper) for arm in _unloaded_arms(section) for taper in tapers)
-    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in plane_rods(arm, build, taper)))
+    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, build, taper)))
 
 
 def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
@@ -89,10 +89,10 @@ def flutter_force_of_arm(
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
     known: forces of all rods of `rods_needing_flutter_force`. build: as in `rods_needing_flutter_force`.
     """
-    from ...verdict.relative_load import plane_rods
+    from ...verdict.relative_load import rods_by_plane
 
     first = inf
-    for rod, scale in plane_rods(arm, build, taper):
+    for rod, scale in rods_by_plane(arm, build, taper):
         found = known[rod]
         if found.failure:
             return found

@@ -212,7 +212,7 @@ class DiagramCurves:
         from ...determinant.parameter_plane import PlaneAxis
         from ...solve.hopf.bautin_curves import (
             BautinCurve,
-            BautinSpace,
+            BautinProblem,
             as_curve_point,
             bautin_curve,
             lies_on_curve,
@@ -223,7 +223,7 @@ class DiagramCurves:
         value_in_plane = float(getattr(plane.rod, name))
         third = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
         all_values = np.append(values, value_in_plane)
-        space = BautinSpace(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
+        space = BautinProblem(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
         curves: list[BautinCurve] = []
         for start in [
             as_curve_point(found, value_in_plane) for curve in criticalities for found in curve.points

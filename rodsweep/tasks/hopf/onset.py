@@ -8,9 +8,9 @@ needed, so that files can be merged without PETSc.
 import numpy as np
 
 from ...arrays import Complex
-from ...determinant.stability_changes import CoefficientsOverForce, ForceChange, onset_between
+from ...determinant.stability_changes import CoefficientsAlongForce, StabilityChange, onset_between
 from ...discretization.elements.resolution import expected_wave_number, resolution_for
-from ...discretization.straight.dense_form import dense_form
+from ...discretization.straight.dense_eigenproblem import dense_eigenproblem
 from ...discretization.straight.transverse_mesh import pencil_on
 from ...model.dispersion import most_amplified_wave
 from ...model.rod import Rod
@@ -27,8 +27,8 @@ MESH_ACCURACY = 1e-6
 
 
 def locate_onset(
-    rods: CoefficientsOverForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
-) -> ForceChange | None:
+    rods: CoefficientsAlongForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
+) -> StabilityChange | None:
     """The force between the forces `ends` at which the two leading real eigenvalues merge into a pair; None
     if no such force is found.
 
@@ -51,7 +51,7 @@ def locate_onset(
     return None
 
 
-def _leads(rod: Rod, change: ForceChange) -> bool:
+def _leads(rod: Rod, change: StabilityChange) -> bool:
     """Whether the double eigenvalue `change` is the leading eigenvalue of the rod at this force. Between two
     forces far from each other, other eigenvalues can merge too."""
     pair = leading_pair_on_mesh(rod.with_coordinate("F", change.F))
@@ -62,7 +62,7 @@ def leading_pair_on_mesh(rod: Rod) -> Complex:
     """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
     MESH_ACCURACY."""
     wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
-    form = dense_form(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
+    form = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
     inverses = np.linalg.eigvals(shifted_inverse(form.A, form.B, 0.0)).astype(complex)
     w = 1 / inverses[inverses != 0]
     return w[np.lexsort((-w.imag, -w.real))[:2]]

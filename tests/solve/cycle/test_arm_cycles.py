@@ -10,16 +10,16 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
-from rodsweep.discretization.at_jumps import interpolate_stress, stresses_beside_jumps
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_with_edges
-from rodsweep.discretization.plane import write_balance, write_balance_derivative
+from rodsweep.discretization.plane_equations import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
+from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stresses_beside_jumps
 from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
-from rodsweep.model.material.response import LocalSection, stress_beyond_rest
+from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.kinds import ChangeKind

@@ -20,7 +20,7 @@ from rodsweep.solve.hopf import bautin_curves, generalised
 from rodsweep.solve.hopf.bautin_curves import (
     BautinCurvePoint,
     BautinEnd,
-    BautinSpace,
+    BautinProblem,
     bautin_curve,
     lies_on_curve,
 )
@@ -317,9 +317,9 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
         return bautin_curves._CurvePoint(v, point)
 
-    monkeypatch.setattr(BautinSpace, "solve_point", on_parabola)
+    monkeypatch.setattr(BautinProblem, "solve_point", on_parabola)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
-    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
+    space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5, 0.6]), 1e-10)
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
     curve = bautin_curve(space, start.point)
     assert (
@@ -348,9 +348,9 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         point = BautinCurvePoint(values=v[:3], errors=np.zeros(3), frequency=1.0, landau_imag=0.0)
         return bautin_curves._CurvePoint(v, point)
 
-    monkeypatch.setattr(BautinSpace, "solve_point", on_circle)
+    monkeypatch.setattr(BautinProblem, "solve_point", on_circle)
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
-    space = BautinSpace(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
+    space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
     assert curve.end_reasons == (BautinEnd.closed, BautinEnd.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5

@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 from surveyed import RODS, few
 
-from rodsweep.discretization.straight.dense_form import dense_form
+from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.tip_layer import tip_layer_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import tip_layer_factor
@@ -54,8 +54,8 @@ def numbers(result):
     return {
         "eigenvalues": result.spectrum.eigenvalues,
         "right": vectors.right_modes,
-        "h2": vectors.deformation[0],
-        "Pi": vectors.deformation[1],
+        "h2": vectors.mode_strains[0],
+        "Pi": vectors.mode_strains[1],
         "left": vectors.left_modes,
         "pairing": vectors.pairing,
         "condition": vectors.condition,
@@ -146,7 +146,7 @@ def test_the_bending_strain_jumps_with_the_stiffness_and_the_moment_does_not():
     result = solve_modes(rod, TIGHT)
     pencil = pencil_on(mesh_for(rod, 12.0, 1e-20))
     beside = np.array([0.4 - 1e-9, 0.4])
-    strain = mode_vectors(rod, pencil, result.spectrum.eigenvalues, beside).deformation
+    strain = mode_vectors(rod, pencil, result.spectrum.eigenvalues, beside).mode_strains
     assert strain[1, :, 1] == pytest.approx(strain[1, :, 0] / 0.2, rel=1e-6)
     assert strain[0, :, 1] == pytest.approx(strain[0, :, 0] / 0.5, rel=1e-6)
 
@@ -168,7 +168,7 @@ def test_unshearable_limit_of_an_arm_is_reached_at_first_order():
     arm = {"F": 10.0, "k1": 1e4, "gamma3": 1e-2, "taper": 0.5}
     limit = solve_modes(Rod(k2=INF, **arm), TIGHT)
     assert limit.status == SpectrumStatus.ok
-    assert (limit.vectors.deformation[0] == 0).all()
+    assert (limit.vectors.mode_strains[0] == 0).all()
     far, near = (solve_modes(Rod(k2=k2, **arm), TIGHT) for k2 in (1e5, 1e6))
     for name, number in numbers(limit).items():
         ratio = abs(numbers(far)[name] - number).max() / abs(numbers(near)[name] - number).max()
@@ -215,7 +215,7 @@ def test_the_abscissa_of_a_slaved_arm_is_the_largest_quotient(rod):
     found = solve_modes(rod, TIGHT).growth.numerical_abscissa
     mesh = mesh_for(rod, 160.0, 1e-12)
     assert numerical_abscissa(rod, pencil_on(mesh)) == pytest.approx(found, rel=1e-9)
-    form = dense_form(rod, pencil_on(mesh))
+    form = dense_eigenproblem(rod, pencil_on(mesh))
     A = form.A
     B = form.B
     n = mesh.node_count

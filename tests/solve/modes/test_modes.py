@@ -15,7 +15,7 @@ from rodsweep.determinant.value import distance_to_next_root
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule, lobatto_points
 from rodsweep.discretization.elements.resolution import Resolution
-from rodsweep.discretization.straight.dense_form import dense_form
+from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import (
     assemble_pencil,
     factors_to_unit_tip,
@@ -217,9 +217,9 @@ def test_modes_are_those_of_appendix_c(parameters):
         y, theta, s, m = ClosedForm(rod, w).fields(POINTS)
         assert relative(result.vectors.right_modes[0, n], y) < 1e-11
         assert relative(result.vectors.right_modes[1, n], theta) < 1e-11
-        assert relative(result.vectors.deformation[1, n], m) < 1e-11
+        assert relative(result.vectors.mode_strains[1, n], m) < 1e-11
         if rod.c2:
-            assert relative(result.vectors.deformation[0, n], rod.c2 * s) < 1e-11
+            assert relative(result.vectors.mode_strains[0, n], rod.c2 * s) < 1e-11
         y, theta, *_ = ClosedForm(rod, w, 1).fields(POINTS)
         assert relative(result.vectors.left_modes[0, n], y) < 1e-11
         assert relative(result.vectors.left_modes[1, n], theta) < 1e-11
@@ -279,7 +279,7 @@ def test_left_null_vector_of_the_pencil_has_the_adjoint_ends():
     left_over = []
     for order in (8, 12, 16):
         pencil = assemble_pencil(1, order)
-        form = dense_form(rod, pencil)
+        form = dense_eigenproblem(rod, pencil)
         _, z = null_vectors(form.A, form.B, w)
         force = shear_force(pencil, z[:, None].astype(complex), np.linspace(0, 1, 11))
         left_over.append(abs(force[-1, 0]) / abs(force).max())
@@ -405,7 +405,7 @@ def test_abscissa_is_the_supremum_over_the_domain(parameters):
 def test_unshearable_limit_is_reached_at_first_order():
     """k2 -> inf at gamma3 = 1e-2, every number; h2 = c2 s is exactly 0 there."""
     limit = solve_modes(Rod(F=15.0, k1=1e4, k2=INF, gamma3=1e-2), TIGHT)
-    assert (limit.vectors.deformation[0] == 0).all()
+    assert (limit.vectors.mode_strains[0] == 0).all()
     differences = []
     for k2 in (1e5, 1e6):
         near = solve_modes(Rod(F=15.0, k1=1e4, k2=k2, gamma3=1e-2), TIGHT)
@@ -416,7 +416,7 @@ def test_unshearable_limit_is_reached_at_first_order():
                 abs(near.vectors.condition - limit.vectors.condition).max(),
                 abs(near.vectors.left_modes - limit.vectors.left_modes).max(),
                 abs(near.vectors.right_modes - limit.vectors.right_modes).max(),
-                abs(near.vectors.deformation[0]).max(),
+                abs(near.vectors.mode_strains[0]).max(),
             ]
         )
     assert np.array(differences[0]) / np.array(differences[1]) == pytest.approx(10, rel=0.01)
@@ -428,7 +428,7 @@ def test_without_rotational_drag_only_the_abscissa_jumps():
     near, nearer = (
         solve_modes(Rod(F=15.0, k1=1e4, k2=200.0, gamma3=gamma3), TIGHT) for gamma3 in (1e-6, 1e-8)
     )
-    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.deformation")
+    vectors = ("vectors.condition", "vectors.left_modes", "vectors.right_modes", "vectors.mode_strains")
     for name in ("spectrum.eigenvalues", *vectors, "growth.transient_growth"):
         value = attrgetter(name)
         far, close = (np.max(abs(value(x) - value(limit))) for x in (near, nearer))
@@ -585,7 +585,7 @@ def test_no_time_within_an_interval_exceeds_its_bound(seed):
     propagator = toy(generator)
     abscissa = abscissa_of(propagator)
     for t, h in ((0.1, 1e-3), (0.1, 0.03), (0.4, 0.2), (1.0, 1.0)):
-        squares, bends = propagator.squared_norms_and_bounds(np.array([t, t + h]))
+        squares, bends = propagator.squared_norms_and_curvature_bounds(np.array([t, t + h]))
         inside = brute_force(propagator, np.linspace(t, t + h, 60)) ** 2
         assert squares == pytest.approx(inside[[0, -1]], rel=1e-9)
         for bend in (bends[0], INF):  # both orders together, and the first alone
@@ -600,7 +600,7 @@ def test_the_bound_is_reached_round_the_peak_of_a_pair():
     propagator = toy([[0.0, 9.0], [-1 / 9, 0.0]])
     h = 1e-4
     ends = np.pi / 2 + np.array([-h / 2, h / 2])
-    squares, bends = propagator.squared_norms_and_bounds(ends)
+    squares, bends = propagator.squared_norms_and_curvature_bounds(ends)
     bound = peak_module._squared_norm_bound(
         np.array([h]), *squares[:, None], bends[:1], abscissa_of(propagator)
     )
@@ -624,10 +624,12 @@ def test_the_bend_is_that_of_the_most_concave_square():
     matrices = [expm(propagator.generator * x) for x in (t - h, t, t + h)]
     low, middle, high = (E.T @ E for E in matrices)
     exact = -np.linalg.eigvalsh((low - 2 * middle + high) / h**2)[0]
-    assert propagator.squared_norms_and_bounds(np.array([t]))[1][0] == pytest.approx(exact, rel=1e-4)
+    assert propagator.squared_norms_and_curvature_bounds(np.array([t]))[1][0] == pytest.approx(
+        exact, rel=1e-4
+    )
     assert exact > 1
     symmetric = toy(np.diag([-1.0, -2.0]) + 0.1 * np.ones((2, 2)))
-    assert symmetric.squared_norms_and_bounds(np.array([t]))[1][0] == 0
+    assert symmetric.squared_norms_and_curvature_bounds(np.array([t]))[1][0] == 0
 
 
 def test_a_leading_pair_next_to_its_threshold_is_followed_for_half_a_turn_only():
@@ -737,7 +739,7 @@ def test_a_point_that_fails_is_a_status():
     assert (
         result.vectors.right_modes.shape
         == result.vectors.left_modes.shape
-        == result.vectors.deformation.shape
+        == result.vectors.mode_strains.shape
         == (2, 4, NODES)
     )
 

@@ -14,7 +14,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.motion.context import MAX_STAGE_POINTS
 from rodsweep.solve.motion.integrator import (
-    RELAXATION,
+    RELAXATION_SCHEME,
     Integrator,
     RunEnding,
     RunLimit,
@@ -299,7 +299,7 @@ def test_users_options_override_the_method(petsc_options):
     assert integrator(grid, TimeScheme()).ts.getType() == "arkimex"
     petsc_options("cycle_ts_type", "bdf")
     assert integrator(grid, TimeScheme()).ts.getType() == "bdf"
-    assert integrator(grid, RELAXATION).ts.getType() == "beuler"
+    assert integrator(grid, RELAXATION_SCHEME).ts.getType() == "beuler"
 
 
 def test_newtons_method_may_be_petscs(petsc_options):

@@ -11,7 +11,7 @@ from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh
-from rodsweep.solve.motion.integrator import RELAXATION, Integrator, RunEnding
+from rodsweep.solve.motion.integrator import RELAXATION_SCHEME, Integrator, RunEnding
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.motion.time_scheme import TimeScheme
 
@@ -22,7 +22,7 @@ RUBBER = Rod(
 DURATION = 0.005
 
 
-@pytest.mark.parametrize("scheme", [RELAXATION, TimeScheme("arkimex", "4", tolerance=1e-4)])
+@pytest.mark.parametrize("scheme", [RELAXATION_SCHEME, TimeScheme("arkimex", "4", tolerance=1e-4)])
 def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     """From a first step of twice the duration, the iterates at the jump of the material become infinite."""
     mesh = motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
-from rodsweep.discretization.plane import write_jacobian
+from rodsweep.discretization.plane_equations import write_jacobian
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.parameters import NONLINEAR_PARAMETERS
 from rodsweep.model.rod import Rod

@@ -44,13 +44,13 @@ class PhaseLost(ArithmeticError):
         self.node_count = nodes
 
 
-class BoundaryTraversal(NamedTuple):
+class ContourTraversal(NamedTuple):
     """State of a traversal of the contour of a count: on side number `side_number` of the box, at
     `distance_on_side` from the start of this side.
 
     phase_change: of arg D so far. node_count: number of nodes so far. last_node: the last node. reach_growth:
     change of the reach per distance. next_distance: distance of the next node, 0 if not chosen yet.
-    needed_largest_w: |w| for which propagators are needed to continue; 0 at the end, inf if the change of
+    required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf if the change of
     phase is not determined.
     """
 
@@ -61,7 +61,7 @@ class BoundaryTraversal(NamedTuple):
     last_node: PhaseNode
     reach_growth: float
     next_distance: float
-    needed_largest_w: float
+    required_w_bound: float
 
 
 def count_right_of(
@@ -136,26 +136,26 @@ def _phase_change(
     unit = determinant.w_scale(corners[0])
     trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
     first = phase_node(corners[0], known, trial, hull, (samples[1], level))
-    walk = BoundaryTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
+    walk = ContourTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
     while True:
         walk = _continue_traversal(walk, (corners, largest), known, hull, samples, level)
-        if walk.needed_largest_w == 0:
+        if walk.required_w_bound == 0:
             break
-        if walk.needed_largest_w == math.inf:
+        if walk.required_w_bound == math.inf:
             raise PhaseLost(walk.node_count)
-        level = determinant.propagators_for(walk.needed_largest_w, CONTOUR_SETTINGS.max_level_ratio)
+        level = determinant.propagators_for(walk.required_w_bound, CONTOUR_SETTINGS.max_level_ratio)
     return walk.phase_change, walk.node_count
 
 
 @compiled
 def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: BoundaryTraversal,
+    walk: ContourTraversal,
     box: tuple[Complex, float],
     known: Complex,
     hull: EigenvalueHull,
     samples: tuple[ArmSamples, ArmSamples],
     level: PropagatorsUpToW,
-) -> BoundaryTraversal:
+) -> ContourTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
     box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
@@ -171,18 +171,18 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             side, t, growth = side + 1, 0.0, 0.0
             continue
         if not here.reach > CONTOUR_SETTINGS.min_reach * abs(here.w) or nodes > CONTOUR_SETTINGS.max_nodes:
-            return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
+            return ContourTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
         if ahead == 0:
             ahead = min(_overlapping_distance(here.reach, growth), length - t)
         w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
         unit = mean_wave_number_and_w_scale(w, samples[0])[1]
         first = CONTOUR_SETTINGS.first_radius * unit
-        radius = min(2 * here.radius, CONTOUR_SETTINGS.largest_radius * unit) if here.radius > 0 else first
+        radius = min(2 * here.radius, CONTOUR_SETTINGS.max_circle_radius * unit) if here.radius > 0 else first
         radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
         enough = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest - abs(w)))
         needed = abs(w) + min(radius, enough)
         if not _serves_efficiently(level[0], needed):
-            return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, needed)
+            return ContourTraversal(side, t, total, nodes, here, growth, ahead, needed)
         there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
         growth = (there.reach - here.reach) / ahead
@@ -193,7 +193,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             ahead = 0.0
         else:
             ahead = _shortened_distance(here.reach, growth, ahead)
-    return BoundaryTraversal(side, t, total, nodes, here, growth, ahead, 0.0)
+    return ContourTraversal(side, t, total, nodes, here, growth, ahead, 0.0)
 
 
 @compiled
@@ -205,10 +205,10 @@ def _serves_efficiently(W: float, needed: float) -> bool:
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node: `reach_overlap` times the sum of the present reach and of the reach expected
-    there. growth: expected change of the reach per distance, clipped to between -1 and `largest_growth`.
+    there. growth: expected change of the reach per distance, clipped to between -1 and `max_reach_growth`.
     """
     overlap = CONTOUR_SETTINGS.reach_overlap
-    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.largest_growth))
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_reach_growth))
 
 
 @compiled

@@ -103,7 +103,7 @@ def _node_inside(
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
-    least = CONTOUR_SETTINGS.smallest_radius * unit
+    least = CONTOUR_SETTINGS.min_circle_radius * unit
     room = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
     here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
     best = node
@@ -114,7 +114,7 @@ def _node_inside(
             wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # Smaller circles give at most this reach.
-        enough = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.between_points_factor, room))
+        enough = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, room))
         reach = math.inf
         size = -math.inf  # log of the largest |f| of the points of the circle
         for direction in CONTOUR_SETTINGS.directions:
@@ -122,7 +122,7 @@ def _node_inside(
             log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
             size = max(size, log - linearised_log_determinant(tried, v, samples).real)
             growth = math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
-            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.between_points_factor * growth, room)
+            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, room)
             if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= least):
                 reach = 0.0
                 break

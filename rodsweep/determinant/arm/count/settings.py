@@ -18,7 +18,7 @@ class ContourSettings(CompiledSettings):
     than pi."""
     circle_points: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
-    between_points_factor: float = 1.5
+    circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_change: float = 0.9
     """Within the reach of a node, the change of f is at most this number times |D|."""
@@ -43,17 +43,17 @@ class ContourSettings(CompiledSettings):
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
     reach_overlap: float = 0.95
     """Distance to the next node divided by the sum of the expected reaches of both nodes."""
-    largest_growth: float = 0.5
+    max_reach_growth: float = 0.5
     """Largest expected growth of the reach per distance; the next node is then at most 3.6 reaches away."""
     min_reach_ratio: float = 0.2
     """If the reach is below this fraction of a circle's radius, the next smaller circle is tried at once."""
     first_radius: float = 12.0
     """Radius of the first circle at a node without a previous circle, in units of the length over which D
     changes."""
-    smallest_radius: float = 0.75
+    min_circle_radius: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
-    largest_radius: float = 48.0
+    max_circle_radius: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
     """Circles up to this radius, in units of Im w, use `dominant_wave`, which may have branch points on the
@@ -67,7 +67,7 @@ class ContourSettings(CompiledSettings):
         "max_change": (0.0, 1.0),
         "max_wave_radius": (0.0, 1.0),
         "reach_overlap": (0.0, 1.0),
-        "largest_growth": (0.0, 1.0),
+        "max_reach_growth": (0.0, 1.0),
         "max_step_ratio": (0.0, 1.0),
         "safe_step": (0.0, 1.0),
     }
@@ -92,7 +92,7 @@ class NoCrossingSettings(CompiledSettings):
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
-    between_arms_factor: float = 1.5
+    arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0
     """Known eigenvalues whose distance from a node is below this number times the radius of its disc are
@@ -119,7 +119,7 @@ class NoCrossingSettings(CompiledSettings):
 
     ranges: ClassVar = {
         "arm_count": (2, math.inf),
-        "between_arms_factor": (1.0, math.inf),
+        "arms_safety_factor": (1.0, math.inf),
         "overlap": (0.0, 1.0),
         "radius_divisor": (1.0, math.inf),
     }
@@ -127,9 +127,7 @@ class NoCrossingSettings(CompiledSettings):
     @property
     def max_change(self) -> float:
         """Largest change of f, relative to |f(w0, q)|, at the points and arms where f is evaluated."""
-        return CONTOUR_SETTINGS.max_change / (
-            CONTOUR_SETTINGS.between_points_factor * self.between_arms_factor
-        )
+        return CONTOUR_SETTINGS.max_change / (CONTOUR_SETTINGS.circle_safety_factor * self.arms_safety_factor)
 
 
 NO_CROSSING_SETTINGS = NoCrossingSettings()

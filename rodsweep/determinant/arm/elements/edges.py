@@ -99,7 +99,7 @@ def _last_legendre_matrix(stages: int) -> Array:
 @compiled
 def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), that do not resolve an arm: one of the last two Legendre
-    coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `largest_tail` times the largest value.
+    coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `max_coefficient_tail` times the largest value.
 
     local: coefficients of n arms, (6, n, elements, stages). last_terms: result of `_last_legendre_matrix`.
     """
@@ -117,5 +117,7 @@ def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
                     size = max(size, abs(value))
                     first += value * last_terms[0, i]
                     second += value * last_terms[1, i]
-                coarse[e] |= not max(abs(first), abs(second)) <= ARM_ELEMENT_SETTINGS.largest_tail * size
+                coarse[e] |= (
+                    not max(abs(first), abs(second)) <= ARM_ELEMENT_SETTINGS.max_coefficient_tail * size
+                )
     return coarse

@@ -48,7 +48,7 @@ def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: flo
     terms = propagator_terms(np.array(F, float), W, local, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
-            f"{ARM_ELEMENT_SETTINGS.max_terms} powers of w do not resolve the elements of this arm "
-            f"at |w| = {W:g}"
+            f"D of this arm at |w| = {W:g} needs more than the maximum of {ARM_ELEMENT_SETTINGS.max_terms} "
+            "powers of w in an element"
         )
     return terms

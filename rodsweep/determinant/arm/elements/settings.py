@@ -20,7 +20,7 @@ class ArmElementSettings(CompiledSettings):
     max_length_over_apex_distance: float = 0.5
     """Largest length of an element divided by the distance from the apex of the cone, where stiffnesses
     vanish."""
-    largest_tail: float = 1e-9
+    max_coefficient_tail: float = 1e-9
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
     exceeds this fraction of the largest value. The error of a Gauss method is about the square of this
     fraction."""
@@ -78,7 +78,7 @@ class ArmElementSettings(CompiledSettings):
     def __post_init__(self) -> None:
         CompiledSettings.__post_init__(self)
         if self.stages % 4:
-            raise ValueError(f"{self.stages} stages are not a multiple of 4")
+            raise ValueError(f"stages = {self.stages} is not a multiple of 4")
 
 
 ARM_ELEMENT_SETTINGS = ArmElementSettings()

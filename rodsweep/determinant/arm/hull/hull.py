@@ -54,6 +54,7 @@ def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
 
 
 def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
+    """The smallest hull found for the spectra of all sampled arms; `UNBOUNDED_HULL` if no bound is found."""
     largest = 1 - HULL_SETTINGS.min_remainder
     a, c = _smallest_region(
         arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), largest
@@ -76,6 +77,7 @@ class HullSamples(NamedTuple):
 
 
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
+    """The `HullSamples` of arms of one build."""
     build = rods[0].build
     lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
@@ -131,6 +133,7 @@ class ChebyshevMatrices(NamedTuple):
 
 @cache
 def _chebyshev_matrices() -> ChebyshevMatrices:
+    """The `ChebyshevMatrices` of `HULL_SETTINGS.points_per_interval` points, cached."""
     x = -np.cos(
         np.pi * np.arange(HULL_SETTINGS.points_per_interval) / (HULL_SETTINGS.points_per_interval - 1)
     )

@@ -21,9 +21,9 @@ from functools import lru_cache
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.arm_on_mesh import relative_bending_compliance_at_nodes
 from ....discretization.elements.elements import ELEMENT_SETTINGS
 from ....discretization.elements.mesh import Mesh
+from ....discretization.material_on_mesh import relative_bending_compliance_at_nodes
 from ....discretization.state_layout import StateLayout
 from ....model.material.build import Build
 from ...orbit.orbit import Orbit

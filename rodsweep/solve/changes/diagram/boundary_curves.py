@@ -148,7 +148,7 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
 
 def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
-    if not boundary.plane.has_standard_rods:
+    if not boundary.plane.are_rods_uniform_and_linear:
         return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
     return (
         BOUNDARY_CURVE_SETTINGS.double_tangent_error

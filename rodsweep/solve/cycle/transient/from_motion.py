@@ -6,7 +6,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.beam import Beam
-from ....discretization.plane import write_balance
+from ....discretization.plane_equations import write_balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
 from ...orbit.orbit import Orbit, node_times

@@ -16,7 +16,7 @@ within a block: the diagonal blocks d_ii M - h F' are regular if h is short comp
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.plane import write_jacobian
+from ....discretization.plane_equations import write_jacobian
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
 from ..semidiscrete import SemidiscreteEquations

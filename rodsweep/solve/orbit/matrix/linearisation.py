@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....discretization.nodal_rod import NO_JUMP_CHANGE, NodalChange
+from ....discretization.nodal_rod import NO_JUMP_DERIVATIVE, NodalRodDerivative
 from ....discretization.state_layout import PLANE_COMPONENT_COUNT
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
@@ -23,7 +23,7 @@ from .right_sides import ParameterDerivatives, write_right_sides, write_stage_re
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
 from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
 
-NO_PARAMETER_CHANGE = NodalChange(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_CHANGE)
+NO_PARAMETER_CHANGE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
 """Placeholder for the change of a rod if there is no parameter; compiled code never reads it."""
 
 

@@ -8,14 +8,14 @@ import numpy as np
 
 from ....arrays import Array
 from ....discretization.elements.mesh import NodeMatrices
-from ....discretization.nodal_rod import NodalChange, NodalRod
-from ....discretization.plane import write_balance, write_balance_derivative, write_jacobian
+from ....discretization.nodal_rod import NodalRod, NodalRodDerivative
+from ....discretization.plane_equations import write_balance, write_balance_derivative, write_jacobian
 from ....discretization.state_layout import BENDING_INDEX, PLANE_COMPONENT_COUNT, stress_index
 from ....model.compiled.compilation import compiled_for_vectors
 
 
 @compiled_for_vectors
-def phase_right_side(start: Array, change: NodalChange, c: NodalRod, m: NodeMatrices) -> float:
+def phase_right_side(start: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices) -> float:
     """Minus the derivative of the phase condition along a change of the parameters, at the state `start` at t
     = 0, (n,): the right-hand side of the phase equation. change: derivatives of the nodal values c of the
     rod. m: matrices of the mesh."""

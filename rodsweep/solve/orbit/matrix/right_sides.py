@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.nodal_rod import NodalChange
-from ....discretization.plane import (
+from ....discretization.nodal_rod import NodalRodDerivative
+from ....discretization.plane_equations import (
     write_balance,
     write_balance_derivative,
     write_jacobian,
@@ -24,7 +24,7 @@ class ParameterDerivatives(NamedTuple):
     """Derivatives with respect to the coordinate of a parameter. change: derivatives of the arrays of the
     rod. mass: derivative of the diagonal mass matrix, (n,)."""
 
-    change: NodalChange
+    change: NodalRodDerivative
     mass: Array
 
 
@@ -50,7 +50,7 @@ def _store_stresses(G: Array, F: Array) -> None:
 
 @compiled_for_vectors
 def write_rate_derivatives(
-    x: Array, F: Array, V: Array, out: Array, change: NodalChange, p: SemidiscreteEquations
+    x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: SemidiscreteEquations
 ) -> None:
     """Writes the derivative of F(x) of `write_rates_of_state` along a change of the parameters into F, (n,).
 

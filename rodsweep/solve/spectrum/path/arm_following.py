@@ -91,8 +91,7 @@ def _refine_all_eigenvalues(
     """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track.
 
     guess: (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm.
-    Returns True if all eigenvalues converged, no two
-    coincide, and every complex pair stayed complex.
+    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex.
     """
     w = track.w[i]
     error = track.error[i]
@@ -133,7 +132,7 @@ def proved_count_right_of_line(
     k = track.descending_order[i, modes - 1]
     line = min(
         w[k].real
-        - CANDIDATE_SETTINGS.proof_line_errors * error[k]
+        - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
         - CANDIDATE_SETTINGS.proof_line_distance * abs(w[k]),
         0.0,
     )

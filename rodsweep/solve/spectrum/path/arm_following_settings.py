@@ -18,8 +18,8 @@ class ArmFollowingSettings:
     counts follow, and more modes would prove a further point."""
     min_unproved_points: int = 64
     """Minimum number of points without a proof for which hulls are computed at more arms."""
-    computed_hulls_for_unproved: int = 49
-    """Number of hulls computed in an interval, instead of `computed_hulls_per_interval`, if at least
+    hulls_per_unproved_interval: int = 49
+    """Number of hulls computed in an interval, instead of `hulls_per_interval`, if at least
     `min_unproved_points` points have no proof."""
     W_reserve_factor: float = 2.0
     """The propagators of a new family are valid at least up to W = `W_reserve_factor` * (largest |w| at the
@@ -39,7 +39,7 @@ class ArmFollowingSettings:
     steps_from_nearest: tuple[int, ...] = (1, 4)
     """Eigenvalues at a path variable p are followed from the nearest solved point in this number of equal
     steps; the numbers are tried in turn."""
-    computed_hulls_per_interval: int = 13
+    hulls_per_interval: int = 13
     """Number of hulls computed in an interval of the path, at equally spaced arms; the hulls of all other
     arms are interpolated."""
 

@@ -29,7 +29,7 @@ from ....determinant.roots.roots import Roots
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURES
 from ..candidates import line_for_proof
-from ..search import Search
+from ..search import SpectrumSearch
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
@@ -64,7 +64,8 @@ def follow_interval(
     before: ArmInterval | None = None,
     counts_follow: bool = False,
 ) -> ArmInterval | None:
-    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails.
+    """The first points of p, (n,), that are reached with one family of arms; None if the first point fails,
+    if no family is found, or if n is below `ARM_FOLLOWING_SETTINGS.min_points`.
 
     If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
     proved complete, unless counts follow at these points. before: the previous interval of the path, whose
@@ -191,7 +192,7 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.computed_hulls_per_interval)
+        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
         W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first).max())
         line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first[modes - 1].real), 0.0)
@@ -235,7 +236,7 @@ def _leading_roots(path: Path, p: float, request: SpectrumRequest, further: int)
     """
     try:
         modes = request.modes + further
-        search = Search(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
+        search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
         with np.errstate(all="ignore"):
             search.outcome()
     except FAILURES:

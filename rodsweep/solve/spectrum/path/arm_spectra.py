@@ -37,6 +37,6 @@ def follow_spectra_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
 def _with_finer_hulls(path: Path, found: ArmInterval) -> ArmInterval:
     """The interval `found` with hulls at more arms, hence closer to the hull of each arm."""
     places = np.linspace(
-        found.family.p_low, found.family.p_high, ARM_FOLLOWING_SETTINGS.computed_hulls_for_unproved
+        found.family.p_low, found.family.p_high, ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
     )
     return found._replace(hulls=hulls_along([path.rod_at(x) for x in places.tolist()], places))

@@ -35,7 +35,7 @@ class FollowingSettings(CompiledSettings):
     curvature_safety_factor: float = 4.0
     """Safety factor on |D''/(2 D')|: the modulus of the sum of 1/(w - w_j) over all other roots w_j,
     estimated from the followed roots alone."""
-    final_step: float = 4.0
+    final_step_over_rounding: float = 4.0
     """Newton's method stops when the step is at most this multiple of the eigenvalue's rounding error."""
 
 
@@ -111,7 +111,10 @@ def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> 
         if exact
         else FOLLOWING_SETTINGS.accuracy * abs(here.w)
     )
-    if left <= allowed or here.step_length <= FOLLOWING_SETTINGS.final_step * here.rounding_error:
+    if (
+        left <= allowed
+        or here.step_length <= FOLLOWING_SETTINGS.final_step_over_rounding * here.rounding_error
+    ):
         return max(here.rounding_error, min(left, here.step_length))
     return math.inf
 

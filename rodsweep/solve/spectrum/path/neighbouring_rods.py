@@ -18,7 +18,7 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod, coefficients_of
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURES
-from ..search import Search, SpectrumRequest
+from ..search import SpectrumRequest, SpectrumSearch
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
@@ -188,7 +188,7 @@ def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int
     """
     try:
         modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
-        search = Search(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
+        search = SpectrumSearch(rod, replace(request, modes=modes - 1, certify=True), requested=modes)
         with np.errstate(all="ignore"):
             outcome = search.outcome()
     except FAILURES:

@@ -19,7 +19,7 @@ AnyPencil = Pencil | ArmPencil
 
 
 @dataclass(frozen=True, eq=False)
-class DenseForm:
+class DenseEigenproblem:
     """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
 
     A: (unknowns, unknowns). B: diagonal, (unknowns,). displacement_factors: factors that convert the unknowns
@@ -61,12 +61,12 @@ class DenseForm:
         return A
 
 
-def dense_form(rod: Rod, pencil: AnyPencil) -> DenseForm:
+def dense_eigenproblem(rod: Rod, pencil: AnyPencil) -> DenseEigenproblem:
     """The dense eigenproblem of the rod `rod` on the mesh of `pencil`."""
     found = pencil.matrices(rod)
     A = np.zeros((pencil.unknown_count, pencil.unknown_count))
     A[pencil.rows, pencil.columns] = found.A
-    return DenseForm(
+    return DenseEigenproblem(
         rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.displacement_factors
     )
 

@@ -15,11 +15,11 @@ from ..model.compiled.compilation import compiled
 from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
-from .arm_on_mesh import jumps_on_mesh
 from .elements.basis import lagrange_interpolation_matrix
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh, interpolation_matrix
 from .elements.quadrature import gauss_lobatto_rule
+from .material_on_mesh import jumps_on_mesh
 from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING_STRESS_INDEX = 0

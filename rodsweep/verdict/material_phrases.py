@@ -7,13 +7,13 @@ from ..model.material.laws import LINEAR
 from ..model.units import with_si_prefix
 
 
-def law_words(arm: SlenderArm) -> str:
+def law_phrase(arm: SlenderArm) -> str:
     """Phrase for the constitutive law of an arm: "linear", or "neo-Hookean" and the kind of section."""
     law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
     return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
 
 
-def station_words(station: Station) -> str:
+def station_phrase(station: Station) -> str:
     """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
     inner radius 3 mm, 80 kPa".
     """

@@ -1,4 +1,7 @@
-"""An arm in SI units as a dimensionless rod: values of the parameters, and keys of the section `material`."""
+"""An arm in SI units as values of a config: the parameters of the rod, and the section `material`.
+
+The dimensionless parameters F, k1, k2, gamma1 and gamma3 of an arm are properties of `SlenderArm`.
+"""
 
 from typing import Any
 
@@ -8,7 +11,7 @@ from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
 
 
-def parameters_of(arm: SlenderArm) -> dict[str, float]:
+def rod_parameters_of(arm: SlenderArm) -> dict[str, float]:
     """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
 
     Raises InputError for a load relative to flutter, because the flutter threshold must be solved first.
@@ -18,7 +21,7 @@ def parameters_of(arm: SlenderArm) -> dict[str, float]:
     return {name: arm.parameter(name) for name in names}
 
 
-def material_section_of(arm: SlenderArm) -> dict[str, Any]:
+def material_config_of(arm: SlenderArm) -> dict[str, Any]:
     """Keys and values of the config section `material` for `arm`; keys with default values are left out.
 
     Possible keys are law, section and profile.

@@ -20,7 +20,7 @@ from ..model.rod import Rod
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
 from .elements.quadrature import gauss_lobatto_rule
-from .nodal_rod import NO_JUMP_CHANGE, NO_JUMPS, IntegerArray, Jumps
+from .nodal_rod import NO_JUMP_DERIVATIVE, NO_JUMPS, IntegerArray, Jumps
 
 
 def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
@@ -82,12 +82,12 @@ def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
     `name`, (k, 2, 3).
 
-    Returns `NO_JUMP_CHANGE` for a rod without jumps and for a linear law, for which the stress at a jump
+    Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which the stress at a jump
     depends only on the mean strain.
     """
     inside, at = _indices_beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
-        return NO_JUMP_CHANGE
+        return NO_JUMP_DERIVATIVE
     changes = rod.section_derivatives(name, grid.points_inside_elements.ravel()[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))

@@ -1,7 +1,7 @@
 """Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
-s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.response`; s2 = S2. At a node where the material
-jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
+s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.stress_strain`; s2 = S2. At a node where the
+material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from ..nodal_rod import NodalRod
 @dataclass(frozen=True)
 class ForceDerivatives:
     """Derivatives with respect to the force F at all nodes: of the stretch nu of the straight rod,
-    (nodes + 1,), and of `LawAtRest.tangent`, (3, nodes + 1).
+    (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1).
     """
 
     nu: Array
@@ -26,7 +26,7 @@ class ForceDerivatives:
 
 
 @dataclass(frozen=True)
-class LawAtRest:
+class LawDerivativesAtRest:
     """Derivatives of the law s(S) at S = 0, at all nodes of a mesh.
 
     is_nonlinear: False for the linear law, s(S) = S. tangent: diagonal of ds/dS, (3, nodes + 1).
@@ -61,7 +61,7 @@ class LawAtRest:
         return out
 
 
-def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
+def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the same rod at
     these nodes.
     """
@@ -77,7 +77,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     moved = -c1 / stiffness
     ones = np.ones_like(nu)
     change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
-    found = LawAtRest(
+    found = LawDerivativesAtRest(
         is_nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
         force_derivatives=change,
@@ -94,7 +94,7 @@ def law_at_rest(rod: Rod, nodal: NodalRod) -> LawAtRest:
     return found
 
 
-def _write_derivatives_at_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> None:
+def _write_derivatives_at_jumps(found: LawDerivativesAtRest, law: Law, nodal: NodalRod) -> None:
     """Writes the derivatives of the law at the nodes where the material jumps into `found`. nodal: the rod at
     the nodes.
     """
@@ -124,12 +124,12 @@ def _write_derivatives_at_jumps(found: LawAtRest, law: Law, nodal: NodalRod) -> 
     found.M333[at] = third[:, 1, 1, 1, 1]
 
 
-LawDerivatives = tuple[Array, Array, Array]
+DerivativeTensors = tuple[Array, Array, Array]
 """First, second and third derivatives of two functions of two variables: (..., 2, 2), (..., 2, 2, 2),
 (..., 2, 2, 2, 2). The first of the listed indices is the function; all further indices are variables."""
 
 
-def derivatives_by_mean_unknowns(law: Law, sides: Array) -> LawDerivatives:
+def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
     """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
     (k, 2, 7).
 
@@ -144,7 +144,7 @@ def derivatives_by_mean_unknowns(law: Law, sides: Array) -> LawDerivatives:
     return inverse_function_derivatives((mean[0], mean[1], mean[2]))
 
 
-def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDerivatives:
+def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> DerivativeTensors:
     """Derivatives of N and M at rest with respect to q1 and q3 on each side of a jump; nu, c1, c3: arrays of
     equal shape.
     """
@@ -163,7 +163,7 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> LawDe
     return first, second, third
 
 
-def inverse_function_derivatives(of: LawDerivatives) -> LawDerivatives:
+def inverse_function_derivatives(of: DerivativeTensors) -> DerivativeTensors:
     """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. of: derivatives
     of f.
     """
