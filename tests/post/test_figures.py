@@ -408,6 +408,15 @@ def test_one_rod_is_drawn_as_a_bar_of_its_classes_with_its_thresholds(command, m
     assert marks == pytest.approx(at[1:], rel=1e-10)
 
 
+def test_a_bar_is_not_stored_beyond_a_full_list_of_crossings(command, monkeypatch):
+    config = "task: thresholds\nparameters: {k1: 200, k2: 1e4, gamma3: 1e-4}\nthresholds: {crossings: 1}\n"
+    figure, _ = drawn_of(command, monkeypatch, config)
+    colours = [to_hex(bar.get_facecolor()).upper() for bar in figure.axes[0].patches]
+    assert colours == [CLASS_COLOURS[word] for word in ("monotone", "not stored")]
+    entries = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert entries[:2] == ["monotone", "not stored"]
+
+
 def test_list_of_rods_has_a_bar_for_each_in_its_order(command, monkeypatch):
     config = "task: thresholds\nparameters: {points: p.csv}\n"
     rods = "k1,k2,gamma3\n200,1e4,1e-4\n1e4,1e2,1e-2\n"
