@@ -17,7 +17,7 @@ from ..model.material.laws import LINEAR
 from ..model.material.response import LocalSection, stress_tangent
 from ..model.rod import Rod
 from .arm_on_mesh import jumps_on_mesh, material_at_nodes
-from .at_jumps import interpolate_stress, stresses_beside_jumps
+from .at_jumps import interpolate_state_stress, interpolate_stress, stresses_beside_jumps
 from .element_strains import write_element_strain_changes, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains
 from .nodal_rod import NodalRod, nodal_rod
@@ -158,7 +158,15 @@ class RodOnMesh(ABC):
 
     def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
         """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., nodes of grid + 1)."""
-        return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
+        S = self.stresses(x)
+        if self.has_continuous_stresses:
+            return interpolate_stress(self.rod, S, self.mesh, grid)
+        return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, grid)
+
+    def stress_changes_on_mesh(self, grid: Mesh, change: Array) -> Array:
+        """Changes of the stresses S by the changes `change` of states, at all nodes of the mesh `grid`,
+        (3, ..., nodes of grid + 1), by a linear map."""
+        return interpolate_stress(self.rod, self.stresses(change), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a
