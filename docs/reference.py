@@ -117,7 +117,7 @@ ATTRIBUTES = {
     "program": "`rodsweep`: what a result file is recognised by",
     "Conventions": "`CF-1.8`",
     "title, task": "title and task of the config; without a title, the name of the file",
-    "config": "text of the config; changes by `--set` are at its end",
+    "config": "text of the config of the last run, with its comments; changes by `--set` are at its end",
     "config_resolved": "the config with all defaults, as JSON",
     "snapshot": "time at which `rodsweep snapshot` wrote the file; empty once a run has continued it",
     "format": f"version of the layout, {FORMAT}; see [which version reads what](#which-version-reads-what)",

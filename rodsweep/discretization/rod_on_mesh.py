@@ -21,7 +21,7 @@ from .elements.mesh import Mesh, shape_from_strains
 from .material_on_mesh import jumps_on_mesh, material_at_nodes
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
-from .stresses_at_jumps import interpolate_stress, stresses_beside_jumps
+from .stresses_at_jumps import interpolate_state_stress, interpolate_stress, stresses_beside_jumps
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,7 +158,15 @@ class RodOnMesh(ABC):
 
     def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
         """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., nodes of grid + 1)."""
-        return interpolate_stress(self.rod, self.stresses(x), self.mesh, grid)
+        S = self.stresses(x)
+        if self.has_continuous_stresses:
+            return interpolate_stress(self.rod, S, self.mesh, grid)
+        return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, grid)
+
+    def stress_changes_on_mesh(self, grid: Mesh, change: Array) -> Array:
+        """Changes of the stresses S by the changes `change` of states, at all nodes of the mesh `grid`,
+        (3, ..., nodes of grid + 1), by a linear map."""
+        return interpolate_stress(self.rod, self.stresses(change), self.mesh, grid)
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a

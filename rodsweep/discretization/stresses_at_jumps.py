@@ -26,6 +26,11 @@ STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
 """Indices of the stretching stress S1 and of the bending stress S3, the components of S that are
 discontinuous at a jump."""
+JUMPING_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
+"""The components of S that are discontinuous at a jump."""
+SHARE_COLUMNS = 3, 4
+"""Columns of the material on both sides of a jump with the weights of the sides in the means of
+JUMPING_COMPONENTS."""
 
 
 @compiled
@@ -92,13 +97,38 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
     if len(there.nodes):
         here = jumps_on_mesh(rod, source).nodes
-        for column, component in ((3, STRETCHING_STRESS_INDEX), (4, BENDING_STRESS_INDEX)):
+        for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):
             out[component] = (
                 S[component]
                 @ _discontinuous_interpolation(
                     E, source, target, here, there.nodes, there.jump_sides[..., column]
                 ).T
             )
+    return out
+
+
+def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod, target: Mesh) -> Values:
+    """S at all nodes of the mesh `target`, (3, ..., target nodes + 1), from the S of states at all nodes of
+    `source`, (3, ..., nodes + 1). nodal: the rod `rod`, whose law is not linear, at the nodes of `source`.
+
+    In the elements at a jump the polynomial has the value of its own side, computed from the mean of both
+    sides. `interpolate_stress` extrapolates this value, which is less accurate by an order of magnitude, but
+    linear.
+    """
+    E = interpolation_matrix(source, target)
+    out = S @ E.T
+    there = jumps_on_mesh(rod, target)
+    element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
+    sides_of_jumps = stresses_beside_jumps(nodal, S)
+    for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
+        for side, of_side in enumerate(values):
+            rows = element == node // source.order - 1 + side
+            for component, value in zip(JUMPING_COMPONENTS, of_side, strict=True):
+                out[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
+    for node, sides, values in zip(there.nodes, there.jump_sides, sides_of_jumps, strict=True):
+        for i, component in enumerate(JUMPING_COMPONENTS):
+            shares = sides[:, SHARE_COLUMNS[i]]
+            out[component, ..., node] = np.tensordot(shares, values[:, i], 1)
     return out
 
 

@@ -281,6 +281,22 @@ def test_extend_makes_a_new_file_and_continues_its_own(command):
     assert (both.returncode, "--fresh and --extend are both given" in both.stderr) == (2, True)
 
 
+@pytest.mark.parametrize("extend", [(), ("--extend",)], ids=["continued", "extended"])
+def test_a_finished_file_has_the_text_of_the_last_config(command, extend):
+    command.write("c.yaml", SPECTRA)
+    command.solved("c.yaml")
+    *first, last = SPECTRA.strip().splitlines()
+    text = "\n".join(["# the options come first", last, *first, ""])
+    command.write("c.yaml", text)
+    assert "complete, nothing to do" in command("run", "c.yaml", *extend).stdout
+    path = command.directory / "c.h5"
+    with h5py.File(path) as file:
+        assert file.attrs["config"] == text
+    before = path.read_bytes()
+    assert command("run", "c.yaml", *extend).returncode == 0
+    assert path.read_bytes() == before
+
+
 @pytest.mark.parametrize(
     ("text", "old", "new", "is_same"),
     [

@@ -674,7 +674,7 @@ def _sizes(page, v, own):
     of_mode = "^frequency RANGE rad/tau2, RANGE times the frequency of the leading mode"
     found += ranges(page, of_mode, v["frequency"], ratio)
     tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
-    found += ranges(page, "least x RANGE L, largest x RANGE L, largest theta RANGE rad", *tips)
+    found += ranges(page, "least x RANGE L, largest x RANGE L, largest .theta. RANGE rad", *tips)
     found += ranges(page, r"power of the force, mean: RANGE k3", v["injection_mean"])
     rest = "^multiplier: RANGE; periods integrated: RANGE; least stretch: RANGE"
     without = np.isnan(own["multiplier"])  # time integration computes none

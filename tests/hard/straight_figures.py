@@ -338,7 +338,8 @@ def _bars(d, view):
         found.append((f"bar {start} to {end}", "" if off <= SAME else f"an end is off by {off}"))
         word = words.get(colour_of(bar))
         true = class_of(replace(rod, F=(start + end) / 2))
-        found.append((f"bar {start} to {end}", "" if word in (true, "undecided") else f"{word} is {true}"))
+        allowed = (true, "undecided", "not stored")
+        found.append((f"bar {start} to {end}", "" if word in allowed else f"{word} is {true}"))
     found.append(("bars", "" if np.allclose(covered, [top for _, top in rods]) else f"bars end at {covered}"))
     for line in d.lines(axes):
         word = plain(line.get_label()).partition(" = ")[0]

@@ -94,7 +94,12 @@ def test_map_is_drawn_and_other_shapes_are_refused(command):
     assert refused.returncode == 2
     assert "one or two" in refused.stderr
     with pytest.raises(InputError, match="must end in"):
-        draw(read_view(command.directory / "map.h5"), command.directory / "f.frob", roots="smallest")
+        draw(read_view(command.directory / "map.h5"), command.directory / "f.frob")
+    refused = command.drawn("plot", "map.h5", "--roots", "all")
+    assert refused.returncode == 2
+    assert "--roots all is for spectra along a line" in refused.stderr
+    line = command.drawn("plot", "map.h5", "--roots", "all", "--at", "k2=50")
+    assert "all stored roots" in line.stdout
 
 
 def test_colours_of_a_map_change_sign_on_its_line_of_zero_growth(command, drawn):
@@ -354,6 +359,8 @@ def test_one_spectrum_is_drawn_as_its_eigenvalues_in_the_complex_plane(command, 
     config = "task: spectrum\nparameters: {F: 50, k1: 1e4, k2: 1e2, gamma3: 1e-2}\nspectrum: {modes: 4}\n"
     figure, shown = drawn_of(command, monkeypatch, config)
     assert "complex plane" in shown
+    with pytest.raises(InputError, match="--roots rightmost is for spectra along a line"):
+        draw(read_view(command.directory / "c.h5"), command.directory / "f.png", roots="rightmost")
     inside(figure)
     growing, decaying = figure.axes[0].lines[:2]
     assert growing.get_xdata() == pytest.approx([252.90241] * 2, rel=1e-7)
@@ -377,6 +384,10 @@ def test_list_of_spectra_is_drawn_over_its_points_or_over_what_alone_varies(comm
     assert [axes.get_xlabel() for axes in figure.axes] == ["", "point of the list"]
     marks = [line for line in figure.axes[0].lines if line.get_marker() in ("o", "s")]
     assert sum(len(line.get_xdata()) for line in marks) == 9
+    view = read_view(command.directory / "c.h5")
+    assert "eigenvalues of every point" in draw(view, command.directory / "f.png", roots="all")
+    with pytest.raises(InputError, match="--roots smallest is for spectra along a line"):
+        draw(view, command.directory / "f.png", roots="smallest")
     same = "F,k1,k2,gamma3\n" + "".join(f"10,1e4,{k2},1e-2\n" for k2 in (300, 100, 200))  # as many as modes
     figure, _ = drawn_of(command, monkeypatch, config, same)
     assert figure.axes[0].get_xlabel() == LABELS["k2"]
@@ -395,6 +406,15 @@ def test_one_rod_is_drawn_as_a_bar_of_its_classes_with_its_thresholds(command, m
     assert colours == [CLASS_COLOURS[w] for w in ("monotone", "oscillatory", "flutter", "oscillatory")]
     marks = [line.get_xdata().item() for line in figure.axes[0].lines]
     assert marks == pytest.approx(at[1:], rel=1e-10)
+
+
+def test_a_bar_is_not_stored_beyond_a_full_list_of_crossings(command, monkeypatch):
+    config = "task: thresholds\nparameters: {k1: 200, k2: 1e4, gamma3: 1e-4}\nthresholds: {crossings: 1}\n"
+    figure, _ = drawn_of(command, monkeypatch, config)
+    colours = [to_hex(bar.get_facecolor()).upper() for bar in figure.axes[0].patches]
+    assert colours == [CLASS_COLOURS[word] for word in ("monotone", "not stored")]
+    entries = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    assert entries[:2] == ["monotone", "not stored"]
 
 
 def test_list_of_rods_has_a_bar_for_each_in_its_order(command, monkeypatch):

@@ -15,8 +15,9 @@ ROW_LABELS_BY_KIND = {
     },
     "cycle": {
         "period": "period", "period_si": "period", "tip_y_max": "amplitude",
-        "tip_y_max_si": "amplitude", "tip_theta_max": "tip angle", "injection_mean": "power of the force",
-        "injection_mean_si": "power of the force", "dissipation_mean": "power lost to the fluid",
+        "tip_y_max_si": "amplitude", "tip_theta_max": "largest tip angle",
+        "injection_mean": "power of the force", "injection_mean_si": "power of the force",
+        "dissipation_mean": "power lost to the fluid",
         "dissipation_mean_si": "power lost to the fluid", "energy_imbalance": "energy imbalance",
         "multiplier": "largest multiplier", "least_stretch": "least stretch h1",
     },

@@ -72,6 +72,8 @@ def draw_spectrum(request: FigureRequest) -> str:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view())
     require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    if view.variables["status"].size == 1 or not view.is_grid:
+        _refuse_roots(view, request.roots, "single points, each with all stored eigenvalues", ("all",))
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
@@ -86,7 +88,18 @@ def draw_spectrum(request: FigureRequest) -> str:
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + left_out)
+    _refuse_roots(view, request.roots, "a map of the leading growth rate; --at draws one of its lines")
     return request.write(_growth_map(view, long), f"the leading growth rate{left_out}", MAP_ASPECT)
+
+
+def _refuse_roots(view: View, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
+    """Raises InputError if the user's choice of roots is neither None nor in `allowed`. figure: noun for the
+    figure of `view`, which does not follow roots.
+    """
+    if roots not in (None, *allowed):
+        raise InputError(
+            f"{view.path}: --roots {roots} is for spectra along a line of points, and this is {figure}"
+        )
 
 
 def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:

@@ -172,7 +172,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
     tips = (
         f"{what} {known_range_text(v, f'tip_{name}', beats)} {unit}"
         for what, name, unit in (
-            ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest theta", "theta_max", "rad"),
+            ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest |theta|", "theta_max", "rad"),
         )
     )  # fmt: skip
     frequency = known_range_text(v, "frequency", beats)

@@ -74,7 +74,7 @@ class Store:
             header = self._header()
             if header.fingerprint == self.plan.fingerprint:
                 snapshot = {SNAPSHOT_ATTRIBUTE: ""} if self.attributes().get(SNAPSHOT_ATTRIBUTE) else {}
-                self.add_journals(self._changed_title_attributes() | snapshot)
+                self.add_journals(self._changed_text_attributes() | snapshot)
             elif extend:
                 self._extend(header)
             else:
@@ -135,10 +135,12 @@ class Store:
         if paths:
             self.notes.append(f"{what} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
-    def _changed_title_attributes(self) -> dict[str, Any]:
-        """Attributes to change if config and file differ in title; empty otherwise."""
+    def _changed_text_attributes(self) -> dict[str, Any]:
+        """Attributes to change if config and file differ in title, or in the text of the config, such as a
+        comment; empty otherwise."""
         names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
-        if names["title"] == self.attributes().get("title", ""):
+        stored = self.attributes()
+        if all(text == stored.get(name, "") for name, text in names.items()):
             return {}
         return names | {"config_resolved": json.dumps(self.plan.config)}
 

@@ -67,7 +67,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real("tip_y_min", "L", "smallest y of the tip; -tip_y_max for a cycle with the mirror symmetry"),
         real("tip_x_min", "L", "smallest x of the tip"),
         real("tip_x_max", "L", "largest x of the tip"),
-        real("tip_theta_max", "rad", "largest theta, the angle of the tip, over a period"),
+        real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
         real("least_stretch", "1", "smallest h1 on the cycle; the model holds while it is positive"),
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(

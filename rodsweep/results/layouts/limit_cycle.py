@@ -55,7 +55,7 @@ CYCLE_VARIABLES = (
     real("tip_x_min", "L", "smallest x of the tip over a period"),
     real("tip_x_max", "L", "largest x of the tip over a period"),
     real("tip_y_max", "L", "largest deflection y of the tip over a period"),
-    real("tip_theta_max", "rad", "largest theta, the angle of the tip, over a period"),
+    real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
     real("period_error", "1", "estimate of the relative error of period"),
     real("amplitude_error", "1", "estimate of the relative error of tip_y_max"),
     real("extrema_error", "1", "estimate of the error of the tip's other extrema, in units of tip_y_max"),

@@ -132,7 +132,7 @@ class CyclePredictor:
 def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
-    return target.interpolated_orbit(replace(orbit, values=change)).values
+    return orbit.change_on_mesh(change, target.space_mesh, target.interval_count, target.stage_count)
 
 
 def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:

@@ -36,7 +36,8 @@ from .orbit import Orbit
 class Measures:
     """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
-    period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L, and theta, in rad.
+    period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L; tip_theta_max: largest
+    |theta|, in rad, which is equal for a cycle and its mirror image.
     harmonic_amplitude: amplitudes of the harmonics of the tip's y from the first, (harmonics,), in L.
     injection_..., dissipation_...: mean of the power, and rms of its fluctuation, in k3/(L tau2).
     energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes.
@@ -103,7 +104,8 @@ class CyclePath:
             "tip_x_min": least[0],
             "tip_x_max": largest[0],
             "tip_y_max": largest[1],
-            "tip_theta_max": largest[2],
+            # In a symmetric orbit both sides have the same largest angle up to rounding.
+            "tip_theta_max": largest[2] if self.orbit.is_symmetric else max(largest[2], -least[2]),
         }
 
     @property

@@ -120,11 +120,7 @@ class Orbit:
     def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
         """The orbit interpolated to the space mesh `grid` and to `intervals` time intervals with `stages`
         stages each."""
-        points = self.all_states
-        source = self.interval_count, self.stage_count
-        target = intervals, stages
-        if target != source:
-            points = time_interpolation_matrix(source, target) @ points
+        points = self._at_times_of(self.values, (intervals, stages))
         if grid != self.form.mesh:
             points = self.form.states_on_mesh(grid, points)
         return replace(
@@ -134,6 +130,21 @@ class Orbit:
             stage_count=stages,
             values=np.append(points.ravel(), self.period),
         )
+
+    def change_on_mesh(self, change: Array, grid: Mesh, intervals: int, stages: int) -> Array:
+        """The change `change` of the values, (N,), interpolated to the space mesh `grid` and to `intervals`
+        time intervals with `stages` stages each by a linear map, (N on this mesh,)."""
+        points = self._at_times_of(change, (intervals, stages))
+        if grid != self.form.mesh:
+            points = self.form.changes_on_mesh(grid, points)
+        return np.append(points.ravel(), change[-1])
+
+    def _at_times_of(self, values: Array, target: tuple[int, int]) -> Array:
+        """Orbit values, (N,), interpolated to the start and the stages of other time intervals, (1 + K s, n).
+        target: (number K of intervals, number s of stages)."""
+        source = self.interval_count, self.stage_count
+        points: Array = values[:-1].reshape(1 + self.interval_count * self.stage_count, -1)
+        return points if target == source else time_interpolation_matrix(source, target) @ points
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

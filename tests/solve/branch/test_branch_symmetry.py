@@ -37,6 +37,8 @@ from rodsweep.solve.branch.symmetry_breaking import (
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.orbit.measures import CyclePath, measures_of
+from rodsweep.solve.orbit.symmetry import REFLECTION
 from rodsweep.tasks.branch import branch_values
 
 ROUGH, STOP = 1e-3, 20.5
@@ -132,6 +134,18 @@ def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(know
     assert np.abs(half - orbit.states_at(np.array([0.5]))[0]).max() < 0.01 * size
     moments = slice(2 * nodes, 3 * nodes)
     assert np.abs(half + orbit.start_state)[moments].max() > 0.05 * np.abs(orbit.start_state[moments]).max()
+
+
+def test_the_largest_angle_is_that_of_the_mirror_image(known):
+    here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
+    orbit = next_cycle(here, ROUGH).orbit
+    states = REFLECTION.apply(orbit.all_states, orbit.form.layout)
+    image = replace(orbit, values=np.append(states.ravel(), orbit.period))
+    paths = [CyclePath(each) for each in (orbit, image)]
+    signed = [path.tip_samples[:, 2].max() for path in paths]
+    assert abs(signed[0] / signed[1] - 1) > 0.01
+    for path in paths:
+        assert measures_of(path).tip_theta_max == pytest.approx(max(signed), rel=1e-4)
 
 
 def turned_back(here):

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from rodsweep.solve.branch.special.augmented.functions import correct_until_converged
 from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
@@ -15,6 +16,7 @@ from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.accuracy.calibration import ERROR_COUNT, Calibration
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
+from rodsweep.solve.unsolvable import Unsolvable
 
 ROD = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-3)
 TORUS = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -117,3 +119,27 @@ def test_torus_point_of_a_narrow_cone_needs_no_mesh_of_gigabytes(monkeypatch):
     assert torus.at == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
     assert torus.error < 1e-9 * torus.at
     assert max(mesh.interval_count for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"
+
+
+class ListedValues:
+    """A test function whose corrections give listed values."""
+
+    def __init__(self, *values):
+        self.values = iter(values)
+        self.now = next(self.values)
+
+    def value(self, _):
+        return self.now
+
+    def correct_vectors(self, _):
+        self.now = next(self.values)
+
+
+def test_a_first_value_that_is_close_by_chance_does_not_end_the_corrections():
+    """Values at the torus point F = 112.34 of k1 = 9641.3, k2 = 28.017, gamma3 = 1.0516e-5, gamma1 = 0.6202:
+    the first belongs to the cycle of the matrix."""
+    near = ListedValues(-1.4604773e-8, 3.569858293e-7, -2.075050853e-8, -2.074154948e-8)
+    correct_until_converged(near, None)
+    assert near.now == -2.074154948e-8
+    with pytest.raises(Unsolvable, match="does not converge"):
+        correct_until_converged(ListedValues(0.0, 1e-3, -1e-3, 2e-3, -4e-3), None)

@@ -310,6 +310,36 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
     assert errors[1] < 1e-7
 
 
+def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
+    """An extrapolation to the jump from the other nodes of the elements is less accurate."""
+    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, build=Build("neo_hookean", "swelling", STEP))
+    source, target = (
+        StressForm(rod, mesh_with_edges(edges, order))
+        for edges, order in (((0.0, 0.4, 1.0), 8), ((0.0, 0.2, 0.4, 0.7, 1.0), 9))
+    )
+    mean = np.zeros((3, source.mesh.node_count + 1))
+    (node,) = source.nodal_rod.jumps
+    mean[:, node] = 5.0, 0.0, 3.0
+    ((before, behind),) = stresses_beside_jumps(source.nodal_rod, mean)
+    fields = []
+    for form in (source, target):
+        u, (jump,), (sides,) = form.mesh.node_positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
+        S = np.zeros((3, len(u)))
+        for component, share, one, other in zip((0, 2), (3, 4), before, behind, strict=True):
+            wave = 1 + np.sin(15 * (u - u[jump]))
+            S[component] = np.where(u < u[jump], one, other) * wave * (1 - u) / (1 - u[jump])
+            S[component, jump] = sides[:, share] @ [one, other]
+        fields.append(S)
+    state = source.layout.state(fields[0], np.zeros_like(fields[0]))
+    found = target.stresses(source.states_on_mesh(target.mesh, state))
+    extrapolated = target.stresses(source.changes_on_mesh(target.mesh, state))
+    error, other_error = (np.abs(each - fields[1]).max() for each in (found, extrapolated))
+    assert error < other_error / 5 < 0.1
+    assert error < 2e-2
+    jump = target.nodal_rod.jumps
+    assert found[:, jump] == pytest.approx(fields[1][:, jump], rel=1e-8)
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("build", [Build(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
 def test_cycles_agree_with_arkimex_alone(build):

@@ -71,8 +71,8 @@ def draw_class_bars(view: View) -> Figure:
 
 def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
-    search. The first interval has the class "monotone"; the last has the class "undecided" if some crossings
-    are not stored. rod: index of the rod."""
+    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room
+    for all crossings. rod: index of the rod."""
     kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
     end = float(view.variables["F_end"].ravel()[rod])
     found = int(view.variables["crossing_count"].ravel()[rod])
@@ -82,8 +82,8 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
         yield start, float(F[index]), word
         start = float(F[index])
         word = class_above_crossing(int(kinds[index]), int(after[index]))
-    if found > np.count_nonzero(kinds > 0):  # the file has no room for all crossings
-        word = "undecided"
+    if found > np.count_nonzero(kinds > 0):
+        word = "not stored"
     if np.isfinite(end):
         yield start, end, word
 

@@ -16,9 +16,10 @@ CLASS_COLOURS = {
     "flutter": "#F2B28A",
     "undecided": "#666666",
     "crushed": "#BBBBBB",
+    "not stored": "#F3F3F3",
 }
 """Colours of the classes: blue for stable rods, orange for unstable rods. The colours also differ in grey
-prints."""
+prints. Bars of single rods are "not stored" beyond a full list of crossings."""
 STATE_COLOURS = {
     "missing": "white",
     "neither_known": "#F6E3A1",

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
+from ...cycle.along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
@@ -109,8 +110,9 @@ class NormalDerivatives:
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit_derivative
-        derivative = replace(self.mesh.interpolated_orbit(orbit), values=self.orbit_derivative[:-1])
-        return np.append(mesh.interpolated_orbit(derivative).values, self.orbit_derivative[-1])
+        on_own_mesh = self.mesh.interpolated_orbit(orbit)
+        change = interpolated_change(on_own_mesh, self.orbit_derivative[:-1], mesh)
+        return np.append(change, self.orbit_derivative[-1])
 
 
 @dataclass(frozen=True, eq=False)

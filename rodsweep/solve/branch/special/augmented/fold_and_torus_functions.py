@@ -166,7 +166,7 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
     Unsolvable."""
     value = function.value(orbit)
     last = np.inf
-    for _ in range(AUGMENTED_SETTINGS.max_corrections):
+    for number in range(AUGMENTED_SETTINGS.max_corrections):
         function.correct_vectors(orbit)
         before = value
         value = function.value(orbit)
@@ -178,7 +178,8 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
             return
         if change > last:
             break
-        last = change
+        # The first value belongs to the cycle of the matrix; by chance it may be as close as the second.
+        last = change if number > 0 else np.inf
     raise Unsolvable("the iteration for the test function of the special point does not converge")
 
 
