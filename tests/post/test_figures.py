@@ -168,7 +168,7 @@ def test_rows_that_make_no_plane_are_bars(command, drawn):
     labels = [label.get_text() for label in drawn[0].axes[0].get_yticklabels()]
     assert [label.split("= ")[1] for label in labels] == ["200$", r"\infty$"]
     named = [text.get_text() for text in drawn[0].legends[0].get_texts()]
-    assert named == ["monotone", "oscillatory", "flutter"]
+    assert named == ["monotone decay", "oscillatory decay", "flutter"]
 
 
 @pytest.mark.long
@@ -703,7 +703,7 @@ def test_one_arm_with_a_load_relative_to_flutter_has_the_figure_of_a_rod():
 def test_a_bar_of_frequencies_that_are_all_0_does_not_reach_below():
     load = {"young": ["12 kPa", "13 kPa"], "length": ["13 cm", "14 cm"], "pressure": "0.01 kPa"}
     figure = figure_of("spectrum", arm=ARM | load)
-    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "frequency (Hz)")
+    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "leading frequency (Hz)")
     assert bar.get_ylim()[0] == 0
 
 

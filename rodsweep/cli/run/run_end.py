@@ -83,12 +83,12 @@ class RunEnd:
         if self.requested_points:
             points = self.requested_points - self.unsolved_points
             each = self.seconds * self.ranks / max(points, 1)
-            pace = f" ({duration(each)} a point and rank)" if points else ""
+            pace = f" ({duration(each)} per point on one rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.followed_halves is not None:
             word = "curves in" if self.stored_halves is None else "curves stopped after"
-            halves = counted(self.followed_halves, "half curve")
-            done = f"; {halves} of cycles followed" if self.followed_halves else ""
+            pieces = f"{counted(self.followed_halves, 'piece')} of curves of folds and torus points"
+            done = f"; {pieces} followed" if self.followed_halves else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
@@ -96,7 +96,8 @@ class RunEnd:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored_points, 'point')} kept"
         if self.stored_halves is not None:
-            return f"{points}, the curves are missing, {counted(self.stored_halves, 'half curve')} kept"
+            pieces = counted(self.stored_halves, "piece")
+            return f"{points}, {pieces} of curves kept, the other curves are missing"
         if self.interrupted_points:
             return f"{points}, {self.interrupted_points} interrupted, to be solved again"
         return points

@@ -190,10 +190,10 @@ class _RankRun:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
-            click.echo(f"  {failure}")
+            click.echo(f"  {provenance.failure_sentence(failure)}")
         if exceptions:
             raised = counted(exceptions, "unforeseen exception")
-            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+            click.echo(f"  {raised}, a bug: please report it with {self.log.path}, which has the traceback")
 
     def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
         """Text with the number of points of each status. counts: numbers by status. left: number of points of
@@ -240,7 +240,7 @@ class _RankRun:
         self._print_failures(contributions, exceptions)
         if left or lacks_sweep_wide_variables:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
-            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues")
+            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues the run")
             return STOPPED_STATUS
         if amiss:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")

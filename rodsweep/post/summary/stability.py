@@ -66,7 +66,7 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
     stated = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(stated))})" if stated else ""
     some = (
-        f", on {count_of_total(len(found), len(names), 'line')} over {along}"
+        f", on {count_of_total(len(found), len(names), 'line')} of points along {along}"
         if len(found) < len(names)
         else ""
     )

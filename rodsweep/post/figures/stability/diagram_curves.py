@@ -21,14 +21,14 @@ length."""
 SIDE_LOOKS = {
     -1: ("supercritical Hopf points", 1.4, "-"),
     1: ("subcritical Hopf points", 1.4, "--"),
-    0: ("Hopf points, side undecided", 0.6, "-"),
+    0: ("Hopf points, criticality undecided", 0.6, "-"),
 }
 """(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
 CYCLE_MARKS = {
-    "fold": ("folds of cycles on rows", "s"),
-    "torus": ("torus points on rows", "D"),
-    "symmetry_breaking": ("symmetry breakings", "^"),
-    "period_doubling": ("period doublings", "v"),
+    "fold": ("folds of cycles, on no curve", "s"),
+    "torus": ("torus points of cycles, on no curve", "D"),
+    "symmetry_breaking": ("symmetry breakings of cycles", "^"),
+    "period_doubling": ("period doublings of cycles", "v"),
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
@@ -177,7 +177,7 @@ def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2
     for i in range(len(v["bautin_curve"])):
         x = v[f"bautin_{line}"][i]
         y = v[f"bautin_{row}"][i]
-        label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
+        label = rf"generalised Hopf point: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
 
@@ -191,7 +191,7 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         on = v["bautin_along_curve"] == number
         reach = v[f"bautin_along_{third}"][on]
         low, high = (number_text(float(end), 3) for end in (reach.min(), reach.max()))
-        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
+        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
         x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
         drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return drawn
