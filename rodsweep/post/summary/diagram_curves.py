@@ -12,6 +12,13 @@ from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURV
 from ...wording import counted, is_or_are
 from .ranges import error_text, number_with_error, span_text
 
+CYCLE_CHANGE_WORDS = {
+    "fold": "folds of cycles",
+    "torus": "torus points of cycles",
+    "symmetry_breaking": "symmetry breakings of cycles",
+    "left_the_model": "cycles that crush a section of the rod",
+}
+"""Phrase for the special points of cycles on rows and on curves, by kind."""
 CURVE_END_WORDS = {
     "none": "not an end",
     "edge": "edge of the diagram",
@@ -62,14 +69,14 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
         on = np.flatnonzero(v["cycle_curve_number"] == number)
-        kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
+        what = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]]
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
             for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
         )
-        what = "folds of cycles" if kind == "fold" else "torus points of cycles"
+
         error = error_text(float(v["cycle_curve_error"][on].max()))
         points = counted(len(on), "point")
         lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")

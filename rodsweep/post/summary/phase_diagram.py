@@ -11,7 +11,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
-from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
+from .diagram_curves import CYCLE_CHANGE_WORDS, agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import axis_values_text, span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
@@ -25,13 +25,7 @@ STABLE_STATE_WORDS = {
 """Phrase for the stable states of a rod, by name; other names are printed as they are."""
 LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
 """Values of `stable_states` whose regions are listed, by the phrase in the summary."""
-CYCLE_CHANGE_WORDS = {
-    "fold": "folds of cycles",
-    "torus": "torus points of cycles",
-    "symmetry_breaking": "symmetry breakings of cycles",
-    "left_the_model": "cycles that crush a section of the rod",
-}
-"""Phrase for the special points of cycles on rows, by kind."""
+
 CROSSING_REMARKS = {
     "onset": " of oscillations",
     "hopf": " (a pair becomes unstable)",

@@ -147,8 +147,8 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
         *end_variables("cycle_curve", CYCLE_CURVE_ENDS, at),
-        real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
-             f"curve, in units of the axis of {line}"),
+        real("cycle_curve_agreement", "1", "largest distance of a fold or torus point of a row from its "
+             f"curve along {line}, as a fraction of the range of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
     )  # fmt: skip
     return {variable.name: variable for variable in variables}
@@ -187,8 +187,8 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range "
-             f"of {line}"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line}, as a "
+             f"fraction of the range of {line}"),
         integer("curves_untraced", "number of crossings on rows without a curve"),
         real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),

@@ -55,11 +55,14 @@ ESTIMATED_MEANING = (
 )
 """Long name of the variable `certified` in a file of arms that vary along their length."""
 POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
-SHARED_TIME = "time spent on the point, or its share of the time of a stretch of points"
+SHARED_TIME = "time spent on the point; for points solved together, an equal share of their time"
 EACH_FOLLOWED_POINT = (
     UNSTABLE_COUNT,
     CERTIFIED,
-    *(replace(v, long_name=f"{v.long_name}; 0: eigenvalues followed from a neighbour") for v in MESH),
+    *(
+        replace(v, long_name=f"{v.long_name}; 0: eigenvalues continued from a neighbouring point")
+        for v in MESH
+    ),
     replace(SECONDS, long_name=SHARED_TIME),
     STATUS,
 )

@@ -48,7 +48,7 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
     shorter = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if shorter < ARC_STEP_CONTROL.min_length:
-            raise Unsolvable("the bending moments of the cycle change sign within the shortest step")
+            raise Unsolvable("two cycles of opposite sign follow each other at the shortest allowed step")
         return replace(start, next_arc_length=shorter)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent

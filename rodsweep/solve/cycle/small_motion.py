@@ -71,4 +71,4 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     share = abs(normal.landau.real) * amplitude**2 / -w.real
     if share >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
         return ""
-    return f"the motion decays: at the start the cubic term is {share:.0e} of the linear growth rate"
+    return f"the motion decays: at its start the cubic term is only {share:.0e} of the linear decay rate"

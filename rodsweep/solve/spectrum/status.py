@@ -6,7 +6,12 @@ from ..status import PointStatus
 class SpectrumStatus(PointStatus):
     """Outcome of one rod in the tasks spectrum and modes."""
 
-    ok = 0, "every number has the requested accuracy, and is certified if requested", True
+    ok = (
+        0,
+        "every number has the requested accuracy; if a certificate is requested, it shows that no leading "
+        "mode is missing",
+        True,
+    )
     not_certified = (
         1,
         "the eigenvalues are accurate, but no a-priori bound applies or the winding number could "

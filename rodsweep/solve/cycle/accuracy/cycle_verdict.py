@@ -75,6 +75,7 @@ class RefinedCycle:
         if self.stable is None:
             return (
                 CycleStatus.not_settled,
-                f"the cycle's largest |multiplier| is 1 within {self.largest_modulus_error:.0e}",
+                "the stability is undecided: the largest modulus of a Floquet multiplier is 1 within its "
+                f"error, {self.largest_modulus_error:.0e}",
             )
         return (CycleStatus.cycle if self.stable else CycleStatus.unstable), ""

@@ -91,8 +91,9 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
         if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
             turns = modulation.angle_per_return / (2 * np.pi)
             message = (
-                f"the motion is modulated at {turns:.3f} times the return rate; the cycle inside the torus "
-                f"has a multiplier of modulus {cycle.largest_multiplier:.3g}"
+                f"the motion is modulated at {turns:.3f} times the frequency of its oscillation; the "
+                "unstable cycle inside the torus has a Floquet multiplier of modulus "
+                f"{cycle.largest_multiplier:.3g}"
             )
             return TransientOutcome(CycleStatus.torus, message, end.return_count, unstable_cycle=cycle)
     return end
