@@ -466,7 +466,7 @@ def _crossing_sentences(rod, crossings, page):
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
-    for line, match in read(page, r"(?:oscillates|beats|stable again) from F = NUMBER"):
+    for line, match in read(page, r"(?:oscillation|beating|beating again|stable again) from F = NUMBER"):
         near = min(crossings, key=lambda c: abs(c.value - float(match[1])))
         found.append((line, as_stated(match[1], near.value)))
     for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):

@@ -18,7 +18,7 @@ from rodsweep.results.file.provenance import (
     joined_failure_reasons,
     merged_history,
 )
-from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
+from rodsweep.results.layouts.phase_diagram import CURVE_ENDS, STABILITY_CLASSES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.solve.changes.diagram import boundary_curves
 
@@ -57,7 +57,7 @@ def test_a_cycle_of_a_rod_whose_leading_mode_is_real_has_no_ratio_of_frequencies
     view = view_of_sweep(tmp_path, "limit_cycle", F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, accuracy=1e-3)
     assert "times that of the leading mode" in told(view)
     real = told(changed(view, linear_frequency=np.zeros_like(view.variables["linear_frequency"])))
-    assert "rad/tau2; the leading mode does not oscillate" in real
+    assert "rad/tau2; the leading mode of the straight rod does not oscillate" in real
     assert "times the frequency" not in real
 
 
@@ -143,7 +143,7 @@ def test_changes_of_rows_that_are_not_stored_may_be_more(tmp_path):
     assert "restabilization (the last unstable pair becomes stable): on 1 of 2 rows" in told(view)
     kinds = np.asarray(view.variables["crossing_kind"]).copy()
     kinds[kinds == CROSSING_KINDS.index("hopf")] = 0
-    assert "restabilization: on at least 1 of 2 rows" in told(changed(view, crossing_kind=kinds))
+    assert "becomes stable): on at least 1 of 2 rows" in told(changed(view, crossing_kind=kinds))
 
 
 def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
@@ -152,7 +152,7 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     )
     assert "flutter: on 1 of 2 rows, k1 = 200; none on 1, k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
-    classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
+    classes[..., 0, 0, 0, 1] = next(number for number, word in STABILITY_CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))
     assert "no flutter on" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
@@ -170,7 +170,7 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
     end = float(view.variables["F_end"].ravel()[0])
     lines = told(view)
     assert 30.0 < end < 60.0
-    assert "beats from F = 27.0372; 2 crossings up to F = " in lines
+    assert "beating from F = 27.0372; 2 crossings up to F = " in lines
     assert f"; not known beyond F = {end:.6g}, where the search ended early" in lines
     assert f"searched up to F = {end:.15g}; the list of crossings is confirmed by counts" in lines
     answer = rs.Rod(k2=1e4, **{n: v for n, v in EARLY.items() if n != "F_max"}).thresholds(F_max=60.0)

@@ -20,8 +20,8 @@ from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.post.summary.arm.validity_sentences import validity_sentence
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import VALIDITY, VALIDITY_NOT_KNOWN
-from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.arm import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
+from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.thresholds import HOPF_CROSSING_CODES
 from rodsweep.tasks.arm.validity import MOTION_OF_TASK, ArmValidity
 
@@ -84,7 +84,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
         return
     assert (data.model_applies == VALIDITY_NOT_KNOWN).all()
     assert np.isnan(data.neglected_excess).all()
-    validity = {v.name: data[v.name].values.ravel() for v in VALIDITY}
+    validity = {v.name: data[v.name].values.ravel() for v in VALIDITY_VARIABLES}
     said = (
         "whether the model applies is not known at all 2 points: an unstable mode or a cycle may have been "
         "missed, and the neglected effects depend on its frequency"
@@ -120,7 +120,7 @@ def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     record |= {"crossing_at": np.full((1, 3), np.nan)}
     row = MOTION_OF_TASK["phase_diagram"]
     flutter, oscillatory = (
-        next(v for v, name in CLASSES if name == kind) for kind in ("flutter", "oscillatory")
+        next(v for v, name in STABILITY_CLASSES if name == kind) for kind in ("flutter", "oscillatory")
     )
     assert row(record | {"class": np.array([[flutter] * 2])}).may_be_missed.tolist() == [True]
     assert row(record | {"class": np.array([[oscillatory] * 2])}).may_be_missed.tolist() == [False]

@@ -20,7 +20,7 @@ from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
-from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
+from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
 from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
@@ -548,7 +548,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         assert kept.read(0) is None
-    delete_matching_files(tmp_path, CHECKPOINTS)
+    delete_matching_files(tmp_path, CHECKPOINT_GLOB)
     assert not list(tmp_path.iterdir())
 
 

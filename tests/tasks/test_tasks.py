@@ -218,10 +218,12 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
-    from rodsweep.results.layouts.phase_diagram import CLASSES
+    from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
     from rodsweep.solve.changes.diagram.rows import RodClass
 
-    assert {int(motion): motion.name for motion in RodClass} == {v: name for v, name in CLASSES if v >= 0}
+    assert {int(motion): motion.name for motion in RodClass} == {
+        v: name for v, name in STABILITY_CLASSES if v >= 0
+    }
 
 
 def test_first_crossings_are_stored_and_all_are_counted(tmp_path):

@@ -86,10 +86,10 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
-        common = rod.coexistence
+        common = rod.coexistence_ranges
         words = f"{along} = {ranges_text(common, rod.errors)}" if common else nowhere
         yield f"{COEXISTENCE_WORDS}: {words}"
-        if pairs := rod.two_cycles:
+        if pairs := rod.two_cycle_ranges:
             yield f"{TWO_CYCLES_WORDS} at {along} = {ranges_text(pairs, rod.errors)}"
 
 
@@ -189,11 +189,11 @@ def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]
         yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
         yield from _lines_on_rods_with(
-            complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete]
+            complete, along, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
         )
-    two_cycles = [rod.two_cycles for rod in complete]
-    if any(two_cycles):
-        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
+    two_cycle_ranges = [rod.two_cycle_ranges for rod in complete]
+    if any(two_cycle_ranges):
+        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycle_ranges)
 
 
 def _lines_on_rods_with(

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
+from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..hopf_points import StoredThresholds
@@ -46,7 +46,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     beats = done & view.has_status("cycle")
-    orbit = done & view.has_status(*CYCLE_WORDS)
+    orbit = done & view.has_status(*CYCLE_STATUSES)
     stability, arm_sentences = _threshold_lines(view)
     answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(view, done)]
     if view.quantities and done.size > 1 and not beats[done].all():

@@ -5,7 +5,7 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ...results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
@@ -61,7 +61,9 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
 def count_lines(found: np.ndarray) -> list[str]:
     """List with a line on the number of grid points in each class. found: class of each point, of any
     shape."""
-    counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
+    counts = [
+        f"{int((found == value).sum())} {word}" for value, word in STABILITY_CLASSES if (found == value).any()
+    ]
     return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
@@ -119,7 +121,7 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 def class_share_lines(found: np.ndarray) -> list[str]:
     """List with a line on the fraction of the grid points in each class. found: class of each point, of any
     shape."""
-    shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
+    shares = ((100 * float((found == value).mean()), word) for value, word in STABILITY_CLASSES)
     parts = ", ".join(f"{share:.1f} % {word}" for share, word in shares if share)
     return [f"behaviour of the straight rod, in % of the grid points: {parts}"]
 
@@ -129,7 +131,7 @@ def row_start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     done: mask of the computed rows, (...,). line: parameter along a row.
     """
     start = view.variables["class"][done][:, 0]
-    words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
+    words = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
     if words == [f"monotone on {len(start)}"]:
         return []
     rows = f"of {counted(len(start), 'row')}"
@@ -161,7 +163,7 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
                 rows = f"{least}{int(again.any(axis=-1).sum())} of these rows"
                 text += f"; a second time or more on {rows}, at {line} = {later}"
             lines.append(text)
-    flutter, unknown_class = (flag_number(word, CLASSES) for word in ("flutter", "undecided"))
+    flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & done[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)

@@ -15,7 +15,7 @@ MAX_LISTED_LINES = 3
 """The thresholds of up to this number of lines of points are listed one by one; for more lines the range is
 printed."""
 FORCE_THRESHOLD_WORDS = {
-    "onset": "F* (straight rod starts to oscillate)",
+    "onset": "F* (straight rod starts to oscillate, still stable)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }

@@ -23,21 +23,26 @@ FIRST_THRESHOLD_WORDS = {
         "frequency",
         ANGULAR_UNIT,
     ),
-    "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
+    "onset": (
+        "F* (straight rod starts to oscillate, still stable)",
+        "onset_growth_rate",
+        "growth rate",
+        "1/tau2",
+    ),
 }
 """(phrase for the first threshold, second variable, name of this variable, unit of this variable), by kind of
 threshold."""
 ENDED_EARLY = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
-    "onset": "the rod oscillates from",
-    "hopf": "beats from",
-    "restabilization": "is stable again from",
+    "onset": "decaying oscillation from",
+    "hopf": "beating from",
+    "restabilization": "stable again from",
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 
 
-LATER_CROSSING_WORDS = {"hopf": "beats again from", "restabilization": "is stable again from"}
+LATER_CROSSING_WORDS = {"hopf": "beating again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
 
 

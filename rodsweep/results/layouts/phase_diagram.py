@@ -21,7 +21,8 @@ from .variables import (
     word,
 )
 
-CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
+CLASS_NAMES = ("monotone", "oscillatory", "flutter", "undecided", "crushed")
+STABILITY_CLASSES = ((-1, "missing"), *enumerate(CLASS_NAMES))
 """(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Names of the reasons why a curve of generalised Hopf points ends; the file stores the position in this
@@ -41,9 +42,9 @@ of Hopf points."""
 STABLE_STATE_NAMES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
 STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
 """(stored number, word) for the stable states of the rod at a point of a phase diagram with cycles."""
-CYCLE_SPECIAL = "cycle_special"
+CYCLE_SPECIAL_DIMENSION = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
-MAX_CYCLE_SPECIAL = 64
+MAX_CYCLE_SPECIAL_POINTS = 64
 """Maximum number of special points stored for a row; the variable cycle_special_count counts all special
 points."""
 CYCLE_CURVE_ENDS = {
@@ -67,8 +68,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) |
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
-    that varies along each row. row: name of the parameter that differs between rows.
-    """
+    that varies along each row. row: name of the parameter that differs between rows."""
     axes = config["parameters"]
     names = (name for name in TRANSVERSE_PARAMETERS if name in axes)
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
@@ -95,14 +95,14 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
-        word("class", "behaviour of the rod", CLASSES, line),
+        word("class", "behaviour of the rod", STABILITY_CLASSES, line),
         integer("unstable_count", UNSTABLE_COUNT.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
     if options["cycles"]:
         variables += cycle_variables(line)
-        extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
+        extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
     variables = with_certified_meaning(variables, config, "crossings")
     return Layout(variables, extents, parameter_names_except(line), needs_all_points=options["curves"])
 
@@ -119,7 +119,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
         *along_dimension(
-            CYCLE_SPECIAL,
+            CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
             real(f"cycle_special_{line}", unit, f"{line} {at}"),
             real("cycle_special_error", unit, f"estimate of the absolute error of cycle_special_{line}"),

@@ -7,7 +7,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from ....arrays import Array
-from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 
 CLASS_COLOURS = {
     "missing": "white",
@@ -80,7 +80,7 @@ class Palette:
         ]
 
 
-CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
+CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)
 """Palette for the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette for the stable states listed in STABLE_STATES."""

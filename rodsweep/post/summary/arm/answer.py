@@ -9,7 +9,7 @@ from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
-from ....results.layouts.arm import VALIDITY
+from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
@@ -48,7 +48,7 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
             if done.any()
             else []
         )
-    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
+    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
