@@ -380,7 +380,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, "F", "k1")
-    assert line.startswith("this curve meets the row k1 = 175 between F = 60 and 70, where no branch from")
+    assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch from")
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
@@ -440,7 +440,7 @@ def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):
     again = run_fake(command)
     assert "10 of 16 points to do, 6 kept" in again.stdout, again.stderr
     assert "14 ok, 2 list_full" in again.stdout
-    assert "k1=14.0, k2=1.0, gamma3=0.0: list_full a message" in again.stdout
+    assert "list_full, for example at k1 = 14, k2 = 1, gamma3 = 0: a message" in again.stdout
     assert again.returncode == 1
     assert "raise the option crossings" in " ".join(command("show", "c.h5").stdout.split())
     run_fake(command, "-o", "whole.h5")

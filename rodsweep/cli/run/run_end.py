@@ -71,9 +71,10 @@ class RunEnd:
     """Time spent on the variables that need all points, in s."""
     interrupted_points: int
     """Number of points interrupted by a stop."""
-    followed_half_curves: int | None
-    """Number of half curves followed in this run; None if no curves were to be computed."""
-    stored_half_curves: int | None
+    followed_pieces: int | None
+    """Number of half curves (from a starting point, in one direction) followed in this run; None if no curves
+    were to be computed."""
+    stored_pieces: int | None
     """Number of half curves stored for the next run if the curves are incomplete, else None."""
 
     def time_sentences(self) -> list[str]:
@@ -85,18 +86,18 @@ class RunEnd:
             each = self.seconds * self.ranks / max(points, 1)
             pace = f" ({duration(each)} per point on one rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        if self.followed_half_curves is not None:
-            word = "curves in" if self.stored_half_curves is None else "curves stopped after"
-            pieces = f"{counted(self.followed_half_curves, 'piece')} of curves of folds and torus points"
-            done = f"; {pieces} followed" if self.followed_half_curves else ""
+        if self.followed_pieces is not None:
+            word = "curves in" if self.stored_pieces is None else "curves stopped after"
+            pieces = f"{counted(self.followed_pieces, 'piece')} of curves of folds and torus points"
+            done = f"; {pieces} followed" if self.followed_pieces else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored_points, 'point')} kept"
-        if self.stored_half_curves is not None:
-            pieces = counted(self.stored_half_curves, "piece")
+        if self.stored_pieces is not None:
+            pieces = counted(self.stored_pieces, "piece")
             return f"{points}, {pieces} of curves kept, the other curves are missing"
         if self.interrupted_points:
             return f"{points}, {self.interrupted_points} interrupted, to be solved again"

@@ -229,10 +229,8 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
-            followed_half_curves=sum(s.solved_points for s in shares)
-            if pending.is_missing and wide
-            else None,
-            stored_half_curves=len(wide.results) if wide and lacks_sweep_wide_variables else None,
+            followed_pieces=sum(s.solved_points for s in shares) if pending.is_missing and wide else None,
+            stored_pieces=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
             self._print_message(sentence)
