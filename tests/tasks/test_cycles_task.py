@@ -767,7 +767,10 @@ def test_straight_rods_are_no_failure_and_failed_ones_are(command):
     failed = run_fake(command, "-o", "failed.h5", FAIL_AT="7")
     assert failed.returncode == 1
     assert "21 cycle, 3 straight, 3 failed" in failed.stdout
-    assert "F=7.0, k1=100.0, k2=10.0, gamma3=0.5, gamma1=1.0: failed a message" in failed.stdout
+    assert (
+        "failed, for example at F = 7, k1 = 100, k2 = 10, gamma3 = 0.5, gamma1 = 1: a message"
+        in failed.stdout
+    )
     assert "says what each status means" in failed.stdout
     assert "this is failed" in " ".join(command("show", "failed.h5").stdout.split())
 

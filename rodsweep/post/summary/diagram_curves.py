@@ -238,6 +238,6 @@ def bautin_curve_lines(view: View) -> list[str]:
         )
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
-            f"it begins at {start} and ends at {end}"
+            + (f"both ends lie at {start}" if start == end else f"it begins at {start} and ends at {end}")
         )
     return lines

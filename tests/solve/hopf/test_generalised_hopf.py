@@ -397,7 +397,7 @@ def test_curves_over_a_third_parameter_are_shown_drawn_and_the_same_on_two_ranks
     assert same(one, two)
     told = command("show", "c.h5").stdout.replace("\n", " ")
     assert "curve 1 of generalised Hopf points: " in told
-    assert "k2 = 9600 to 10400; it begins at the end of the range and ends at the end of the range" in told
+    assert "k2 = 9600 to 10400; both ends lie at the end of the range" in told
     assert command.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 
