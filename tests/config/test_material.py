@@ -291,7 +291,7 @@ def test_check_states_the_mesh_of_a_list_of_arms(tmp_path, task):
     (tmp_path / "list.csv").write_text("\n".join(rows) + "\n")
     (tmp_path / "a.yaml").write_text(f"task: {task}\nparameters: {{points: list.csv}}\n")
     said = job_of_file(tmp_path / "a.yaml", ()).task.arms_line()
-    assert said.startswith("cones of radius ratios 0.6 to 1 of linear material; at first ")
+    assert said.startswith("cones of radius ratios 0.6 to 1 of linear material; the first mesh ")
 
 
 def test_check_foresees_minutes_where_many_modes_of_an_arm_grow(tmp_path):

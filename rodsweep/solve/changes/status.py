@@ -6,12 +6,7 @@ from ..status import PointStatus
 class ThresholdStatus(PointStatus):
     """Status of a search for all thresholds along a path of rods."""
 
-    ok = (
-        0,
-        "all thresholds have the requested accuracy; if a certificate is requested, it shows that no "
-        "threshold is missing",
-        True,
-    )
+    ok = 0, "all thresholds have the requested accuracy; if certified, none is missing", True
     not_certified = (
         1,
         "the thresholds are accurate, but a count of the unstable modes between them is undecided or "

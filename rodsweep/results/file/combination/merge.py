@@ -104,8 +104,8 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
         files.append(read_header(path))
         if any(journal_directory(path).glob(JOURNAL_GLOB)):
             raise InputError(
-                f"{path} has points in the journal that are not in the file yet; first repeat the run of this "
-                "file, which adds them"
+                f"{path} has points in the journal that are not in the file yet; first repeat the run of "
+                "this file, which adds them"
             )
     return files
 
