@@ -25,17 +25,17 @@ from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.file.validation import FORMAT
-from rodsweep.results.layouts.arm import VALIDITY
+from rodsweep.results.layouts.arm import VALIDITY_VARIABLES
 from rodsweep.results.layouts.phase_diagram import (
-    CLASSES,
     CYCLE_CURVE_ENDS,
+    STABILITY_CLASSES,
     STABLE_STATES,
     bautin_curve_variables,
     criticality_variables,
     curve_variables,
     cycle_curve_variables,
 )
-from rodsweep.results.layouts.spectrum import FORCE_CHANGES
+from rodsweep.results.layouts.spectrum import FORCE_CHANGE_VARIABLES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
 from rodsweep.tasks.arm.point_solver import NoRodStatus
@@ -357,7 +357,7 @@ At a point of a grid whose arm is outside the model nothing is computed, and `st
 def validity() -> str:
     """Variables on the validity of the model, and statuses of arms without a rod."""
     statuses = [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(NoRodStatus)]
-    variables = variable_table(variable_row(v, ["...", *v.extra]) for v in VALIDITY)
+    variables = variable_table(variable_row(v, ["...", *v.extra]) for v in VALIDITY_VARIABLES)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 
 
@@ -408,7 +408,7 @@ def words_of_diagrams() -> list[str]:
     """Tables of the words in the file of a phase diagram."""
     ends = tuple(enumerate(CYCLE_CURVE_ENDS))
     return [
-        words("Classes", MOTIONS, CLASSES),
+        words("Classes", MOTIONS, STABILITY_CLASSES),
         words("Stable states with cycles", STATES, STABLE_STATES),
         words("Ends of curves of folds and torus points", CYCLE_CURVE_ENDS, ends),
     ]
@@ -444,7 +444,7 @@ def variables_of(job: Job) -> dict[str, tuple[Variable, list[str]]]:
     found = {v.name: (v, ["...", *v.extra]) for v in job.layout.variables}
     beside = [v for v, _ in job.task.variables_from_config()]
     if job.config.task in ("spectrum", "modes"):
-        beside += FORCE_CHANGES
+        beside += FORCE_CHANGE_VARIABLES
     return found | {v.name: (v, list(v.extra)) for v in beside}
 
 

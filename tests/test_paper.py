@@ -89,7 +89,7 @@ def test_the_onset_of_a_soft_rod_does_not_rise_with_inverse_drag(command):
         small, middle, large = file["F_onset"][0, 0]
         assert middle < large < small
     assert (
-        "F_onset rises with 1/gamma3 on 0 of 1 line, is not monotone on 1"
+        "F_onset rises with 1/gamma3 on 0 of 1 line of rods, is not monotone on 1"
         in command("show", "fig3.h5").stdout
     )
 

@@ -33,7 +33,7 @@ from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
 from ..solve.solve_lock import one_at_a_time
 
-ENGINE = "h5netcdf"
+XARRAY_ENGINE = "h5netcdf"
 """Backend with which xarray reads result files."""
 
 
@@ -110,7 +110,7 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with damage_refusals(path):
         try:
-            with xr.open_dataset(path, engine=ENGINE, phony_dims="sort") as stored:
+            with xr.open_dataset(path, engine=XARRAY_ENGINE, phony_dims="sort") as stored:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(one_line_message(error)) from error

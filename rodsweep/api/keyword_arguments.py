@@ -23,7 +23,7 @@ from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
-"""Class of an arm."""
+"""Type variable for the class of an arm: an argument and the result of a function have the same class."""
 DEFAULT_VALUES = {
     "drag": DRAG_NAMES[0],
     "law": DEFAULT_BUILD.law,

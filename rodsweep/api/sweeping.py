@@ -41,13 +41,14 @@ def sweep(
     progress: bool | None = None,
     **keywords: Any,
 ) -> xr.Dataset:
-    """The Dataset of a task over its points, equal to the file of `rodsweep run`.
+    """Solves a task at every point of a grid or list; returns a Dataset with the content of the file that
+    `rodsweep run` writes.
 
-    keywords: the keys of a config, without sections. A parameter is a number, a list or array of increasing
-    values, `linspace(...)` or `logspace(...)`. Instead of parameters, `points` may name a CSV file with the
-    parameters of all points. `arm` is an `Arm` or a mapping of its quantities; tasks that find the load
-    ignore the arm's load. `accuracy`, `title` and the options of the task may follow. Omitted keys have the
-    config's defaults.
+    task: name of the task, such as "spectrum". keywords: the keys of a config, without sections. A parameter
+    is a number, a list or array of increasing values, `linspace(...)` or `logspace(...)`. Instead of
+    parameters, `points` may name a CSV file with the parameters of all points. `arm` is an `Arm` or a mapping
+    of its quantities; tasks that find the load ignore the arm's load. `accuracy`, `title` and the options of
+    the task may follow. Omitted keys have the config's defaults.
 
     ranks: number of MPI ranks, which `rodsweep run` starts; by default the points are solved in this process.
     strict: whether an unforeseen exception, a bug of rodsweep, is raised. By default the point has the status

@@ -38,22 +38,22 @@ def print_job_check(job: Job) -> None:
     cost = job.task.cost()
     if cost.unknowns is not None:
         low, high = cost.unknowns
-        console.print(f"unknowns per point: {low} to {high} expected, for accuracy {job.config.accuracy:g}")
+        console.print(f"expected unknowns of the mesh per point: {low} to {high}, for the requested accuracy")
     console.print(
-        f"expected: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run "
+        f"expected cost: {cost.seconds:.3g} s on one rank (divide by the number of ranks; the first run "
         f"may compile for up to three minutes more), {cost.memory_bytes / 1e6:.0f} MB of memory per rank, "
         f"{job.points.count * job.layout.bytes_per_point / 1e6:.3g} MB of results"
     )
     if cost.doubt:
         console.print(
-            f"this estimate is uncertain: {cost.doubt} may take a hundred times as long, and some GB; try a "
-            "single point or row first"
+            f"this estimate is uncertain: {cost.doubt} may take a hundred times as long, and several GB of "
+            "memory; try a single point or row first"
         )
     if cost.too_large_mesh_count:
         sampled = min(MAX_SAMPLED_POINTS, job.points.count)
         console.print(
-            f"warning: {cost.too_large_mesh_count} of {sampled} sampled points need more than the "
-            f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with status failed; "
+            f"warning: {cost.too_large_mesh_count} of {sampled} sampled points need a mesh of more than the "
+            f"{RESOLUTION_SETTINGS.max_unknowns} unknowns allowed and will end with the status failed; "
             "use a smaller F, fewer modes or a larger number for the accuracy"
         )
 
@@ -67,16 +67,14 @@ def _arm_lines(job: Job) -> list[str]:
         v.name: values for v, values in job.quantities if v.name == "tau2"
     }
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
-    validity = validity_sentence(
-        ArmValidity(job.config, job.points).variables_at_rest(), when=" before anything moves"
-    )
+    validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; the run also tests inertia, by the frequency of the arm's motion",
+        f"{validity}; inertia depends on the frequency of the arm's motion, and the run tests it",
     ]
 
 
@@ -102,7 +100,7 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     worst = int(np.argmax(effect.value))
     warning = tube_wall_check(replace(effect, value=effect.value[worst])).text
     some = int((effect.validity > 0).sum())
-    return [f"{warning} That is the worst of {counted(effect.value.size, 'tube')}."] if some else []
+    return [f"{warning} Of {counted(effect.value.size, 'tube')} this is the worst."] if some else []
 
 
 def _uncovered_lines(points: Points) -> list[str]:
@@ -114,7 +112,7 @@ def _uncovered_lines(points: Points) -> list[str]:
     if rods is not None:
         there = rods if points.coverage is None else rods[points.coverage == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
-        lines.append(f"{different} at {len(there)} points: equal rods are solved once")
+        lines.append(f"{different} at {len(there)} points; rods that are equal are solved once")
     for status in NoRodStatus:
         number = 0 if points.coverage is None else int((points.coverage == status).sum())
         if number:

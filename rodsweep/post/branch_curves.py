@@ -134,20 +134,22 @@ class RodBranches:
         return {at: error for curve in self.curves for at, error in curve.parameter_errors.items()}
 
     @property
-    def stable_cycles(self) -> list[ParameterRange]:
+    def stable_cycle_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the rod has a stable cycle."""
         return union_of_ranges(piece for curve in self.curves for piece in curve.stable_ranges)
 
     @property
-    def two_cycles(self) -> list[ParameterRange]:
+    def two_cycle_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
         return union_of_ranges(piece for one, other in pairs for piece in intersection_of_ranges(one, other))
 
     @property
-    def coexistence(self) -> list[ParameterRange]:
+    def coexistence_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection_of_ranges(self.stable_cycles, self.straight_ranges(branch_ends(self.view))[0])
+        return intersection_of_ranges(
+            self.stable_cycle_ranges, self.straight_ranges(branch_ends(self.view))[0]
+        )
 
     @property
     def coexistence_is_decided(self) -> bool:

@@ -53,7 +53,7 @@ def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> Non
     contain units.
     """
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
-    lines.writerow(f"{c.name} [{c.unit}]" if units and c.unit != "1" else c.name for c in table.columns)
+    lines.writerow(column.heading_with_unit if units else column.name for column in table.columns)
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):
         texts = [column.rows(slice(start, start + EXPORT_BATCH_ROWS)).texts() for column in table.columns]
         lines.writerows(zip(*texts, strict=True))

@@ -30,7 +30,7 @@ PROGRESS_TAG = 74
 POLL_SECONDS = 2e-3
 """Seconds between two polls for messages by the thread of the first rank. Each poll takes 20 microseconds or
 more from the solve on that rank."""
-RELIEVED_POLL_SECONDS = 5e-3
+POLL_SECONDS_IF_ANSWERED = 5e-3
 """Seconds between two polls for messages by the thread of the first rank, if the first rank has recently
 answered requests between two points."""
 FIRST_CHUNK_POLL_SECONDS = 1e-4
@@ -181,8 +181,8 @@ class FirstRankRequests:
         with self.team.abort_all_ranks_on_error():
             while self.working_ranks:
                 self._serve()
-                answering = time.monotonic() - self.last_served < RELIEVED_POLL_SECONDS
-                time.sleep(RELIEVED_POLL_SECONDS if answering else POLL_SECONDS)
+                answering = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
+                time.sleep(POLL_SECONDS_IF_ANSWERED if answering else POLL_SECONDS)
 
 
 class OtherRankRequests:

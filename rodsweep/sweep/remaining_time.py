@@ -95,4 +95,4 @@ def rate_in_words(done: int, seconds: float) -> str:
     if not done or not seconds:
         return ""
     rate = done / seconds
-    return f"{rate:.3g}/s" if rate >= 1 else f"{duration_text(1 / rate)} a point"
+    return f"{rate:.3g}/s" if rate >= 1 else f"{duration_text(1 / rate)} per point"

@@ -24,8 +24,10 @@ def crushing_clause(config: Config) -> str:
 
 
 def points_text(points: Points) -> str:
-    """Text with the number of points and the shape of their grid: "50 points (5 x 10)"."""
-    shape = " x ".join(str(n) for n in points.shape) if points.axes else "a list"
+    """Text with the number of points and the shape of their grid: "50 points (a grid of 5 x 10)"."""
+    if points.axes and points.count == 1:
+        return "1 point"
+    shape = f"a grid of {' x '.join(str(n) for n in points.shape)}" if points.axes else "a list"
     if points.arm_axes:
         shape = f"{shape}: {' x '.join(points.arm_axes)}"
     return f"{counted(points.count, 'point')} ({shape})"
@@ -85,7 +87,7 @@ def arms_line(
         return arms
     count = counted(mesh.element_count, "element")
     several = any(len(np.unique(c)) > 1 for c in columns.values())
-    return f"{arms}; at first {count} of order {mesh.order}{', for the finest mesh' * several}"
+    return f"{arms}; the first mesh{' of the hardest arm' * several} has {count} of order {mesh.order}"
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:

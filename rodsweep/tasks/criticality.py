@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..config.task.criticality import CriticalityConfig
-from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM
+from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM_VARIABLES
 from ..results.layouts.variables import outcome_values, value_lists
 from ..sweep.cost_estimate import CostEstimate, criticality_cost
 from .base_classes import HopfPointTask
@@ -65,6 +65,6 @@ def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, A
     for name in ABSENT_FROM_HOPF_SEARCH:
         del search[name]
     pairs = zip(result.coefficients, result.hopf_points, strict=False)
-    rows = [outcome_values(NORMAL_FORM, *pair, prefix="crossing_") for pair in pairs]
+    rows = [outcome_values(NORMAL_FORM_VARIABLES, *pair, prefix="crossing_") for pair in pairs]
     ends = {"F_end": result.F_end, "unstable_at_end": result.search_result.unstable_at_end}
-    return search | ends | value_lists(NORMAL_FORM, rows, max_crossings)
+    return search | ends | value_lists(NORMAL_FORM_VARIABLES, rows, max_crossings)

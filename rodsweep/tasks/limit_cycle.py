@@ -35,14 +35,14 @@ from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
 if TYPE_CHECKING:
     from ..solve.cycle.limit_cycle import Cycle, CycleRequest
 
-SWEEP_OPTIONS = ("method", "along", "direction", "time")
+NON_SOLVER_OPTIONS = ("method", "along", "direction", "time")
 """Options of the task that concern the sweep or the file; all other options are passed to the solver of a
 cycle."""
 MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
 """Field of `_StoredMultipliers` by name of the variable, where the two names differ."""
-K2_WITH_TAU1 = Range(isfinite, "a finite number")
+ALLOWED_K2_WITH_TAU1 = Range(isfinite, "a finite number")
 """Values of k2 for which tau1 exists."""
-GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
+ALLOWED_GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
 """Values of gamma3 for which tau1 exists."""
 
 
@@ -55,8 +55,8 @@ class LimitCycleTask(Task):
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
             why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", why)
-            require_in_range(GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", why)
+            require_in_range(ALLOWED_K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", why)
+            require_in_range(ALLOWED_GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", why)
 
     @property
     def chains(self) -> Chains | None:
@@ -208,7 +208,7 @@ class LimitCycleTask(Task):
         """The settings with which `solve_cycle` solves the cycle at every point."""
         from ..solve.cycle.limit_cycle import CycleRequest
 
-        options = self.config.limit_cycle.model_dump(exclude=set(SWEEP_OPTIONS))
+        options = self.config.limit_cycle.model_dump(exclude=set(NON_SOLVER_OPTIONS))
         return CycleRequest(accuracy=self.config.accuracy, **options)
 
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:

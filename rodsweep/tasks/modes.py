@@ -11,7 +11,7 @@ from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
 from ..discretization.elements.resolution import mesh_accuracy
 from ..model.rod import Rod
-from ..results.layouts.modes import GROWTH_VARIABLES, MODE_NUMBERS
+from ..results.layouts.modes import GROWTH_VARIABLES, MODE_SCALAR_VARIABLES
 from ..results.layouts.spectrum import MODE_VARIABLES, POINT_VARIABLES
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import CostEstimate, modes_cost, spectra_cost
@@ -94,7 +94,7 @@ def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     values = outcome_values(
         MODE_VARIABLES + POINT_VARIABLES, vectors.resolution, result, result.spectrum, names=names
     )
-    values |= outcome_values(MODE_NUMBERS, vectors)
+    values |= outcome_values(MODE_SCALAR_VARIABLES, vectors)
     fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
     for name, field in zip(
         fields, (*vectors.right_modes, *vectors.mode_strains, *vectors.left_modes), strict=True

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
-from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
+from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, diagram_cost
 from .base_classes import CertifiedTask
@@ -122,7 +122,7 @@ class PhaseDiagramTask(CertifiedTask):
         from ..solve.branch.status import CoexistenceStatus
 
         def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL, workspace)
+            row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL_POINTS, workspace)
             return curves.cache_row(index, row)
 
         return replace(

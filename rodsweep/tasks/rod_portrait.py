@@ -108,7 +108,7 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
         for kind, F in first_threshold_forces(views["thresholds"]).items()
         if (view := solved("modes", {}, F)) is not None
     }
-    ranges = RodBranches(views["branch"]).stable_cycles if "branch" in views else []
+    ranges = RodBranches(views["branch"]).stable_cycle_ranges if "branch" in views else []
     cycles = [(F, view) for F in cycle_forces(ranges) if (view := _cycle_at_force(solved, F)) is not None]
     if not modes:
         missing.setdefault("modes", f"no threshold is known up to F = {request.F_max:g}")

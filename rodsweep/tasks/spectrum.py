@@ -18,7 +18,7 @@ from ..model.material.build import Build
 from ..model.material.laws import LINEAR
 from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
-    EACH_FOLLOWED_POINT,
+    FOLLOWED_POINT_VARIABLES,
     MODE_VARIABLES,
     longitudinal_parameters,
     longitudinal_variables,
@@ -204,7 +204,7 @@ def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
-    values = outcome_values(MODE_VARIABLES + EACH_FOLLOWED_POINT, result)
+    values = outcome_values(MODE_VARIABLES + FOLLOWED_POINT_VARIABLES, result)
     if result.vectors is not None:
         for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
             values[f"{field}_real"] = vector.real

@@ -3,6 +3,7 @@
 import inspect
 import json
 import os
+import pydoc
 import shutil
 import signal
 import subprocess
@@ -90,6 +91,9 @@ def test_names_are_these():
 
 def test_arguments_are_these():
     assert list(inspect.signature(rs.sweep).parameters) == ["task", "ranks", "strict", "progress", "keywords"]
+    said = pydoc.plaintext.document(rs.sweep)
+    assert "rs.sweep(task: str, *, ranks: int | None" in said
+    assert "ranks: number of MPI ranks" in said
     drawn = list(inspect.signature(rs.plot).parameters)
     assert drawn == ["data", "output", "roots", "what", "points", "at", "look"]
     assert list(inspect.signature(rs.open).parameters) == ["path"]

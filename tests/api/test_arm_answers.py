@@ -30,7 +30,7 @@ def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
 @pytest.mark.parametrize(
     "viscosity, density_difference, first",
     [
-        ("20 Pa s", "0 kg/m^3", "oscillates from "),
+        ("20 Pa s", "0 kg/m^3", "decaying oscillation from "),
         ("1 mPa s", "0 kg/m^3", "the model does not apply: inertia of the arm is "),
         ("20 Pa s", "8 kg/m^3", "the model is doubtful: weight is 0.69 times its limit"),
     ],
@@ -40,7 +40,7 @@ def test_an_answer_about_an_arm_begins_with_the_validity_of_the_model(viscosity,
     answer = rs.Arm(**given, density_difference=density_difference).thresholds()
     lines = str(answer).splitlines()
     assert lines[0].startswith(first)
-    assert ("if the model applied: oscillates from " in str(answer)) == (viscosity == "1 mPa s")
+    assert ("if the model applied: decaying oscillation from " in str(answer)) == (viscosity == "1 mPa s")
     assert first in answer._repr_html_()
 
 

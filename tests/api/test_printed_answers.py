@@ -198,7 +198,7 @@ def test_check_stays_in_the_window(name, monkeypatch):
         print_job_check(job_of_file(ROOT / "configs" / f"{name}.yaml", ()))
     lines = page.getvalue().splitlines()
     assert max(map(len, lines)) <= WINDOW
-    assert any(line.startswith("expected: ") for line in lines)
+    assert any(line.startswith("expected cost: ") for line in lines)
 
 
 def test_a_frame_holds_no_negative_zero():

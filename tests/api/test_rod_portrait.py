@@ -37,7 +37,7 @@ def test_thresholds_and_criticality_are_those_of_their_tasks(portrait):
     crossings = FOLDED.thresholds().crossings
     (onset, hopf, again) = crossings["crossing_F"]
     text = portrait.paragraph
-    assert numbers(text, "starts to oscillate at F = ") == [pytest.approx(onset, rel=1e-5)]
+    assert numbers(text, "start to oscillate at F = ") == [pytest.approx(onset, rel=1e-5)]
     assert numbers(text, "becomes unstable at F = ") == [pytest.approx(hopf, rel=1e-5)]
     assert numbers(text, "stable again from F = ") == [pytest.approx(again, rel=1e-5)]
     assert numbers(text, "(frequency ") == pytest.approx(

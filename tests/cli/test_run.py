@@ -263,7 +263,7 @@ def test_only_the_first_rank_talks_and_logs_have_plain_lines(command):
     lines = run.stderr.splitlines()
     assert lines
     assert all(
-        re.fullmatch(r"\d+ of 252 points(, [\d.]+(/s| s a point))?(, about [\d.]+ (s|min) left)?", line)
+        re.fullmatch(r"\d+ of 252 points(, [\d.]+(/s| s per point))?(, about [\d.]+ (s|min) left)?", line)
         for line in lines
     ), lines
     assert "\x1b" not in run.stdout

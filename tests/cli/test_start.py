@@ -13,7 +13,7 @@ LINES = (("check", "c.yaml"), *SOLVED, ("plot", "c.h5"))
 DRAWN = TASKS if RODS else ["thresholds"]
 """Tasks whose config is checked and whose figure is drawn afresh too: starts take most of it, and matplotlib.
 `make survey` takes all."""
-PROGRESS = re.compile(r"\d+ of \d+ points(, (\d[\d.e+]*/s|[\d.]+ \w+ a point))?(, about [\d.]+ \w+ left)?")
+PROGRESS = re.compile(r"\d+ of \d+ points(, (\d[\d.e+]*/s|[\d.]+ \w+ per point))?(, about [\d.]+ \w+ left)?")
 """The only thing that belongs on standard error, where a run takes its time."""
 
 

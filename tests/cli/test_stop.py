@@ -68,7 +68,7 @@ def test_stopped_run_ends_with_its_points_in_the_file_and_goes_on(command, conte
     os.kill(ranks_in(command.directory)[rank] if ranks else process.pid, number)
     out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 75, err
-    stopped = rf"stopped by {number.name}; (\d+) points? kept, the same command continues"
+    stopped = rf"stopped by {number.name}; (\d+) points? kept, the same command continues the run"
     assert "Traceback" not in err
     assert not (command.directory / "c.h5.journal").exists()
     with h5py.File(command.directory / "c.h5") as file:
@@ -135,7 +135,7 @@ def test_ctrl_c_in_a_terminal_ends_like_sigterm(command):
     status, said = typed_ctrl_c(command, ranks=0)
     assert status == 75
     assert "stopping: all points that are done are kept" in said
-    assert "stopped by SIGINT; 61 points kept, the same command continues" in said
+    assert "stopped by SIGINT; 61 points kept, the same command continues the run" in said
     assert "61 kept" in command("run", "c.yaml").stdout
 
 

@@ -44,9 +44,9 @@ WITHOUT_CYCLE = {
 }
 """What is said of arms of which none beats, by status."""
 SAID = {
-    "flutters at": "hopf",
-    "is straight again from": "restabilization",
-    "a disturbance swings as it dies away from": "onset",
+    "flutter begins at": "hopf",
+    "the straight arm is stable again from": "restabilization",
+    "decaying disturbances oscillate from": "onset",
 }
 NAMED = {"Young's modulus": "young", "Poisson's ratio": "poisson"}
 EQUAL_LOADS = 1e-12
@@ -232,7 +232,7 @@ def _thresholds(view, page, scales):
             of_kind = [(c, i) for _, c, at in changes if c.kind.name == kind for i in at]
             loads = [c.value * to_load[i] for c, i in of_kind]
             hertz = [c.frequency * to_hertz[i] for c, i in of_kind]
-            pattern = rf"^{start} {value}(?: on)?(?:, where it begins to beat at {value})?$"
+            pattern = rf"^{start} {value}(?: on)?(?:, where the arm begins to beat at {value})?$"
             found += [(line, _in_units(match.groups(), loads, hertz)) for line, match in read(page, pattern)]
         return found
     if view.task == "branch":
@@ -353,9 +353,9 @@ def _drag_sentences(view, page, start, chosen, numbers):
     beats = np.isfinite(numbers.get("frequency", np.array([])))
     of_each = [beats[(alike == n) & chosen] for n in np.unique(alike[chosen])] if beats.size else []
     true = {
-        "with every drag": sum(b.all() for b in of_each),
-        "with part of the range of drag": sum(b.any() and not b.all() for b in of_each),
-        "with no drag": sum(not b.any() for b in of_each),
+        "for every drag": sum(b.all() for b in of_each),
+        "for part of the range of drag": sum(b.any() and not b.all() for b in of_each),
+        "for no drag": sum(not b.any() for b in of_each),
     }
     for line, match in read(page, rf"{start}of NUMBER combinations? of arm and load: beats (.*)$"):
         told = {
@@ -399,11 +399,11 @@ def _answer(view, page, fine, scales):
         w = np.array([leading(rod)[0] for rod in rods_of(view)])
         gives_way = chosen & (w.real > 0)
         told(
-            rf"gives way{some}; its leading mode oscillates at {value}$",
+            rf"the straight arm is unstable{some}; its leading mode oscillates at {value}$",
             gives_way.sum(),
             (w.imag * to_hertz)[gives_way],
         )
-        wrong = [x for x in page if x.startswith(f"{prefix}stays straight") and gives_way.any()]
+        wrong = [x for x in page if x.startswith(f"{prefix}the straight arm is stable") and gives_way.any()]
         found += [(line, "a mode grows") for line in wrong]
     elif view.task == "limit_cycle":
         v = fine.variables
@@ -424,7 +424,8 @@ def _answer(view, page, fine, scales):
         v, rows = view.variables, len(scales["tau2"])
         loads = v["branch_F"].reshape(rows, -1) * scales[force_unit(view)][:, None]
         hertz = 1 / (v["period"].reshape(rows, -1) * scales["tau2"][:, None])
-        told(rf"(?:at NUMBER of NUMBER )?beats at {value}, at {value}$", 0, loads[chosen], hertz[chosen])
+        words = rf"cycles{some}, stable or not, exist at {value}; they beat at {value}$"
+        told(words, 0, loads[chosen], hertz[chosen])
     return found
 
 
@@ -433,15 +434,16 @@ def _flutter_answer(view, page, told, start, chosen, scales):
     some, value = r"(?: at NUMBER of NUMBER points?)?", rf"RANGE ({UNIT})"
     loads, hertz = _first(view, scales, "hopf")
     there = np.isfinite(loads[chosen])
-    told(rf"flutters{some} from {value}; beats at {value}$", there.sum(), loads[chosen], hertz[chosen])
+    flutter = rf"flutter begins{some} at {value}; there the arm beats at {value}$"
+    told(flutter, there.sum(), loads[chosen], hertz[chosen])
     if view.task != "criticality" or "F_end" in view.variables:
         tops = np.minimum(_tops(view), view.point_columns["k1"])
         ends = (tops * scales[force_unit(view)])[chosen]
         told(rf"does not flutter{some} up to {value}$", (~there).sum(), ends)
     if view.task == "thresholds" and len(chosen) > 1:
         onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
-        told(rf"a disturbance{some} swings as it dies away from {value} on$", 0, onset)
-        told(rf"is straight again{some}, from {value} on$", np.isfinite(back).sum(), back)
+        told(rf"decaying disturbances{some} oscillate from {value} on$", 0, onset)
+        told(rf"the straight arm is stable again{some}, from {value} on$", np.isfinite(back).sum(), back)
     numbers = {"flutter": loads, "its frequency": hertz}
     found = _drag_sentences(view, page, start, chosen, numbers)
     return found + _extremes(view, page, start, loads, chosen)
@@ -450,7 +452,7 @@ def _flutter_answer(view, page, told, start, chosen, scales):
 def _extremes(view, page, start, loads, chosen):
     """The check of which arms flutter at the least and at the largest of loads."""
     loads, found = np.where(chosen, loads, np.nan), []
-    for line, match in read(page, rf"{start}smallest at (.*); largest at (.*)$"):
+    for line, match in read(page, rf"{start}smallest flutter load at (.*); largest at (.*)$"):
         ends = (np.nanmin(loads), np.nanmax(loads))
         why = [_of_one(view, text, loads, end) for text, end in zip(match.groups(), ends, strict=True)]
         found.append((line, "; ".join(filter(None, why))))

@@ -29,10 +29,10 @@ PLURALS = {
     "period doublings?": "period_doubling",
 }
 LEADS_TO = {
-    "a cycle with h1 = 0": "left_the_model",
+    "a cycle that crushes a section of the rod": "left_the_model",
     "the end of the range": "range_end",
     "a force that almost crushes the rod": "crushed",
-    "a cycle after which no further cycle was found": "no_cycle_found",
+    "a cycle beyond which no further cycle was found": "no_cycle_found",
 }
 CURVED = 2e-3
 """Relative error of a spline through the cycles of a finer branch, which stands for cycles between them."""
@@ -84,7 +84,7 @@ def _one_rod(view, page, fine, own, true):
         elif line.startswith("stable cycles beside a stable straight rod:"):
             common = _beside(fine, 0)
             found += _ranges_line(page, line, common) + [(line, _growing(view, common, 0))]
-        elif line.startswith("stable cycles of two branches"):
+        elif line.startswith("two stable cycles, on different branches, at"):
             found += _ranges_line(page, line, _pairs(true))
     return found
 
@@ -258,16 +258,16 @@ def _grid(view, page, fine, own, true):
             found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], at)]))))
     for words, reason in LEADS_TO.items():
         at = [s.at for _, s in specials if reason in (s.kind, s.reason)]
-        for line, match in read(page, rf"^NUMBER branch(?:es)? leads? to {words}: F = RANGE"):
+        for line, match in read(page, rf"^NUMBER branch(?:es)? ends? at {words}: F = RANGE"):
             why = [] if int(match[1]) == len(at) else [f"there are {len(at)}"]
             found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], at)]))))
     for words, of in (
-        ("beside a stable straight rod", _beside),
-        ("of two branches", lambda f, r: _pairs(true[r])),
+        ("stable cycles beside a stable straight rod", _beside),
+        ("two stable cycles, on different branches,", lambda f, r: _pairs(true[r])),
     ):
         having = {rod: some for rod in true if (some := of(fine, rod))}
-        found += counts(page, rf"^stable cycles {words} at NUMBER of NUMBER rod", len(having), count)
-        begins = [i for i, line in enumerate(page) if line.startswith(f"stable cycles {words} at")]
+        found += counts(page, rf"^{words} at NUMBER of NUMBER rod", len(having), count)
+        begins = [i for i, line in enumerate(page) if line.startswith(f"{words} at")]
         if begins and having:
             lines = page[begins[0] + 1 : begins[0] + 1 + len(having)]
             for line, (rod, some) in zip(lines, having.items(), strict=True):

@@ -413,9 +413,9 @@ BRANCH_WORDS = {
     "torus point": "torus",
     "symmetry breaking": "symmetry_breaking",
     "period doubling": "period_doubling",
-    "the model ends (h1 = 0)": "left_the_model",
+    "section crushed (h1 = 0)": "left_the_model",
     "no further cycle found": "no_cycle_found",
-    "last cycle stored": "list_full",
+    "last stored cycle": "list_full",
 }
 STYLE_OF_STABILITY = {"-": 1, "--": 0, ":": -1}
 
@@ -457,7 +457,7 @@ def branch_figure(d, view, fine):
         found.append((name, d.compare(axes, (xs, ys), xy(every), 1e-4, whole=False)))
         found += [(name, _stable(d, line, own, rods, colours, columns, view)) for line in every]
     for axes in third:
-        law = d.lines(axes, lambda one: one.get_label() == "by the normal form")
+        law = d.lines(axes, lambda one: one.get_label() == "predicted by the normal form")
         x, y = xy(law)
         found.append(("normal form", d.compare(axes, (x, y), (x, np.sqrt(x)), LINE)))
         beside = [piece for rod in rods for c in own[rod] for piece in _beside(c)]

@@ -358,7 +358,7 @@ def class_of(rod):
     if rod is None:
         return "crushed"
     w = roots_of(rod, 2)[0]
-    return "flutter" if w.real > 0 else "oscillatory" if w.imag else "monotone"
+    return "flutter" if w.real > 0 else "oscillatory decay" if w.imag else "monotone decay"
 
 
 def words_of(view):

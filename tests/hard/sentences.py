@@ -225,7 +225,7 @@ def table_sentences(view, page, keywords):
     return found
 
 
-FAILURE = re.compile(r"(\w+), as at ([^:]+): .+")
+FAILURE = re.compile(r"(\w+), for example at ([^:]+): .+")
 
 
 def failure_sentences(view, page):
@@ -238,7 +238,8 @@ def failure_sentences(view, page):
         page.mark(line, match.span())
         here = view.variables["status"].ravel() == values[match[1]]
         for name, value in (pair.split(" = ") for pair in match[2].split(", ")):
-            here &= view.point_columns.get(name, float(value)) == float(value)
+            column = view.point_columns.get(name, float(value))
+            here &= np.isclose(column, float(value), rtol=1e-8, atol=0)
         found.append((line, "" if here.any() else "no such point has this status"))
     return found
 
@@ -277,7 +278,7 @@ def threshold_sentences(view, page):
         for _, match in read(page, r" for \w+ = NUMBER(?:, \w+ = NUMBER)?(?:, \w+ = NUMBER)?", only=line):
             columns = np.concatenate(list(view.point_columns.values()))
             why += [near_one_of(text, columns) for text in match.groups() if text]
-        for _, match in read(page, r", on NUMBER of NUMBER lines? over", only=line):
+        for _, match in read(page, r", on NUMBER of NUMBER lines? of points along", only=line):
             lines = [each for each in lines_along(view.point_columns, name) if len(each.x)]
             having = len({tuple(getattr(rod, n) for n in LINEAR_PARAMETERS if n != name) for rod, *_ in true})
             right = int(match[1]) == having and int(match[2]) == len(lines)
@@ -326,7 +327,7 @@ def spectrum_sentences(view, page, keywords, fine):
         found.append((line, "" if right else f"unstable modes: {numbers}"))
     size = np.hypot(v["growth_rate"], v["frequency"])
     stated = (v["error_estimate"] / size)[np.isfinite(size)]
-    for line, match in read(page, "^error estimate, relative: worst NUMBER, median NUMBER"):
+    for line, match in read(page, "^relative error of the eigenvalues: at most NUMBER, median NUMBER"):
         off = max(
             relative(np.hypot(w.real, w.imag), abs(leading(rod)[0]))
             for rod, w in zip(
@@ -364,7 +365,7 @@ def modes_sentences(view, page, keywords, fine):
     unbounded = np.isinf(v["transient_growth"])
     growth, time = (np.where(unbounded, np.nan, v[n]) for n in ("transient_growth", "transient_time"))
     time = np.where((own["transient_time"] == 0) | time_is_known(view), time, np.nan)
-    found = ranges(page, "condition of the leading eigenvalue: RANGE", v["condition"][..., 0])
+    found = ranges(page, "condition number of the leading eigenvalue: RANGE", v["condition"][..., 0])
     found += ranges(page, "numerical abscissa: RANGE 1/tau2", v["numerical_abscissa"])
     found += ranges(page, "largest transient growth: RANGE times", growth)
     when = ranges(page, "largest transient growth: .* times, at t = RANGE tau2", time)
@@ -393,7 +394,7 @@ def thresholds_sentences(view, page, keywords, _):
     found += _crossing_sentences(rods[0], every[0], page) if count == 1 else []
     for kind, start, noun in (
         ("hopf", r"F\*\* \(straight", "frequency"),
-        ("restabilization", "stable again", "frequency"),
+        ("restabilization", r"restabilization \(straight", "frequency"),
         ("onset", r"F\* \(straight", "growth rate"),
     ):
         first = [next((c for c in each if c.kind.name == kind), None) for each in every]
@@ -427,7 +428,7 @@ def _monotony(view, page, kind, F):
     shape = view.variables["status"].shape
     for line, match in read(
         page,
-        rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines?"
+        rf"^F_{kind} rises with (1/)?(\w+) on NUMBER of NUMBER lines? of rods"
         r"(?:, falls on NUMBER)?(?:, is constant on NUMBER)?(?:, is not monotone on NUMBER)?",
     ):
         axis = list(view.parameter_values).index(match[2])
@@ -465,7 +466,7 @@ def _crossing_sentences(rod, crossings, page):
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
-    for line, match in read(page, r"(?:oscillates|beats|stable again) from F = NUMBER"):
+    for line, match in read(page, r"(?:oscillation|beating|beating again|stable again) from F = NUMBER"):
         near = min(crossings, key=lambda c: abs(c.value - float(match[1])))
         found.append((line, as_stated(match[1], near.value)))
     for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):
@@ -533,11 +534,11 @@ def criticality_sentences(view, page, keywords, fine):
             why.append(range_as_stated(text, columns[name][having]))
         found.append((line, "; ".join(filter(None, why))))
     first = [v[name][..., 0] for name in ("crossing_F", "amplitude_coefficient")]
-    found += ranges(page, "first Hopf point: .*; F = RANGE, a = RANGE L", *first)
+    found += ranges(page, "first Hopf point of each rod: .*; F = RANGE, a = RANGE L", *first)
     every = [v[name] for name in ("amplitude_coefficient", "frequency_slope")]
     found += ranges(page, "(?:all|stored) Hopf points: .*; a = RANGE L, b = RANGE L", *every)
     for words, sides in (
-        ("first Hopf point", v["criticality"][..., 0]),
+        ("first Hopf point of each rod", v["criticality"][..., 0]),
         ("(?:all|stored) Hopf points", v["criticality"]),
     ):
         for side, word in ((-1, "supercritical"), (1, "subcritical"), (0, "undecided")):
@@ -550,7 +551,7 @@ def criticality_sentences(view, page, keywords, fine):
     worst = (both["landau"], both["growth_slope"], both["amplitude_coefficient"], both["frequency_slope"])
     found += at_most(page, "worst relative errors: c NUMBER, dw/dF NUMBER, a NUMBER, b NUMBER", *worst)
     side = v["criticality"].reshape(-1, extent)
-    for line, match in read(page, "^subcritical for ([^:]*): (.*)$"):
+    for line, match in read(page, "^subcritical Hopf points for ([^:]*): (.*)$"):
         given = {name: float(x) for name, x in re.findall(rf"(\w+) = ({NUMBER}|inf)", match[1])}
         away = [
             sum(abs(columns[n][i] - x) / (1 + abs(x)) if np.isfinite(x) else 0 for n, x in given.items())
@@ -587,7 +588,8 @@ def _normal_forms(page, v):
     """Every Hopf point of the one rod of a file: its sentence, and its two columns of the table."""
     found = []
     at = np.flatnonzero(v["crossing_kind"] > 0)
-    said = read(page, r"^(?:hopf|restabilization)\w* at F = NUMBER: .*; (NUMBER unstable modes?|number)")
+    beyond = "(the straight rod has NUMBER unstable modes? beyond it|the number)"
+    said = read(page, rf"^(?:hopf|restabilization)\w* at F = NUMBER: .*; {beyond}")
     assert len(said) == len(at)
     for i, (line, match) in zip(at, said, strict=True):
         why = [as_stated(match[1], v["crossing_F"][i])]
@@ -595,7 +597,7 @@ def _normal_forms(page, v):
         for side, word in ((-1, "supercritical"), (1, "subcritical")):
             if f": {word}, " in line:
                 why += [] if v["criticality"][i] == side else [f"its side is {v['criticality'][i]}"]
-                above = "F above it" in line
+                above = "at larger F" in line
                 other = above != (v["amplitude_coefficient"][i] > 0)
                 why += ["cycles are on the other side"] if other else []
                 read(page, r"unstable by NUMBER other modes", only=line)
@@ -608,6 +610,18 @@ def _normal_forms(page, v):
             why = [with_error(*cells, v[name][i]) for i, cells in zip(known, stated, strict=True)]
             found.append((line, "; ".join(filter(None, why))))
     return found
+
+
+OUTCOMES = {
+    "cycle": "beats",
+    "straight": "stays straight",
+    "unstable": "has an unstable cycle",
+    "torus": "beats with two frequencies",
+    "not_settled": "does not settle",
+    "left_the_model": "leaves the model",
+    "failed": "is not solved",
+}
+"""What is said of rods, by status."""
 
 
 def cycle_sentences(view, page, keywords, fine):
@@ -629,17 +643,17 @@ def cycle_sentences(view, page, keywords, fine):
     beats = (words[0] == "cycle").reshape(shape)
     found = counts(page, r"^of NUMBER points?: \w", same.size)
     for word in set(words[0]):
-        said = {"cycle": "beats", "straight": "stays straight"}.get(word, word.replace("_", " "))
+        said = OUTCOMES.get(word, word.replace("_", " "))
         where = (words[0] == word, view.point_columns, lambda text, mask: region_as_stated(view, text, mask))
         found += regions(page, rf"(?<=[:,)\d] ){said} at", *where)
-        found += counts(page, rf"^{said} at all NUMBER point", same.size)
+        found += counts(page, rf"^the rod {said} at all NUMBER point", same.size)
     w = np.array([leading(rod)[0] for rod in rods_of(view)])
     found += ranges(
         page, "straight rod: leading growth rate RANGE 1/tau2, frequency RANGE rad/tau2", w.real, w.imag
     )
     stays = (words[0] == "straight") & (w.real > 0)
     found += [(page[0], "a rod that stays straight grows")] if stays.any() else []
-    found += [(line, "") for line, _ in read(page, r"tori: .* multipliers RANGE$")]
+    found += [(line, "") for line, _ in read(page, r"quasiperiodic motions: .* of RANGE$")]
     if "hopf_lines" in own:
         proved = int(own["hopf_lines_proved"]), int(own["hopf_lines"])
         found += counts(
@@ -671,12 +685,13 @@ def _sizes(page, v, own):
     found = ranges(page, "^period: RANGE tau2; largest y of the tip: RANGE L", v["period"], v["tip_y_max"])
     found += ranges(page, "^period: RANGE tau1", v["period_tau1"]) if "period_tau1" in v else []
     ratio = v["frequency"] / v["linear_frequency"]
-    of_mode = "^frequency RANGE rad/tau2, RANGE times the frequency of the leading mode"
+    of_mode = "^frequency of the cycle: RANGE rad/tau2, RANGE times that of the leading mode"
     found += ranges(page, of_mode, v["frequency"], ratio)
     tips = [v[f"tip_{name}"] for name in ("x_min", "x_max", "theta_max")]
     found += ranges(page, "least x RANGE L, largest x RANGE L, largest .theta. RANGE rad", *tips)
-    found += ranges(page, r"power of the force, mean: RANGE k3", v["injection_mean"])
-    rest = "^multiplier: RANGE; periods integrated: RANGE; least stretch: RANGE"
+    found += ranges(page, r"mean power of the force: RANGE k3", v["injection_mean"])
+    rest = r"^largest \|Floquet multiplier\|: RANGE; periods integrated in time: RANGE; "
+    rest += "smallest stretch h1: RANGE"
     without = np.isnan(own["multiplier"])  # time integration computes none
     multiplier = np.where(without, np.nan, v["multiplier"])
     found += ranges(page, rest, multiplier, own["periods"], v["least_stretch"])
@@ -690,7 +705,8 @@ def _sizes(page, v, own):
         extrema,
         0.0,
     )
-    pattern = "^worst errors: period NUMBER, amplitude NUMBER, other extrema NUMBER, energy balance NUMBER, "
+    pattern = "^worst errors: period NUMBER, largest y of the tip NUMBER, other extrema of the tip NUMBER, "
+    pattern += "energy balance NUMBER, "
     found += at_most(page, f"{pattern}multiplier not known" if without.all() else pattern, *worst)
     if not without.all():
         off = float(np.nanmax(np.abs(own["multiplier"] - v["multiplier"])))
@@ -707,7 +723,7 @@ def _second_states(view, page, w, keywords):
     own, columns, found = view.variables, view.point_columns, []
     ends_stable = np.isin(view.status_names, ("cycle", "torus"))
     for pattern, settled in (
-        ("^two states(?: at NUMBER of NUMBER points?)?: the straight rod", ends_stable),
+        ("^two stable states(?: at NUMBER of NUMBER points?)?: the straight rod", ends_stable),
         ("^the straight rod is stable(?: at NUMBER of NUMBER points?)? where the motion", ~ends_stable),
     ):
         straight = (own["second_state"] == 1).ravel() & settled.ravel()
@@ -717,7 +733,9 @@ def _second_states(view, page, w, keywords):
             found.append((line, "; ".join(why + ["it grows"] * bool((w.real[straight] > 0).any()))))
     possible = (own["second_state"] == 2).ravel()
     for line, match in read(
-        page, "^a second state is possible(?: at NUMBER of NUMBER points?)?: .* at F = RANGE is subcritical"
+        page,
+        "^a stable cycle may exist beside the straight rod(?: at NUMBER of NUMBER points?)?: "
+        ".* at F = RANGE is subcritical",
     ):
         why = [] if match[1] is None or int(match[1]) == possible.sum() else [f"at {possible.sum()} points"]
         at = []
@@ -735,8 +753,8 @@ def _second_states(view, page, w, keywords):
 CHANGES_OF_CYCLES = {
     "folds of cycles": 2,
     "torus points of cycles": 3,
-    "cycles lose their symmetry": 4,
-    r"cycles leave the model \(h1 = 0\)": 5,
+    "symmetry breakings of cycles": 4,
+    "cycles that crush a section of the rod": 5,
 }
 
 
@@ -759,7 +777,8 @@ def diagram_sentences(view, page, keywords, fine):
     found += ranges(page, "^at F = RANGE, where the rows begin", [values[0]])
     for word in ("monotone", "oscillatory", "flutter", "crushed"):
         there = table == word
-        found += ranges(page, rf"^of the grid:.*?RANGE % {word}", [100 * there.mean()])
+        share = rf"^behaviour of the straight rod, in % of the grid points:.*?RANGE % {word}"
+        found += ranges(page, share, [100 * there.mean()])
         found += counts(page, rf"^of \d+ grid points on the rows:.*?NUMBER {word}", there.sum())
         found += counts(page, rf"where the rows begin.*: .*{word} on NUMBER", there[:, 0].sum())
     beats = (table == "flutter").any(axis=1)
@@ -778,16 +797,17 @@ def diagram_sentences(view, page, keywords, fine):
         having = np.array([bool(each) for each in of_kind])
         first = [each[0] for each in of_kind if each]
         again = [at for each in of_kind for at in each[1:]]
-        found += counts(page, rf"^{kind}: on NUMBER of NUMBER row", having.sum(), len(rows))
+        start = rf"^{kind}(?: [^:]*)?"
+        found += counts(page, rf"{start}: on NUMBER of NUMBER row", having.sum(), len(rows))
         if having.any():
             found += ranges(
-                page, rf"^{kind}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
+                page, rf"{start}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", first, rows[having]
             )
             repeated = sum(len(each) > 1 for each in of_kind)
             found += ranges(
-                page, rf"^{kind}: .*; a second time or more on \d+ of these rows, at F = RANGE", again
+                page, rf"{start}: .*; a second time or more on \d+ of these rows, at F = RANGE", again
             )
-            found += counts(page, rf"^{kind}: .*; a second time or more on NUMBER of these rows", repeated)
+            found += counts(page, rf"{start}: .*; a second time or more on NUMBER of these rows", repeated)
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
         found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)
@@ -807,17 +827,18 @@ def _curve_sentences(view, page, row):
         return []
     kinds = [int(v["curve_kind"][v["curve_number"] == n][0]) for n in np.unique(v["curve_number"])]
     for_line = "^curves: NUMBER of Hopf points, NUMBER of double eigenvalues; "
-    for_line += "crossings on rows lie within NUMBER of these curves along F; NUMBER (?:is|are) on no curve"
+    for_line += "crossings located on rows lie on them within NUMBER of the range of F; "
+    for_line += "(?:every crossing is on a|NUMBER crossings? (?:is|are) on no) curve"
     found = []
     for line, match in read(page, for_line):
-        told = [int(match[1]), int(match[2]), int(match[4])]
+        told = [int(match[1]), int(match[2]), int(match[4] or 0)]
         true = [sum(k == 1 for k in kinds), sum(k == 0 for k in kinds), int(v["curves_untraced"])]
         why = [] if told == true else [f"it is {true}"]
         why += (
             [] if abs(float(v["curve_agreement"]) - float(match[3])) <= unit_of(match[3]) else ["agreement"]
         )
         found.append((line, "; ".join(why)))
-    cut = rf"^curve NUMBER, of [a-zA-Z ]+, is incomplete: at {row} = NUMBER, F = NUMBER "
+    cut = rf"^curve NUMBER, of [a-zA-Z ]+, is incomplete: it stops at {row} = NUMBER, F = NUMBER:"
     for line, match in read(page, cut):
         here = v["curve_number"] == int(match[1])
         off = [np.abs(v[f"curve_{n}"][here][[0, -1]] - float(match[i])) for n, i in ((row, 2), ("F", 3))]
@@ -947,13 +968,26 @@ def _states_of(view, row, fixed, table):
     }
 
 
+STABLE_STATES = (
+    "no stable state known",
+    "straight rod only",
+    "cycle only",
+    "straight rod and cycle",
+    "undecided",
+    "crushed",
+)
+"""What is said of stable states, by their stored number."""
+
+
 def _state_sentences(view, page, fine, row):
     """Stable states and special points of cycles, against branches of a far smaller accuracy."""
     v, rows, found = fine, view.parameter_values[row], []
     states = v["stable_states"]
-    for number, word in enumerate(("neither known", "straight", "cycle", "both", "undecided", "crushed")):
+    for number, word in enumerate(STABLE_STATES):
         share = [100 * (states == number).mean()]
-        found += ranges(page, rf"^stable states, of the grid: (?:.*, )?RANGE % {word}", share)
+        found += ranges(
+            page, rf"^stable states, in % of the grid points: (?:.*, )?RANGE % {word}(?:,|$)", share
+        )
     both = (states == 3).any(axis=1)
     kinds, at = v["cycle_special_kind"], v["cycle_special_F"]
     where = {
@@ -971,7 +1005,8 @@ def _state_sentences(view, page, fine, row):
             )
     for line, match in read(
         page,
-        rf"^curve of (folds|torus points): from {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\) "
+        rf"^curve of (folds|torus points) of cycles: "
+        rf"from {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\) "
         rf"to {row} = NUMBER, F = NUMBER \(\+- ({NUMBER})\) \([^)]*\); NUMBER points?, "
         "largest error of F NUMBER",
     ):
@@ -979,19 +1014,19 @@ def _state_sentences(view, page, fine, row):
         why = (_special_on_branch(view, row, match[1], *place) for place in places)
         found.append((line, "; ".join(filter(None, why))))
     for line, match in read(
-        page, rf"^this curve meets the row {row} = NUMBER between F = NUMBER and NUMBER, where no branch"
+        page, rf"^this curve crosses the row {row} = NUMBER between F = NUMBER and NUMBER, but no branch"
     ):
         found.append((line, _special_on_row(view, row, *map(float, match.groups()))))
     for line, match in read(
         page,
-        "^curves of cycles: NUMBER; folds and torus points on a curve lie within NUMBER "
-        "of it along F; NUMBER (?:is|are) on no curve",
+        "^curves of folds and torus points of cycles: NUMBER; points located on rows lie on them within "
+        "NUMBER of the range of F; (?:every|NUMBER) fold",
     ):
         true = (
             len(np.unique(view.variables["cycle_curve_number"])),
             int(view.variables["cycle_curves_untraced"]),
         )
-        found.append((line, "" if (int(match[1]), int(match[3])) == true else f"it is {true}"))
+        found.append((line, "" if (int(match[1]), int(match[3] or 0)) == true else f"it is {true}"))
     return found
 
 

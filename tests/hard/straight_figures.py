@@ -358,7 +358,7 @@ def _bars(d, view):
     return found + parameters_told(d, view.point_columns)
 
 
-SIDES = {"supercritical": -1, "subcritical": 1, "undecided": 0}
+SIDES = {"supercritical": -1, "subcritical": 1, "criticality undecided": 0}
 
 
 def criticality_figure(d, view, fine):
@@ -404,9 +404,9 @@ def _criticality_map(d, axes, mesh, at, v):
     words = {to_hex(handle.get_facecolor()): text for handle, text in d.legend_entries()}
     later = (v["criticality"][:, 1:] == 1).any(axis=1)
     true = [
-        "supercritical, a later one subcritical"
+        "supercritical, a later Hopf point subcritical"
         if side == -1 and more
-        else {-1: "supercritical", 1: "subcritical", 0: "undecided"}.get(
+        else {-1: "supercritical", 1: "subcritical", 0: "criticality undecided"}.get(
             side, "no Hopf point with a normal form"
         )
         for side, more in zip(first, later, strict=True)
@@ -452,19 +452,23 @@ def _predictions(d, axes, v, columns):
 
 
 STATE_WORDS = {
-    1: "straight rod stable",
-    2: "cycle stable",
-    3: "both stable",
+    1: "only straight rod stable",
+    2: "only cycle stable",
+    3: "rod and cycle stable",
     0: "no stable state known",
     4: "undecided",
     5: "crushed",
-    -1: "missing",
+    -1: "not computed",
 }
 BESIDE_EDGE = 5
 """Pixels from another class within which no pixel is compared."""
 PLACES = 60
 """Places of a map whose class is computed."""
-SPECIAL = {"folds of cycles on rows": 2, "torus points on rows": 3, "symmetry breakings": 4}
+SPECIAL = {
+    "folds of cycles, on no curve": 2,
+    "torus points of cycles, on no curve": 3,
+    "symmetry breakings of cycles": 4,
+}
 
 
 def diagram_figure(d, view, _):
@@ -608,7 +612,7 @@ def _curves(d, axes, view, line, row, rods, states):
     if "bautin_curve" in v:
         white = d.lines(axes, lambda one: one.get_marker() == "D" and one.get_markersize() == 5)
         found.append(("Re c = 0", d.compare(axes, xy(white), [v[f"bautin_{name}"] for name in (line, row)])))
-        for text, match in read(d.page, rf"^Re c = 0: {line} = NUMBER, {row} = NUMBER$"):
+        for text, match in read(d.page, rf"^generalised Hopf point: {line} = NUMBER, {row} = NUMBER$"):
             found.append((text, _told_place(view, "bautin", match, (line, row), slice(None))))
         read(d.page, r"^Re c = NUMBER: ")
     return found

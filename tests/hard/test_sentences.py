@@ -153,7 +153,7 @@ def test_the_reader_finds_a_number_of_an_arm_that_is_wrong(task, monkeypatch):
         monkeypatch.setattr(reader, "changes_over_force", functools.cache(changes_over_force))
     monkeypatch.setattr(sentences, "solved", lambda _, keywords: views(keywords.get("accuracy")))
     page = page_of(views(OF_ARMS[task].get("accuracy")))
-    lines = page[: page.index("the rods without dimension:")]
+    lines = page[: page.index("the same in dimensionless numbers:")]
     assert wrong_sentences(task, OF_ARMS[task])[0] == []
     missed = []
     for i, line in enumerate(lines):

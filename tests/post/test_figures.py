@@ -37,7 +37,7 @@ from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lin
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
 from rodsweep.results.file.view import View, read_view
-from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.variables import flag_number
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.tasks import TASKS
@@ -173,7 +173,7 @@ def test_rows_that_make_no_plane_are_bars(command, drawn):
     labels = [label.get_text() for label in drawn[0].axes[0].get_yticklabels()]
     assert [label.split("= ")[1] for label in labels] == ["200$", r"\infty$"]
     named = [text.get_text() for text in drawn[0].legends[0].get_texts()]
-    assert named == ["monotone", "oscillatory", "flutter"]
+    assert named == ["monotone decay", "oscillatory decay", "flutter"]
 
 
 @pytest.mark.long
@@ -484,13 +484,13 @@ def test_regions_of_a_diagram_end_where_the_force_crushes_the_rod(command, monke
     else:
         x, k1 = k1, DrawnPlane.pixel_centres(k1)
     crushed = np.broadcast_to(k1 <= F, classes.shape)
-    assert np.array_equal(classes == flag_number("crushed", CLASSES), crushed)
+    assert np.array_equal(classes == flag_number("crushed", STABILITY_CLASSES), crushed)
     at = (
         np.abs(DrawnPlane.pixel_centres(axis) - place).argmin()
         for axis, place in ((x, flutters[0]), (y, flutters[1]))
     )
     column, row = at
-    assert classes[row, column] == flag_number("flutter", CLASSES)
+    assert classes[row, column] == flag_number("flutter", STABILITY_CLASSES)
 
 
 def test_classes_are_bounded_by_a_curve_however_few_points_are_computed():
@@ -723,7 +723,7 @@ def test_one_arm_with_a_load_relative_to_flutter_has_the_figure_of_a_rod():
 def test_a_bar_of_frequencies_that_are_all_0_does_not_reach_below():
     load = {"young": ["12 kPa", "13 kPa"], "length": ["13 cm", "14 cm"], "pressure": "0.01 kPa"}
     figure = figure_of("spectrum", arm=ARM | load)
-    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "frequency (Hz)")
+    (bar,) = (axes for axes in figure.axes if axes.get_ylabel() == "leading frequency (Hz)")
     assert bar.get_ylim()[0] == 0
 
 
@@ -761,7 +761,7 @@ def test_an_outer_part_of_a_row_without_a_computed_point_has_its_own_class(
         np.abs(DrawnPlane.pixel_centres(view.variables[name]) - place).argmin()
         for name, place in zip((line, row), inside, strict=True)
     )
-    assert classes[line_of_pixels, column] == flag_number(word, CLASSES)
+    assert classes[line_of_pixels, column] == flag_number(word, STABILITY_CLASSES)
 
 
 def test_what_a_figure_leaves_out_is_said(command, monkeypatch):

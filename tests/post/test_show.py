@@ -155,15 +155,17 @@ def test_phase_diagram_is_told_by_its_shares_and_where_it_flutters(command):
         "task: phase_diagram\nparameters: {F: {start: 0, stop: 199, num: 200}, k1: [100, 140, 200, 400],"
         " k2: 1.0e4, gamma3: 1.0e-4}\n",
     )
-    shares = re.findall(r"([\d.]+) % \w+", re.search("of the grid: (.*)", told)[1])
+    shares = re.findall(r"([\d.]+) % \w+", re.search("% of the grid points: (.*)", told)[1])
     assert sum(map(float, shares)) == pytest.approx(100, abs=0.25)
     assert "flutter: on 2 of 4 rows, k1 = 200 to 400; none on 2, k1 = 100 to 140" in told
     low, high = map(
-        float, re.search(r"\nhopf: on 2 of 4 rows, F = ([\d.]+) to ([\d.]+), k1 = 200 to 400", told).groups()
+        float,
+        re.search(r"\nhopf \(.*\): on 2 of 4 rows, F = ([\d.]+) to ([\d.]+), k1 = 200 to 400", told).groups(),
     )
     assert high == pytest.approx(HOPF, abs=1e-4)
     assert low < high
-    assert f"restabilization: on 1 of 4 rows, F = {STABLE_AGAIN:.6g}, k1 = 200" in told
+    meaning = "the last unstable pair becomes stable"
+    assert f"restabilization ({meaning}): on 1 of 4 rows, F = {STABLE_AGAIN:.6g}, k1 = 200" in told
     assert "where the rows begin" not in told
 
 
@@ -174,19 +176,22 @@ def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(
         " k2: 1.0e4, gamma3: 1.0e-4}}\nphase_diagram: {{curves: false}}\n"
     )
     told = shown(command, config.format(start=0))
-    first = "onset: on 2 of 2 rows, F = 22.471 to 24.0686, k1 = 140 to 200"
+    first = "onset of oscillations: on 2 of 2 rows, F = 22.471 to 24.0686, k1 = 140 to 200"
     assert f"\n{first}; a second time or more on 1 of these rows, at F = 137.568\n" in told
     command.write("c.yaml", config.format(start=30))
     command("run", "c.yaml", "--fresh")
     told = command("show", "c.h5").stdout
     assert "at F = 30, where the rows begin, of 2 rows: oscillatory on 2" in told
-    assert "onset: on 1 of 2 rows, F = 137.568, k1 = 140\n" in told
+    assert "onset of oscillations: on 1 of 2 rows, F = 137.568, k1 = 140\n" in told
 
 
 def test_a_window_of_flutter_between_two_grid_points_is_flutter_of_its_row(command):
     config = "F: [0, 60, 100], k1: [100, 150, 300], k2: 1.0e4, gamma3: 1.0e-4"
     text = shown(command, f"task: phase_diagram\nparameters: {{{config}}}\n")
-    assert "restabilization: on 1 of 3 rows, F = 85.5693, k1 = 150" in text
+    assert (
+        "restabilization (the last unstable pair becomes stable): on 1 of 3 rows, F = 85.5693, k1 = 150"
+        in text
+    )
     assert "flutter: on 2 of 3 rows, k1 = 150 to 300; none on 1, k1 = 100\n" in text
 
 
@@ -196,23 +201,23 @@ TWO_WINDOWS = {"k1": 179.13147682127965, "k2": 1731.448934345779, "gamma3": 0.00
 def test_a_second_window_of_flutter_is_in_the_answer(command):
     rod = ", ".join(f"{name}: {value!r}" for name, value in TWO_WINDOWS.items())
     text = shown(command, f"task: thresholds\nparameters: {{{rod}}}\n")
-    assert "beats from F = 49.785, stable again from F = 161.376, beats again from F = 174; " in text
+    assert "beating from F = 49.785, stable again from F = 161.376, beating again from F = 174; " in text
     answer = " ".join(str(rs.Rod(**TWO_WINDOWS).thresholds()).split())
-    again = "stable again from F = 161.376 k3/L^2, flutters again from F = 174 k3/L^2 "
+    again = "stable again from F = 161.376 k3/L^2, flutter again from F = 174 k3/L^2 "
     assert again in answer
     one = " ".join(str(rs.Rod(**TWO_WINDOWS | {"k1": 170.0}).thresholds(F_max=165)).split())
     assert "again from" in one
-    assert "flutters again" not in one
+    assert "flutter again" not in one
 
 
 def test_thresholds_tell_where_they_rise_and_fall(command):
     told = shown(command, "task: thresholds\nparameters: {k1: [150, 200, 300], k2: 1.0e4, gamma3: 1.0e-4}\n")
-    assert "F_hopf rises with k1 on 0 of 1 line, falls on 1\n" in told
+    assert "F_hopf rises with k1 on 0 of 1 line of rods, falls on 1\n" in told
 
 
 def test_thresholds_that_differ_by_less_than_a_rounding_error_are_constant(command):
     told = shown(command, "task: thresholds\nparameters: {k1: [1e14, 1e15, 1e16], k2: 100, gamma3: 1.0e-3}\n")
-    assert "F_hopf rises with k1 on 0 of 1 line, is constant on 1\n" in told
+    assert "F_hopf rises with k1 on 0 of 1 line of rods, is constant on 1\n" in told
 
 
 def test_thresholds_of_a_single_rod_are_told_one_by_one(command):

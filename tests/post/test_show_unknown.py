@@ -18,7 +18,7 @@ from rodsweep.results.file.provenance import (
     joined_failure_reasons,
     merged_history,
 )
-from rodsweep.results.layouts.phase_diagram import CLASSES, CURVE_ENDS
+from rodsweep.results.layouts.phase_diagram import CURVE_ENDS, STABILITY_CLASSES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.solve.changes.diagram import boundary_curves
 
@@ -55,9 +55,9 @@ def test_a_cycle_of_time_integration_has_no_verdict_of_multipliers(command):
 def test_a_cycle_of_a_rod_whose_leading_mode_is_real_has_no_ratio_of_frequencies(tmp_path):
     """As of soft segments of rubber far beyond flutter, whose two leading eigenvalues are real."""
     view = view_of_sweep(tmp_path, "limit_cycle", F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, accuracy=1e-3)
-    assert "times the frequency of the leading mode" in told(view)
+    assert "times that of the leading mode" in told(view)
     real = told(changed(view, linear_frequency=np.zeros_like(view.variables["linear_frequency"])))
-    assert "rad/tau2; the leading mode does not oscillate" in real
+    assert "rad/tau2; the leading mode of the straight rod does not oscillate" in real
     assert "times the frequency" not in real
 
 
@@ -87,8 +87,8 @@ def test_a_boundary_curve_that_is_cut_short_is_not_whole(tmp_path, monkeypatch):
     said = told(view)
     for i in full:
         k1, F = (float(view.variables[f"curve_{name}"][i]) for name in ("k1", "F"))
-        where = f"is incomplete: at k1 = {k1:.6g}, F = {F:.6g} the curve has the maximum number of points"
-        assert where in said
+        where = f"is incomplete: it stops at k1 = {k1:.6g}, F = {F:.6g}"
+        assert f"{where}: the curve has the maximum number of points" in said
 
 
 @pytest.mark.long
@@ -102,7 +102,7 @@ def test_branches_that_are_cut_short_leave_rods_open(tmp_path):
 @pytest.mark.long
 def test_a_list_of_special_points_that_is_full_for_all_rods_states_no_rods(tmp_path):
     lines = told(view_of_sweep(tmp_path, "branch", k2=[1e3, 1e4], special=1, **BRANCHES))
-    assert "not known for 2 rods" in lines
+    assert "whether two states are stable is not known for 2 rods" in lines
     assert BESIDE not in lines
 
 
@@ -115,11 +115,11 @@ def test_hopf_points_that_are_not_stored_are_not_among_all(tmp_path):
 def test_rods_whose_search_failed_are_not_rods_without_thresholds(tmp_path):
     rods = {"k1": 200.0, "k2": [1e3, 1e4], "gamma3": 1e-4, "F_max": 190.0}
     view = view_of_sweep(tmp_path, "thresholds", **rods)
-    assert "stable again: F = 155.6 (k2 = 10000), at 1 of 2 rods; frequency" in told(view)
+    assert "is stable again): F = 155.6 (k2 = 10000), at 1 of 2 rods; frequency" in told(view)
     count = np.asarray(view.variables["crossing_count"]).copy()
     count[..., 0, 0] = -1
     failed = changed(view, crossing_count=count)
-    assert "stable again: F = 155.6 (k2 = 10000), at 1 of 2 rods, not known at 1 rod; frequency" in told(
+    assert "is stable again): F = 155.6 (k2 = 10000), at 1 of 2 rods, not known at 1 rod; frequency" in told(
         failed
     )
     forms = view_of_sweep(tmp_path, "criticality", **rods)
@@ -140,10 +140,10 @@ def test_a_rod_with_an_open_range_has_no_threshold_located(tmp_path):
 def test_changes_of_rows_that_are_not_stored_may_be_more(tmp_path):
     """The second row of a diagram loses its restabilization, as from a list that is full."""
     view = view_of_sweep(tmp_path, "phase_diagram", **ROWS)
-    assert "restabilization: on 1 of 2 rows" in told(view)
+    assert "restabilization (the last unstable pair becomes stable): on 1 of 2 rows" in told(view)
     kinds = np.asarray(view.variables["crossing_kind"]).copy()
     kinds[kinds == CROSSING_KINDS.index("hopf")] = 0
-    assert "restabilization: on at least 1 of 2 rows" in told(changed(view, crossing_kind=kinds))
+    assert "becomes stable): on at least 1 of 2 rows" in told(changed(view, crossing_kind=kinds))
 
 
 def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
@@ -152,7 +152,7 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     )
     assert "flutter: on 1 of 2 rows, k1 = 200; none on 1, k1 = 100" in told(view)
     classes = np.asarray(view.variables["class"]).copy()
-    classes[..., 0, 0, 0, 1] = next(number for number, word in CLASSES if word == "undecided")
+    classes[..., 0, 0, 0, 1] = next(number for number, word in STABILITY_CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))
     assert "no flutter on" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
@@ -170,7 +170,7 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
     end = float(view.variables["F_end"].ravel()[0])
     lines = told(view)
     assert 30.0 < end < 60.0
-    assert "beats from F = 27.0372; 2 crossings up to F = " in lines
+    assert "beating from F = 27.0372; 2 crossings up to F = " in lines
     assert f"; not known beyond F = {end:.6g}, where the search ended early" in lines
     assert f"searched up to F = {end:.15g}; the list of crossings is confirmed by counts" in lines
     answer = rs.Rod(k2=1e4, **{n: v for n, v in EARLY.items() if n != "F_max"}).thresholds(F_max=60.0)
@@ -178,7 +178,7 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
     assert first.endswith(f"; not known beyond F = {end:.6g} k3/L^2, where the search ended early")
     rods = told(view_of_sweep(tmp_path, "thresholds", k2=[5e3, 1e4], **EARLY))
     assert "starts to beat): F = 27.0372 (k2 = 10000), at 1 of 2 rods, not known at 1 rod" in rods
-    assert "stable again: at none of 2 rods, not known at 2 rods" in rods
+    assert "is stable again): at none of 2 rods, not known at 2 rods" in rods
     forms = told(view_of_sweep(tmp_path, "criticality", k2=[5e3, 1e4], **EARLY))
     assert "Hopf points at 1 of 2 rods (k2 = 10000), not known at 1 rod" in forms
 
@@ -188,14 +188,14 @@ def test_show_names_the_reason_of_each_kind_of_failure_with_a_point(tmp_path):
     rod = {"k1": 1e4, "k2": 1e2, "gamma3": 1e-2, "method": "integration", "accuracy": 1e-3}
     view = view_of_sweep(tmp_path, "limit_cycle", F=[27.45, 27.5], most_periods=20, **rod)
     said = told(view)
-    at = "gamma3 = 0.01, gamma1 = 1.0: "
-    assert said.count("not_settled, as at F = ") == 1
+    at = "gamma3 = 0.01, gamma1 = 1: "
+    assert said.count("not_settled, for example at F = ") == 1
     why = "the motion does not repeat: after 20 returns of the tip "
-    assert f"not_settled, as at F = 27.45, k1 = 10000.0, k2 = 100.0, {at}{why}" in said
+    assert f"not_settled, for example at F = 27.45, k1 = 10000, k2 = 100, {at}{why}" in said
     status = view.variables["status"].copy()
     status[0] = 0
     anew = changed(view, status=status)
-    assert ", as at F = " not in told(anew)
+    assert ", for example at F = " not in told(anew)
 
 
 def test_files_that_are_merged_keep_the_reasons_of_both():

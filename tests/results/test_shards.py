@@ -149,7 +149,7 @@ def test_what_does_not_belong_together_is_not_merged(command):
     journal.mkdir()
     (journal / "rank-000000-1").write_bytes(b"points")
     done = command("merge", "m.h5", shard.name)
-    assert (done.returncode, "first run the command of this file again" in done.stderr) == (2, True)
+    assert (done.returncode, "first repeat the run of this file, which adds them" in done.stderr) == (2, True)
     shutil.rmtree(journal)
     assert shard.read_bytes() == before
     assert not (command.directory / "m.h5").exists()

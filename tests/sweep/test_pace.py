@@ -129,7 +129,7 @@ def test_times_are_said_to_two_digits(seconds, text):
 
 def test_rates_are_said_by_the_point_where_it_is_slow():
     assert rate_in_words(700, 20.0) == "35/s"
-    assert rate_in_words(2, 24.0) == "12 s a point"
+    assert rate_in_words(2, 24.0) == "12 s per point"
     assert rate_in_words(0, 3.0) == ""
 
 

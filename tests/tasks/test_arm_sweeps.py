@@ -286,7 +286,7 @@ def test_show_tells_thresholds_as_the_load_is_given_and_frequencies_in_hertz(
     command.write("a.yaml", f"task: {task}\nparameters: {{arm: {{{SILICONE_YAML}, {load}}}}}\n")
     assert command("run", "a.yaml").returncode == 0
     lines = command("show", "a.h5").stdout.splitlines()
-    without = lines.index("the rods without dimension:")
+    without = lines.index("the same in dimensionless numbers:")
     assert any(line.startswith(("F**", "hopf ")) and "166.0" in line for line in lines[without:])
     number = r"([\d.]+)"
     told = rf"(?:flutters|hopf) at {number} (\w+)[:,] .*(?:begins to beat at|frequency) {number} Hz"

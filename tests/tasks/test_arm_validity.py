@@ -20,8 +20,8 @@ from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.post.summary.arm.validity_sentences import validity_sentence
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import VALIDITY, VALIDITY_NOT_KNOWN
-from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.arm import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
+from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.thresholds import HOPF_CROSSING_CODES
 from rodsweep.tasks.arm.validity import MOTION_OF_TASK, ArmValidity
 
@@ -84,7 +84,7 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
         return
     assert (data.model_applies == VALIDITY_NOT_KNOWN).all()
     assert np.isnan(data.neglected_excess).all()
-    validity = {v.name: data[v.name].values.ravel() for v in VALIDITY}
+    validity = {v.name: data[v.name].values.ravel() for v in VALIDITY_VARIABLES}
     said = (
         "whether the model applies is not known at all 2 points: an unstable mode or a cycle may have been "
         "missed, and the neglected effects depend on its frequency"
@@ -120,7 +120,7 @@ def test_a_row_that_flutters_from_end_to_end_is_judged_by_no_rest():
     record |= {"crossing_at": np.full((1, 3), np.nan)}
     row = MOTION_OF_TASK["phase_diagram"]
     flutter, oscillatory = (
-        next(v for v, name in CLASSES if name == kind) for kind in ("flutter", "oscillatory")
+        next(v for v, name in STABILITY_CLASSES if name == kind) for kind in ("flutter", "oscillatory")
     )
     assert row(record | {"class": np.array([[flutter] * 2])}).may_be_missed.tolist() == [True]
     assert row(record | {"class": np.array([[oscillatory] * 2])}).may_be_missed.tolist() == [False]
@@ -202,7 +202,7 @@ def test_branches_and_diagrams_are_judged_too():
 def test_check_tells_before_the_run_what_can_be_known(command):
     command.write("a.yaml", HEAVY)
     told = " ".join(command("check", "a.yaml").stdout.split())
-    found = re.search(r"the model does not apply at (\d) of 6 points before anything moves: weight is", told)
+    found = re.search(r"the model does not apply at (\d) of 6 points at rest: weight is", told)
     assert "not_slender at 2 of 8 points: the arm is shorter than 10 radii" in told
     assert "does not apply" not in command("check", command.write("b.yaml", MAP)).stdout
     command.solved("a.yaml")
@@ -233,7 +233,8 @@ def test_show_begins_with_the_answer_in_the_units_that_were_typed(command):
     )
     assert float(worst[1]) == pytest.approx(float(data.neglected_excess.max()), rel=6e-2)
     found = re.fullmatch(
-        rf"where the model applies: flutters from {number} to {number} kPa; beats at {number} to {number} Hz",
+        rf"where the model applies: flutter begins at {number} to {number} kPa; "
+        rf"there the arm beats at {number} to {number} Hz",
         second,
     ).groups()
     inside = data.where(rods & (data.model_applies != Validity.does_not_apply))
@@ -246,7 +247,7 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
     command.solved("w.yaml")
     first, second, *_ = command("show", "w.h5").stdout.splitlines()[1:]
     assert first.startswith("the model does not apply at all 6 points: inertia of the arm is up to")
-    assert second.startswith("if the model applied: flutters from ")
+    assert second.startswith("if the model applied: flutter begins at ")
 
 
 @pytest.mark.parametrize(
@@ -257,10 +258,10 @@ def test_show_of_an_arm_in_water_says_nothing_without_reservation(command):
             "spectrum",
             "force: [80 mN, 200 mN]",
             "",
-            "gives way at 2 of 4 points; its leading mode oscillates at",
+            "the straight arm is unstable at 2 of 4 points; its leading mode oscillates at",
         ),
-        ("criticality", "", "", "flutters from"),
-        ("branch", "", "branch: {stop: 40, cycles: 40}\naccuracy: 1.0e-3", "beats at"),
+        ("criticality", "", "", "flutter begins at"),
+        ("branch", "", "branch: {stop: 40, cycles: 40}\naccuracy: 1.0e-3", "cycles, stable or not, exist at"),
         ("thresholds", "poisson: 0.4", "thresholds: {F_max: 32}", "does not flutter up to 1.81 to 2 kPa"),
     ],
 )
@@ -409,22 +410,37 @@ STATUSES = {
         ("failed", "unstable", "is not known: the integration failed at 1 of 2", "has an unstable cycle"),
     ),
     "spectrum": (
-        (2, -1, "gives way at 1 of 2 points", "whether the arm gives way is not known at 1 of 2 points"),
-        (-1, -1, "whether the arm gives way is not known at 2 of 2 points"),
-        (0, -1, "whether the arm gives way is not known at 1 of 2 points"),
-        (0, 0, "stays straight"),
+        (
+            2,
+            -1,
+            "the straight arm is unstable at 1 of 2 points",
+            "whether the straight arm is stable is not known at 1 of 2 points",
+        ),
+        (-1, -1, "whether the straight arm is stable is not known at 2 of 2 points"),
+        (0, -1, "whether the straight arm is stable is not known at 1 of 2 points"),
+        (0, 0, "the straight arm is stable"),
     ),
     "thresholds": (
-        ("ok", "failed", "flutters from", "not known at 1 of 2 points: the search failed"),
-        ("failed", "failed", "not known at 2 of 2 points: the search failed"),
+        ("ok", "failed", "flutter begins", "the result is not known at 1 of 2 points: the search failed"),
+        ("failed", "failed", "the result is not known at 2 of 2 points: the search failed"),
     ),
     "branch": (
-        ("ok", "failed", "beats at", "not known at 1 of 2 points: the search failed"),
-        ("failed", "failed", "not known at 2 of 2 points: the search failed"),
+        (
+            "ok",
+            "failed",
+            "cycles, stable or not, exist at",
+            "the result is not known at 1 of 2 points: the search failed",
+        ),
+        ("failed", "failed", "the result is not known at 2 of 2 points: the search failed"),
     ),
 }
 """What two points have, and how the lines of the answer begin."""
-FALSE_IF_NOT_SOLVED = ("does not flutter", "stays straight", "does not beat at 2", "has no branch")
+FALSE_IF_NOT_SOLVED = (
+    "does not flutter",
+    "the straight arm is stable",
+    "does not beat at 2",
+    "has no branch",
+)
 
 
 @pytest.mark.long

@@ -74,8 +74,8 @@ def test_show_of_many_rods_tells_where_branches_end_and_where_two_have_stable_cy
         patch.setattr(summary, "RodBranches", WithBreaking)
         told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
     assert "1 symmetry breaking: F = 75" in told
-    assert "2 branches lead to the end of the range: F = 80" in told
-    assert "stable cycles of two branches at 1 of 2 rods" in told
+    assert "2 branches end at the end of the range: F = 80" in told
+    assert "two stable cycles, on different branches, at 1 of 2 rods" in told
     assert "  k1 = 150: F = 67.3869843 to 80" in told
 
 
@@ -85,7 +85,7 @@ def test_show_names_the_branch_that_could_not_be_followed(command):
     reasons = view.variables["special_reason"]
     reasons[reasons > 0] = END_REASONS.index("no_cycle_found")
     told = summary.branch_summary(view, np.ones((2, 1, 1, 1), bool)).answer
-    assert "1 branch leads to a cycle after which no further cycle was found: F = 80" in told
+    assert "1 branch ends at a cycle beyond which no further cycle was found: F = 80" in told
     assert "  k1 = 150: branch 1, at F = 80" in told
 
 
@@ -239,7 +239,7 @@ def test_branches_without_room_for_their_special_points_are_told_of_and_not_draw
     done = command("show", "c.h5")
     assert done.returncode == 0, done.stderr
     told = " ".join(done.stdout.split())
-    assert "not known for 1 rod: the list of special points is full" in told
+    assert "whether two states are stable is not known for 1 rod: the list of special points is full" in told
     assert "stable cycles beside a stable straight rod at 0 of 1 rod" in told
     view = read_view(command.directory / "c.h5")
     assert [len(RodBranches(view, rod).curves) for rod in (0, 1)] == [0, 0]
@@ -409,7 +409,7 @@ def test_check_foresees_no_time_for_a_pulled_rod(command):
             "f.yaml", f"task: branch\nparameters: {{F: {forces}, k2: 100, gamma3: 1.0e-3}}\n{branches}\n"
         )
         told = " ".join(command("check", "f.yaml").stdout.split())
-        return float(re.search(r"expected: ([\d.e-]+) s on one rank", told)[1])
+        return float(re.search(r"expected cost: ([\d.e-]+) s on one rank", told)[1])
 
     assert seconds("[-20, 60]") == pytest.approx(seconds("[60]"), rel=1e-2)
     assert seconds("[-20]") == 0

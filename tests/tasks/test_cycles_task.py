@@ -20,7 +20,7 @@ from rodsweep.results.file.creation import Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
-from rodsweep.results.run.checkpoints import CHECKPOINTS, Checkpoints
+from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
 from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
 from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
@@ -192,7 +192,8 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
     )
     text = " ".join(capsys.readouterr().out.split())
     for words in (
-        "8 points (2 x 1 x 2 x 1 x 2) in 4 chains of 2, down in F: each starts from its neighbour's cycle",
+        "8 points (a grid of 2 x 1 x 2 x 1 x 2) in 4 chains of 2, down in F: "
+        "each starts from its neighbour's cycle",
         "tip deflection 0.01 L",
         "at most 4 ranks can share the work",
         "axial drag yes gamma1 = 0.5, 1",
@@ -207,7 +208,8 @@ def test_check_says_what_is_stored_and_in_which_chains(tmp_path, capsys):
     print_job_check(job_of(tmp_path, config()))
     text = " ".join(capsys.readouterr().out.split())
     for words in (
-        "8 points (2 x 1 x 2 x 1 x 2), each started from the leading mode with tip deflection 0.01 L",
+        "8 points (a grid of 2 x 1 x 2 x 1 x 2), "
+        "each started from the leading mode with tip deflection 0.01 L",
         "tip and energy over a cycle no limit_cycle.samples stores them",
         "shapes over a cycle no limit_cycle.shapes stores them",
         "tip from the start to the cycle no limit_cycle.transient stores them",
@@ -374,8 +376,8 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
         "of 8 points: beats at 7 (",
         "period: 2 to 8 tau2; largest y of the tip: 7 L",
         "period: 40 to 300 tau1",
-        "multiplier: 0.2; periods integrated",
-        "worst errors: period 9e+00, amplitude 1e+01, other extrema 2e+01",
+        "largest |Floquet multiplier|: 0.2; periods integrated",
+        "worst errors: period 9e+00, largest y of the tip 1e+01, other extrema of the tip 2e+01",
         "energy balance 2e+01",
     ):
         assert words in text, words
@@ -386,8 +388,12 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
     told = limit_cycle_summary(view, view.variables["status"] >= 0)
-    assert told.answer[0] == "of 2 points: stays straight at 1 (F = 50), torus at 1 (F = 60)"
-    assert "tori: the cycles inside have multipliers 1.25" in told.details
+    assert (
+        told.answer[0]
+        == "of 2 points: stays straight at 1 (F = 50), beats with two frequencies at 1 (F = 60)"
+    )
+    inside = "the unstable cycles inside the tori have a largest |Floquet multiplier| of 1.25"
+    assert f"quasiperiodic motions: {inside}" in told.details
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
@@ -542,7 +548,7 @@ def test_damaged_checkpoint_counts_as_none(tmp_path):
     for place in range(0, len(data), 7):
         path.write_bytes(data[:place] + bytes([data[place] ^ 1]) + data[place + 1 :])
         assert kept.read(0) is None
-    delete_matching_files(tmp_path, CHECKPOINTS)
+    delete_matching_files(tmp_path, CHECKPOINT_GLOB)
     assert not list(tmp_path.iterdir())
 
 
@@ -761,7 +767,10 @@ def test_straight_rods_are_no_failure_and_failed_ones_are(command):
     failed = run_fake(command, "-o", "failed.h5", FAIL_AT="7")
     assert failed.returncode == 1
     assert "21 cycle, 3 straight, 3 failed" in failed.stdout
-    assert "F=7.0, k1=100.0, k2=10.0, gamma3=0.5, gamma1=1.0: failed a message" in failed.stdout
+    assert (
+        "failed, for example at F = 7, k1 = 100, k2 = 10, gamma3 = 0.5, gamma1 = 1: a message"
+        in failed.stdout
+    )
     assert "says what each status means" in failed.stdout
     assert "this is failed" in " ".join(command("show", "failed.h5").stdout.split())
 

@@ -65,7 +65,7 @@ def whole(tmp_path_factory, loaded):
     run = command("run", "c.yaml", "-o", "whole.h5")
     assert run.returncode == 0, run.stderr
     assert "2 of 2 points to do, then the curves" in run.stdout
-    assert "2 half curves of cycles followed" in run.stdout
+    assert "2 pieces of curves of folds and torus points followed" in run.stdout
     yield command
     command.clear()
 
@@ -101,8 +101,9 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     status, out = run_halted(whole, name, items, ranks, how)
     if how != signal.SIGKILL:
         assert status == 75
-        halves = "1 half curve" if items == 1 else f"{items} half curves"
-        assert f"stopped by {how.name}; 2 points kept, the curves are missing, {halves} kept" in out
+        pieces = "1 piece" if items == 1 else f"{items} pieces"
+        kept = f"2 points kept, {pieces} of curves kept, the other curves are missing"
+        assert f"stopped by {how.name}; {kept}" in out
     shown = " ".join(whole("show", name).stdout.split())
     assert "all rows are computed; the curves are missing" in shown
     if how == signal.SIGKILL:
@@ -116,8 +117,8 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     assert again.returncode == 0, again.stderr
     assert "0 of 2 points to do, 2 kept, then the curves" in again.stdout
     assert "nothing to do" not in again.stdout
-    halves = "1 half curve" if items == 1 else "2 half curves"
-    assert f"{halves} of cycles followed" in again.stdout
+    pieces = "1 piece" if items == 1 else "2 pieces"
+    assert f"{pieces} of curves of folds and torus points followed" in again.stdout
     assert same(content(whole.directory / name), content(whole.directory / "whole.h5"))
     assert not kept.directory.exists()
     assert "nothing to do" in whole("run", "c.yaml", "-o", name).stdout

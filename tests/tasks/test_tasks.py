@@ -218,10 +218,12 @@ def test_kinds_of_crossings_have_the_numbers_of_the_solver():
 
 
 def test_classes_of_a_phase_diagram_have_the_numbers_of_the_solver():
-    from rodsweep.results.layouts.phase_diagram import CLASSES
+    from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
     from rodsweep.solve.changes.diagram.rows import RodClass
 
-    assert {int(motion): motion.name for motion in RodClass} == {v: name for v, name in CLASSES if v >= 0}
+    assert {int(motion): motion.name for motion in RodClass} == {
+        v: name for v, name in STABILITY_CLASSES if v >= 0
+    }
 
 
 def test_first_crossings_are_stored_and_all_are_counted(tmp_path):
@@ -285,12 +287,16 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
 @pytest.mark.parametrize(
     ("task", "words"),
     {
-        "spectrum": ["stable at all 4 points", "proved at 4 of 4 points", "unknowns per point: 60"],
+        "spectrum": [
+            "stable at all 4 points",
+            "proved at 4 of 4 points",
+            "unknowns of the mesh per point: 60",
+        ],
         "thresholds": [
             "F** (straight rod starts to beat): F = 2 (",
             "at all 6 rods; frequency 20 to 70 rad/tau2",
             "at all 6 rods; growth rate -6 to -1 1/tau2",
-            "stable again: F = 3 (",
+            "restabilization (straight rod is stable again): F = 3 (",
             "searched up to F = 200 ",
             "the list of crossings is proved complete for 6 of 6 rods",
         ],
@@ -299,7 +305,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
             "absolute error at most 1e-12",
         ],
         "modes": [
-            "condition of the leading eigenvalue: 3",
+            "condition number of the leading eigenvalue: 3",
             "abscissa: 4 1/tau2 largest transient growth: 1.5 times, at t = 0.5000 tau2",
         ],
     }.items(),
@@ -315,9 +321,15 @@ def test_show_tells_what_matters_of_every_task(tmp_path, capsys, task, words):
 @pytest.mark.parametrize(
     ("task", "words"),
     {
-        "thresholds": ["6 points (2 x 3 x 1), each searched from F = 0 to 200", "at most 4 are stored"],
+        "thresholds": [
+            "6 points (a grid of 2 x 3 x 1), each searched from F = 0 to 200",
+            "at most 4 are stored",
+        ],
         "phase_diagram": ["2 rows, one for each k2, of 3 values of F each", "boundaries as curves yes"],
-        "modes": ["2 points (2 x 1 x 1 x 1), 2 leading modes each, on 5 nodes", "numerical abscissa yes"],
+        "modes": [
+            "2 points (a grid of 2 x 1 x 1 x 1), 2 leading modes each, on 5 nodes",
+            "numerical abscissa yes",
+        ],
     }.items(),
     ids=TASKS[1:],
 )
@@ -344,7 +356,7 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
         f"k1 = 150, F = 60.0000000 (+- 1e-07) ({why})"
         for why in ("edge of the diagram", "no further point found")
     )
-    assert line.startswith(f"curve of folds: from {first} to {last}; 1 point,")
+    assert line.startswith(f"curve of folds of cycles: from {first} to {last}; 1 point,")
 
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
@@ -368,7 +380,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, "F", "k1")
-    assert line.startswith("this curve meets the row k1 = 175 between F = 60 and 70, where no branch from")
+    assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch from")
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
@@ -428,7 +440,7 @@ def test_killed_search_for_thresholds_is_continued_to_the_same_file(command):
     again = run_fake(command)
     assert "10 of 16 points to do, 6 kept" in again.stdout, again.stderr
     assert "14 ok, 2 list_full" in again.stdout
-    assert "k1=14.0, k2=1.0, gamma3=0.0: list_full a message" in again.stdout
+    assert "list_full, for example at k1 = 14, k2 = 1, gamma3 = 0: a message" in again.stdout
     assert again.returncode == 1
     assert "raise the option crossings" in " ".join(command("show", "c.h5").stdout.split())
     run_fake(command, "-o", "whole.h5")

@@ -207,7 +207,7 @@ def test_shards_ranks_and_an_extension_give_the_same_file(command):
 def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(command):
     command.write("a.yaml", OVER_LOADS)
     command.solved("a.yaml")
-    answer, rest = command("show", "a.h5").stdout.split("\nthe rods without dimension:\n")
+    answer, rest = command("show", "a.h5").stdout.split("\nthe same in dimensionless numbers:\n")
     data = rs.open(command.directory / "a.h5")
     assert not re.search(r"\bF\b|\bk1\b|gamma3|tau2|mHz", answer)
     assert re.search(r"beats at 8 \(length 10 to 14 cm, pressure [\d.]+ to [\d.]+ kPa, 1.1 to 1.3 of", answer)

@@ -20,7 +20,7 @@ from ..solved import Result
 from .frames import frame_of, series_of
 from .printing import PrintedAnswer, brief_html, brief_text, heading_lines, whole_html, whole_text
 
-EIGENVALUE = ("growth_rate", "frequency")
+EIGENVALUE_VARIABLES = ("growth_rate", "frequency")
 """Variables with the real and the imaginary part of an eigenvalue."""
 UNPRINTED_VARIABLES = ("status", "seconds")
 """Variables that a printed answer omits: the heading has the status, and the time depends on the machine."""
@@ -126,7 +126,7 @@ class Answer:
         for each, variables in tables.contents.lists.items():
             if name in (*(v.name for v in variables), *tables.contents.dimensions(each)):
                 return self._list_values(each, name)
-        if name == "eigenvalues" and EIGENVALUE[0] in tables.view.variables:
+        if name == "eigenvalues" and EIGENVALUE_VARIABLES[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
         if name in self.data.variables:  # a coordinate, or a number of the whole file
             values = self.data[name].values
@@ -151,7 +151,7 @@ class Answer:
 
     def _attribute_names(self) -> list[str]:
         """Names of all variables and lists, for messages and completion."""
-        extra = ["eigenvalues"] if EIGENVALUE[0] in self.data else []
+        extra = ["eigenvalues"] if EIGENVALUE_VARIABLES[0] in self.data else []
         return [*map(str, self.data.data_vars), *self.lists, *extra]
 
     def __dir__(self) -> list[str]:

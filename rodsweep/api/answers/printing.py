@@ -229,7 +229,7 @@ def _remaining_numbers_line(printed: PrintedAnswer) -> str:
     rows = {name: len(columns[0].values) for name, columns in printed.lists.items()}
     rows.update(printed.row_counts)
     lists = [f".{name} ({counted(number, 'row')})" for name, number in rows.items() if number]
-    return wrap_cell_text(f"everything: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
+    return wrap_cell_text(f"all numbers: .table(){'; lists: ' if lists else ''}{', '.join(lists)}")
 
 
 def _html_heading(printed: PrintedAnswer) -> str:

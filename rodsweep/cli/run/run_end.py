@@ -71,9 +71,10 @@ class RunEnd:
     """Time spent on the variables that need all points, in s."""
     interrupted_points: int
     """Number of points interrupted by a stop."""
-    followed_halves: int | None
-    """Number of half curves followed in this run; None if no curves were to be computed."""
-    stored_halves: int | None
+    followed_pieces: int | None
+    """Number of half curves (from a starting point, in one direction) followed in this run; None if no curves
+    were to be computed."""
+    stored_pieces: int | None
     """Number of half curves stored for the next run if the curves are incomplete, else None."""
 
     def time_sentences(self) -> list[str]:
@@ -83,20 +84,21 @@ class RunEnd:
         if self.requested_points:
             points = self.requested_points - self.unsolved_points
             each = self.seconds * self.ranks / max(points, 1)
-            pace = f" ({duration(each)} a point and rank)" if points else ""
+            pace = f" ({duration(each)} per point on one rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        if self.followed_halves is not None:
-            word = "curves in" if self.stored_halves is None else "curves stopped after"
-            halves = counted(self.followed_halves, "half curve")
-            done = f"; {halves} of cycles followed" if self.followed_halves else ""
+        if self.followed_pieces is not None:
+            word = "curves in" if self.stored_pieces is None else "curves stopped after"
+            pieces = f"{counted(self.followed_pieces, 'piece')} of curves of folds and torus points"
+            done = f"; {pieces} followed" if self.followed_pieces else ""
             sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
         return sentences
 
     def stored_points_clause(self) -> str:
         """Clause with the numbers of points and half curves that a stopped run has stored."""
         points = f"{counted(self.stored_points, 'point')} kept"
-        if self.stored_halves is not None:
-            return f"{points}, the curves are missing, {counted(self.stored_halves, 'half curve')} kept"
+        if self.stored_pieces is not None:
+            pieces = counted(self.stored_pieces, "piece")
+            return f"{points}, {pieces} of curves kept, the other curves are missing"
         if self.interrupted_points:
             return f"{points}, {self.interrupted_points} interrupted, to be solved again"
         return points

@@ -190,10 +190,10 @@ class _RankRun:
         """Prints the first failed points, and the name of the file with the tracebacks of exceptions."""
         failures = [failure for contribution in contributions for failure in contribution.failures]
         for failure in failures[:MAX_FAILURES_PRINTED]:
-            click.echo(f"  {failure}")
+            click.echo(f"  {provenance.failure_sentence(failure)}")
         if exceptions:
             raised = counted(exceptions, "unforeseen exception")
-            click.echo(f"  {raised}: a bug, please report it with {self.log.path}, which has the traceback")
+            click.echo(f"  {raised}, a bug: please report it with {self.log.path}, which has the traceback")
 
     def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
         """Text with the number of points of each status. counts: numbers by status. left: number of points of
@@ -229,8 +229,8 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
-            followed_halves=sum(s.solved_points for s in shares) if pending.is_missing and wide else None,
-            stored_halves=len(wide.results) if wide and lacks_sweep_wide_variables else None,
+            followed_pieces=sum(s.solved_points for s in shares) if pending.is_missing and wide else None,
+            stored_pieces=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
             self._print_message(sentence)
@@ -240,7 +240,7 @@ class _RankRun:
         self._print_failures(contributions, exceptions)
         if left or lacks_sweep_wide_variables:
             how = f"stopped by {self.stop.name}" if self.stop else "not complete"
-            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues")
+            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues the run")
             return STOPPED_STATUS
         if amiss:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")

@@ -19,7 +19,7 @@ from ...sweep.team import Team
 from ...tasks.protocol import NamedArrays, SweepWideSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
 
-HALF_CURVE_NOUN = "half curves"
+HALF_CURVE_NOUN = "pieces of curves"
 """Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 

@@ -19,10 +19,10 @@ ROW_LABELS_BY_KIND = {
         "injection_mean": "power of the force", "injection_mean_si": "power of the force",
         "dissipation_mean": "power lost to the fluid",
         "dissipation_mean_si": "power lost to the fluid", "energy_imbalance": "energy imbalance",
-        "multiplier": "largest multiplier", "least_stretch": "least stretch h1",
+        "multiplier": "largest |multiplier|", "least_stretch": "smallest stretch h1",
     },
     "thresholds": {
-        "F_onset": "F*", "pressure_onset": "oscillates from", "F_hopf": "F**",
+        "F_onset": "oscillates from F*", "pressure_onset": "oscillates from", "F_hopf": "flutters from F**",
         "hopf_frequency": "frequency at F**",
         "F_restabilization": "stable again from", "pressure_restabilization": "stable again from",
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",

@@ -21,7 +21,7 @@ from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
 from .smooth_branch import smooth_curve_of_branch
 
-STABILITY_LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "not known")}
+STABILITY_LINES = {1: ("-", "stable"), 0: ("--", "unstable"), -1: (":", "stability not known")}
 """(line style, legend entry) of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 SPECIAL_POINT_MARKS = {
     "hopf": ("o", "Hopf point"),
@@ -29,15 +29,15 @@ SPECIAL_POINT_MARKS = {
     "torus": ("D", "torus point"),
     "symmetry_breaking": ("^", "symmetry breaking"),
     "period_doubling": ("v", "period doubling"),
-    "left_the_model": ("X", "the model ends ($h_1 = 0$)"),
+    "left_the_model": ("X", "section crushed ($h_1 = 0$)"),
     "no_cycle_found": ("x", "no further cycle found"),
-    "list_full": ("|", "last cycle stored"),
+    "list_full": ("|", "last stored cycle"),
 }
 """(marker, legend entry) of a special point, by kind, or by reason for the end of a branch. Other ends are
 not marked."""
 PREDICTION_LINE = (0, (4, 1, 1, 1))
 """Line style of the amplitude predicted by the normal form near a Hopf point."""
-PREDICTION_WORD = "by the normal form"
+PREDICTION_WORD = "predicted by the normal form"
 """Legend entry of the amplitude predicted by the normal form."""
 BRANCH_COLOURS = (
     style.BLUE,
@@ -131,7 +131,7 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     number of drawn rods.
     """
     hidden = sum(rod.hidden_count for rod in rods)
-    more = f"; {hidden} more have special points that are not stored" if hidden else ""
+    more = f"; {hidden} more are not drawn: the list of special points is full" if hidden else ""
     if drawn < beating:
         more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())

@@ -24,7 +24,7 @@ from .request import FigureRequest
 MAX_DRAWN_DISTANCE = 0.1
 """Predicted amplitudes are drawn up to this value of |F/F_H - 1| (F_H: Hopf point). At larger distances
 cycles deviate from the leading-order law."""
-CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "side undecided")}
+CRITICALITY_LINES = {-1: ("-", "supercritical"), 1: ("--", "subcritical"), 0: (":", "criticality undecided")}
 """(line style, legend entry) of the predicted cycles, by sign of Re c: -1 supercritical, 1 subcritical, 0
 undecided."""
 PREDICTION_POINT_COUNT = 60
@@ -33,16 +33,16 @@ steep."""
 CRITICALITY_MARKS = {
     -1: ("supercritical", style.BLUE, "o"),
     1: ("subcritical", style.VERMILION, "s"),
-    0: ("undecided", "0.3", "x"),
+    0: ("criticality undecided", "0.3", "x"),
 }
 """(legend entry, colour, marker) of a Hopf point, by sign of Re c: -1 supercritical, 1 subcritical, 0
 undecided."""
 CRITICALITY_CLASSES = (
     ("no Hopf point with a normal form", "#DDDDDD"),
     ("supercritical", "#9CC3E4"),
-    ("supercritical, a later one subcritical", "#4C8FC4"),
+    ("supercritical, a later Hopf point subcritical", "#4C8FC4"),
     ("subcritical", style.VERMILION),
-    ("undecided", "0.4"),
+    ("criticality undecided", "0.4"),
 )
 """(legend entry, colour) of the classes of rods on a map, by the criticality of the Hopf points. Colour-blind
 readers can distinguish the colours, also in grey prints."""

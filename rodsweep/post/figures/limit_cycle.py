@@ -22,7 +22,7 @@ from .cycle.selection import (
 )
 from .cycle.transient import draw_transients
 from .layout.fitting import MAP_ASPECT, STRIP_ASPECT
-from .request import KINDS_OF_TASK, FigureRequest
+from .request import FIGURE_KINDS_BY_TASK, FigureRequest
 
 ALL_POINT_FIGURES = {"amplitude": "amplitudes", "maps": "maps"}
 """Kinds of figures that show all points of a file, with the noun for messages."""
@@ -76,7 +76,7 @@ def chosen_figure_kind(request: FigureRequest) -> str:
         if view.task != first.task:
             request.refuse_choices(view)
     name = request.what or _default_figure_kind(request)
-    if name not in KINDS_OF_TASK["limit_cycle"]:
+    if name not in FIGURE_KINDS_BY_TASK["limit_cycle"]:
         request.refuse_points(first)
     if others and name != "amplitude":
         raise InputError(f"--what {name} draws a single file; only amplitudes of several files form a figure")

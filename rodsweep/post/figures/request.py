@@ -25,14 +25,14 @@ WIDTHS = {"single": 3.375, "double": 7.0}
 ROOT_CHOICES = ("rightmost", "smallest", "all")
 """Choices of the roots in a figure of spectra along a line: the two rightmost, the two smallest, or all
 stored roots."""
-KINDS_OF_TASK = {
+FIGURE_KINDS_BY_TASK = {
     "limit_cycle": ("cycle", "amplitude", "maps", "energy", "transient", "animation"),
     "thresholds": ("lines", "map"),
 }
 """Names of the kinds of figures of each task that has several kinds."""
-FIGURE_KINDS = tuple(kind for kinds in KINDS_OF_TASK.values() for kind in kinds)
+FIGURE_KINDS = tuple(kind for kinds in FIGURE_KINDS_BY_TASK.values() for kind in kinds)
 """Names of the kinds of figures of all tasks."""
-HEIGHT_POWER = 0.5
+HEIGHT_EXPONENT = 0.5
 """The height of a figure scales as the width to this power. The power is below 1, because the size of the
 text does not change."""
 METRES_PER_INCH = 0.0254
@@ -74,7 +74,7 @@ class FigureLook:
         if self.width_in_inches is not None:
             across, down = figure.get_size_inches()
             figure.set_size_inches(
-                self.width_in_inches, down * min(1.0, self.width_in_inches / across) ** HEIGHT_POWER
+                self.width_in_inches, down * min(1.0, self.width_in_inches / across) ** HEIGHT_EXPONENT
             )
         fit_layout(figure, min_aspect)
 
@@ -143,7 +143,7 @@ class FigureRequest:
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
             )
         if self.what and self.what not in kinds:
-            task = next(task for task, known in KINDS_OF_TASK.items() if self.what in known)
+            task = next(task for task, known in FIGURE_KINDS_BY_TASK.items() if self.what in known)
             raise InputError(
                 f"{view.path}: --what {self.what} is for results of {task}, and this is a result of "
                 f"{view.task}"

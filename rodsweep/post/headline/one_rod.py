@@ -100,7 +100,7 @@ class ColumnTexts:
 
 FIRST_THRESHOLD_KINDS = ("onset", "hopf", "restabilization")
 """Kinds of thresholds for which the first force is stored as a separate variable."""
-CROSSINGS = "crossings"
+CROSSINGS_TABLE = "crossings"
 """Name of the table of crossings."""
 
 
@@ -124,9 +124,12 @@ class OneRod:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
         crossings. Empty if the result has no list of crossings.
         """
-        if CROSSINGS not in self.list_texts or "crossing_error" not in self.list_texts[CROSSINGS].columns:
+        if (
+            CROSSINGS_TABLE not in self.list_texts
+            or "crossing_error" not in self.list_texts[CROSSINGS_TABLE].columns
+        ):
             return {}
-        columns = self.list_texts[CROSSINGS].columns
+        columns = self.list_texts[CROSSINGS_TABLE].columns
         at = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
         found = {}
         for event in FIRST_THRESHOLD_KINDS:

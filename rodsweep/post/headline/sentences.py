@@ -47,7 +47,11 @@ def threshold_sentence(rod: OneRod) -> str:
     """Sentence on the first force of each kind of threshold; empty if the count of crossings is unknown."""
     if rod.count("crossing_count") is None:
         return ""
-    verbs = {"onset": "oscillates from", "hopf": "flutters from", "restabilization": "stable again from"}
+    verbs = {
+        "onset": "decaying oscillation from",
+        "hopf": "flutter from",
+        "restabilization": "stable again from",
+    }
     parts = []
     for event, verb in verbs.items():
         column = rod.column(f"F_{event}")
@@ -61,7 +65,7 @@ def threshold_sentence(rod: OneRod) -> str:
 
 def _later_flutter(rod: OneRod) -> list[str]:
     """Clauses on the starts and ends of all windows of flutter after the first."""
-    verbs = {"hopf": "flutters again from", "restabilization": "stable again from"}
+    verbs = {"hopf": "flutter again from", "restabilization": "stable again from"}
     crossings = rod.list_texts["crossings"]
     kinds = rod.words("crossings", "crossing_kind")
     name = rod.preferred_name(crossings, "crossing_F")
@@ -107,7 +111,7 @@ def cycle_sentence(rod: OneRod) -> str:
     """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
         status = str(rod.view.status_names[0])
-        beats = "the rod beats" if status == "cycle" else status.replace("_", " ")
+        beats = "the rod beats" if status == "cycle" else f"{status.replace('_', ' ')} cycle"
         return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
     return ""
 
@@ -124,15 +128,15 @@ def _early_end_clause(rod: OneRod) -> str:
     return early.format(_search_end_text(rod)) if rod.view.has_status("ended_early").all() else ""
 
 
-EIGENVALUES = ("mode", "growth_rate", "frequency")
+EIGENVALUE_COLUMNS = ("mode", "growth_rate", "frequency")
 """First columns in the list of eigenvalues."""
 HEADLINES = {
-    "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUES, "longitudinal_rate")),
+    "spectrum": Headline(eigenvalue_sentence, (), "modes", (*EIGENVALUE_COLUMNS, "longitudinal_rate")),
     "modes": Headline(
         eigenvalue_sentence,
         ("numerical_abscissa", "transient_growth", "transient_time"),
         "modes",
-        (*EIGENVALUES, "condition"),
+        (*EIGENVALUE_COLUMNS, "condition"),
     ),
     "thresholds": Headline(
         threshold_sentence,

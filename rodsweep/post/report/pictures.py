@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...results.file.view import View
 from ..figures import draw
-from ..figures.request import KINDS_OF_TASK, ShapeFunction
+from ..figures.request import FIGURE_KINDS_BY_TASK, ShapeFunction
 from .vector_picture import VectorPicture, vector_picture
 
 ANIMATION_KIND = "animation"
@@ -47,7 +47,7 @@ def pictures_of(views: Sequence[View], shapes: ShapeFunction | None, numbers: "c
     """
     # Remove the folders from the paths, so that no sentence on the page names a folder.
     views = [replace(view, path=Path(view.path.name)) for view in views]
-    kinds = [kind for kind in KINDS_OF_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
+    kinds = [kind for kind in FIGURE_KINDS_BY_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
     found: dict[str, CaptionedPicture] = {}
     refusal = ""
     for kind in (None, *kinds):

@@ -7,8 +7,8 @@ from math import isfinite
 
 import numpy as np
 
-from ...results.layouts.arm import VALIDITY
-from ...results.layouts.limit_cycle import CYCLE_WORDS
+from ...results.layouts.arm import VALIDITY_VARIABLES
+from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
@@ -23,7 +23,7 @@ from .units import PortraitUnits
 SAME_FORCE_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
 THRESHOLD_CLAUSES = {
-    "onset": "it starts to oscillate at {F}",
+    "onset": "decaying disturbances start to oscillate at {F}",
     "hopf": "a pair of modes becomes unstable at {F}",
     "hopf_reverse": "a pair becomes stable at {F}, where other modes stay unstable",
     "restabilization": "it is stable again from {F}",
@@ -82,7 +82,7 @@ def _arm_sentence(results: RodResults) -> Iterator[str]:
         f"{quantities['pressure_scale']:.6g} Pa on the face of its tip, and tau2 for "
         f"{quantities['tau2']:.6g} s."
     )
-    validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY}
+    validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
     sentences = [validity_sentence(validity), *plane_lines(view.quantities)]
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
@@ -135,8 +135,8 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         return
     if rod.hidden_count:
         yield (
-            f"{rod.hidden_count} of its branches of cycles {is_or_are(rod.hidden_count)} not drawn: some "
-            "special points are not stored."
+            f"{rod.hidden_count} of its branches of cycles {is_or_are(rod.hidden_count)} not drawn: the list "
+            "of special points is full."
         )
     curves = rod.curves
     if not curves:
@@ -162,10 +162,10 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
     yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
     if not rod.hidden_count:
-        beside = rod.coexistence
+        beside = rod.coexistence_ranges
         ranges = units.load_ranges_text(beside, rod.parameter_errors) if beside else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
-        if pairs := rod.two_cycles:
+        if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
 
 
@@ -218,7 +218,7 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
     for F, view in results.cycles:
         v = view.point_values(0)
         word = str(view.status_names[0])
-        if word not in CYCLE_WORDS:
+        if word not in CYCLE_STATUSES:
             clauses.append(
                 f"at {units.load_text(F)} a motion from a small deflection leads to no cycle that is drawn "
                 f"({word.replace('_', ' ')})"

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import View
-from ...results.layouts.limit_cycle import CYCLE_WORDS
+from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
 from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_clamp, force_arrow
@@ -42,7 +42,7 @@ COEXISTENCE_LOOK = (style.GREEN, "stable cycle beside a stable straight rod")
 """Colour and legend entry of ranges of F in which a stable cycle and the stable straight rod coexist."""
 TWO_CYCLES_LOOK = (style.PURPLE, "two stable cycles")
 """Colour and legend entry of ranges of F in which two stable cycles coexist."""
-CYCLE_WORD = "cycle drawn below"
+CYCLE_LEGEND_ENTRY = "cycle drawn below"
 """Legend entry of the marks of cycles whose shapes are drawn."""
 MIN_DRAWN_PART = 1e-3
 """The imaginary part of a mode is drawn if its maximum exceeds this fraction of the maximum of the real part.
@@ -134,8 +134,8 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
     draw_straight_rod(upper, rod)
     if not rod.hidden_count:
         for ranges, (colour, word) in (
-            (rod.coexistence, COEXISTENCE_LOOK),
-            (rod.two_cycles, TWO_CYCLES_LOOK),
+            (rod.coexistence_ranges, COEXISTENCE_LOOK),
+            (rod.two_cycle_ranges, TWO_CYCLES_LOOK),
         ):
             bands = [upper.axvspan(*ends, color=colour, alpha=0.25, lw=0, label=word) for ends in ranges]
             handles += bands[:1]
@@ -151,12 +151,21 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
     entry, empty without such cycles."""
-    beating = [(F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
+    beating = [
+        (F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()
+    ]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
         values = [float(v[name]) for _, v in beating]
         handles = axes.plot(
-            [F for F, _ in beating], values, "*", color="k", ms=9, mec="white", mew=0.6, label=CYCLE_WORD
+            [F for F, _ in beating],
+            values,
+            "*",
+            color="k",
+            ms=9,
+            mec="white",
+            mew=0.6,
+            label=CYCLE_LEGEND_ENTRY,
         )
     return handles if beating else []
 
@@ -188,14 +197,14 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
-    drawn = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_WORDS).all()]
+    drawn = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()]
     units = results.units
     length = units.length.factor
     reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
         v = view.point_values(0)
         force = units.force_title(F)
-        if not view.has_status(*CYCLE_WORDS).all():
+        if not view.has_status(*CYCLE_STATUSES).all():
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue

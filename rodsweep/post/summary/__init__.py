@@ -15,7 +15,7 @@ from ...config.values import printable
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
-from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE
+from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE, failure_sentence
 from ...results.file.view import View
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
@@ -139,7 +139,7 @@ def _answer_lines(view: View, done: np.ndarray, summary: SummaryLines) -> list[s
     if not view.quantities or not done.any():
         return [*summary.answer]
     lines = [*arm_answer(view, done), *summary.arm_sentences, *arm_lines(view, done)]
-    return [*lines, "", "the rods without dimension:", *summary.answer] if summary.answer else lines
+    return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
 def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
@@ -165,7 +165,8 @@ def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
     if waiting := view.journalled_count:
         verb = "is" if waiting == 1 else "are"
         lines.append(
-            f"{waiting} of the computed {plural(noun)} {verb} in the journal until the run writes the file"
+            f"{waiting} of the computed {plural(noun)} {verb} so far only in the journal of the run, which "
+            "writes the file later"
         )
     return lines
 
@@ -182,7 +183,7 @@ def _failure_sentences(view: View) -> Iterable[str]:
         for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
             here &= columns.get(parameter, float(text)) == float(text)
         if here.any() and reason:  # a later run may have computed the point anew
-            yield f"{name}, as at {where.replace('=', ' = ')}: {reason}"
+            yield failure_sentence(line)
 
 
 def _terminal_table(table: TextTable) -> Table:

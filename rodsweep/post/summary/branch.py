@@ -19,7 +19,7 @@ LIST_IS_FULL_REASON = "the list of special points is full; raise branch.special"
 """Reason for which branches are not shown, and remedy."""
 COEXISTENCE_WORDS = "stable cycles beside a stable straight rod"
 """Phrase for a range in which a stable cycle and the stable straight rod coexist."""
-TWO_CYCLES_WORDS = "stable cycles of two branches"
+TWO_CYCLES_WORDS = "two stable cycles, on different branches,"
 """Phrase for a range in which stable cycles of two branches coexist."""
 SPECIAL_POINT_WORDS = {
     "fold": "fold",
@@ -30,12 +30,12 @@ SPECIAL_POINT_WORDS = {
 """Names of special points between the ends of a branch, by kind. Hopf points and ends are described in
 separate sentences."""
 BRANCH_END_WORDS = {
-    "left_the_model": "a cycle with h1 = 0",
+    "left_the_model": "a cycle that crushes a section of the rod",
     "range_end": "the end of the range",
     "crushed": "a force that almost crushes the rod",
-    "no_cycle_found": "a cycle after which no further cycle was found",
-    "list_full": "the last cycle that is stored",
-    "none": "an end",
+    "no_cycle_found": "a cycle beyond which no further cycle was found",
+    "list_full": "the last cycle for which the file has room",
+    "none": "an end for an unknown reason",
 }
 """Phrase for the end of a branch, by reason of the end."""
 
@@ -86,11 +86,11 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
-        common = rod.coexistence
+        common = rod.coexistence_ranges
         words = f"{along} = {ranges_text(common, rod.parameter_errors)}" if common else nowhere
         yield f"{COEXISTENCE_WORDS}: {words}"
-        if pairs := rod.two_cycles:
-            yield f"{TWO_CYCLES_WORDS}: {along} = {ranges_text(pairs, rod.parameter_errors)}"
+        if pairs := rod.two_cycle_ranges:
+            yield f"{TWO_CYCLES_WORDS} at {along} = {ranges_text(pairs, rod.parameter_errors)}"
 
 
 def _extent_text(curve: StoredBranch, errors: Array, along: str) -> str:
@@ -134,7 +134,7 @@ def _ends_phrase(curve: StoredBranch, along: str) -> str:
     if last.kind == "symmetry_breaking":
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
-        return f"{start} to a cycle with h1 = 0, {end}"
+        return f"{start} to {BRANCH_END_WORDS[last.kind]}, {end}"
     return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded_text(last.at, last.error)}"
 
 
@@ -169,8 +169,8 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
         if kind in SPECIAL_POINT_WORDS:
             yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {where}"
         else:
-            verb = "leads" if len(located) == 1 else "lead"
-            yield f"{counted(len(located), 'branch')} {verb} to {BRANCH_END_WORDS[kind]}: {where}"
+            verb = "ends" if len(located) == 1 else "end"
+            yield f"{counted(len(located), 'branch')} {verb} at {BRANCH_END_WORDS[kind]}: {where}"
     stopped = [
         f"{point_text(rod.view, rod.index)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
         for rod, number, curve in curves
@@ -185,14 +185,15 @@ def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]
     """
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
-        yield f"not known for {counted(len(rods) - len(complete), 'rod')}: {LIST_IS_FULL_REASON}"
+        unknown = counted(len(rods) - len(complete), "rod")
+        yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
         yield from _lines_on_rods_with(
-            complete, along, COEXISTENCE_WORDS, [rod.coexistence for rod in complete]
+            complete, along, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
         )
-    two_cycles = [rod.two_cycles for rod in complete]
-    if any(two_cycles):
-        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycles)
+    two_cycle_ranges = [rod.two_cycle_ranges for rod in complete]
+    if any(two_cycle_ranges):
+        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycle_ranges)
 
 
 def _lines_on_rods_with(

@@ -45,7 +45,6 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
         numbers = _hopf_table(of_rod)
         return SummaryLines(lines, reliability, arm_sentences=crossings_of_arm(view), numbers=numbers)
     side = v["criticality"][done]
-    first = side[:, 0]
     known = np.isfinite(side)
     with_hopf = v["crossing_count"] > 0
     where = in_brackets(region_text(view, done & with_hopf)) if (done & with_hopf).any() else ""
@@ -59,10 +58,9 @@ def criticality_summary(view: View, done: np.ndarray) -> SummaryLines:
     names = ("amplitude_coefficient", "frequency_slope")
     a, b = ((v[name][done], absolute_errors(v, name)[done]) for name in names)
     F = span_text(v["crossing_F"][done][:, 0], v["crossing_error"][done][:, 0])
-    lines += [
-        f"first Hopf point: {_count_text(first)}; F = {F}, a = {span_text(*(table[:, 0] for table in a))} L",
-        *_subcritical_lines(view),
-    ]
+    size = span_text(*(table[:, 0] for table in a))
+    lines.append(f"first Hopf point of each rod: {_count_text(side[:, 0])}; F = {F}, a = {size} L")
+    lines += _subcritical_lines(view)
     reliability = [
         _searched_range_line(view, done),
         f"worst relative errors: c {_maximum(v['landau_error'][done])}, dw/dF "
@@ -83,8 +81,10 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
         if np.isfinite(v["landau_error"][i]):
             form = f"{CRITICALITY_WORDS[int(v['criticality'][i])]}, {_nearby_cycles_clause(v, int(i))}"
         after = int(v["unstable_after"][i])
-        modes = counted(after, "unstable mode") if after >= 0 else "number of unstable modes not known"
-        yield f"{kind} at F = {F}: {form}; {modes} above"
+        modes = "the number of unstable modes beyond it is not known"
+        if after >= 0:
+            modes = f"the straight rod has {counted(after, 'unstable mode')} beyond it"
+        yield f"{kind} at F = {F}: {form}; {modes}"
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
@@ -108,7 +108,7 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     side = int(v["criticality"][i])
     if side == 0:
         return "the sign of Re c is within its error"
-    above = "F above it" if v["amplitude_coefficient"][i] > 0 else "F below it"
+    above = "larger F" if v["amplitude_coefficient"][i] > 0 else "smaller F"
     after = int(v["unstable_after"][i])
     hopf = CROSSING_KINDS[int(v["crossing_kind"][i])] == "hopf"
     others = after - 2 if hopf else after
@@ -136,9 +136,9 @@ def _subcritical_lines(view: View) -> Iterator[str]:
             f"F = {rounded_text(F, dF)} (Hopf point {i + 1}, a = {rounded_text(x, abs(x) * dx)} L)"
             for F, dF, i, x, dx in zip(forces, absolute, places, a, relative, strict=True)
         )
-        yield f"subcritical for {name}: {each}"
+        yield f"subcritical Hopf points for {name}: {each}"
     if len(rods) > MAX_LISTED_RODS:
-        yield f"and subcritical for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
+        yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
 
 
 def _count_text(side: np.ndarray) -> str:

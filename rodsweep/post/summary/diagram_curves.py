@@ -9,20 +9,36 @@ from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
-from ...wording import counted
+from ...wording import counted, is_or_are
 from .ranges import error_text, number_with_error, span_text
 
+CYCLE_CHANGE_WORDS = {
+    "fold": "folds of cycles",
+    "torus": "torus points of cycles",
+    "symmetry_breaking": "symmetry breakings of cycles",
+    "left_the_model": "cycles that crush a section of the rod",
+}
+"""Phrase for the special points of cycles on rows and on curves, by kind."""
 CURVE_END_WORDS = {
-    "none": "continues",
+    "none": "not an end",
     "edge": "edge of the diagram",
     "crushed": "a force that almost crushes the rod",
     "hopf": "Hopf point, where the cycles vanish",
-    "left_the_model": "h1 = 0",
-    "resonance": "resonance",
+    "left_the_model": "cycles that crush a section of the rod",
+    "resonance": "the two multipliers become real",
     "closed": "closed curve",
     "not_followed": "no further point found",
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
+BAUTIN_END_WORDS = {
+    "none": "not an end",
+    "range_end": "the end of the range",
+    "plane_edge": "the edge of the diagram",
+    "not_found": "a point beyond which no further point was found",
+    "list_full": "the maximum number of points",
+    "closed": "its first point",
+}
+"""Phrase for the reason for which a curve of generalised Hopf points ends."""
 MAX_ROW_DISTANCE = 0.01
 """Largest distance of a special point of a row from the two points of a curve between which the curve meets
 the row, divided by the length of the row."""
@@ -53,14 +69,14 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
         on = np.flatnonzero(v["cycle_curve_number"] == number)
-        kind = SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]
+        what = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]]
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
             for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
         )
-        what = "folds" if kind == "fold" else "torus points"
+
         error = error_text(float(v["cycle_curve_error"][on].max()))
         points = counted(len(on), "point")
         lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
@@ -92,9 +108,9 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
             own = specials[index][kinds[index] == kind]
             if not ((own >= low - near) & (own <= high + near)).any():
                 lines.append(
-                    f"this curve meets the row {row} = {value:g} between {line} = {low:.6g} and {high:.6g}, "
-                    "where no branch from a Hopf point of the row leads: the stable states of the row leave "
-                    "out the cycles there"
+                    f"this curve crosses the row {row} = {value:g} between {line} = {low:.6g} and "
+                    f"{high:.6g}, but no branch from a Hopf point of this row reaches the crossing: the "
+                    "stable states of the row do not include the cycles there"
                 )
     return list(dict.fromkeys(lines))
 
@@ -107,18 +123,18 @@ def agreement_lines(view: View, line: str) -> list[str]:
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
     within = error_text(float(v["curve_agreement"]))
-    near = f"crossings on rows lie within {within} of these curves along {line}; " * (hopf + double > 0)
+    near = f"crossings located on rows lie on them within {within} of the range of {line}; "
+    near *= hopf + double > 0
     lines = [
         f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
-        f"{_on_no_curve_clause(int(v['curves_untraced']))}"
+        f"{_on_no_curve_clause(int(v['curves_untraced']), 'crossing')}"
     ]
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         within = error_text(float(v["cycle_curve_agreement"]))
-        near = f"folds and torus points on a curve lie within {within} of it along {line}; " * (curves > 0)
-        lines.append(
-            f"curves of cycles: {curves}; {near}{_on_no_curve_clause(int(v['cycle_curves_untraced']))}"
-        )
+        near = f"points located on rows lie on them within {within} of the range of {line}; " * (curves > 0)
+        untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
+        lines.append(f"curves of folds and torus points of cycles: {curves}; {near}{untraced}")
     return lines
 
 
@@ -134,13 +150,15 @@ def cut_lines(view: View, line: str, row: str) -> list[str]:
             what = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
             where = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
             number = int(v["curve_number"][i])
-            lines.append(f"curve {number}, of {what}, is incomplete: at {where} {CURVE_ENDS[why]}")
+            lines.append(f"curve {number}, of {what}, is incomplete: it stops at {where}: {CURVE_ENDS[why]}")
     return lines
 
 
-def _on_no_curve_clause(count: int) -> str:
-    """Clause on the number `count` of points on rows that lie on no curve; also for 0."""
-    return f"{count} is on no curve" if count == 1 else f"{count} are on no curve"
+def _on_no_curve_clause(count: int, noun: str) -> str:
+    """Clause on the number `count` of points located on rows that lie on no curve. noun: noun for a point."""
+    return (
+        f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else f"every {noun} is on a curve"
+    )
 
 
 def fold_lines(view: View, line: str, row: str) -> list[str]:
@@ -202,7 +220,7 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
         for i in range(len(v["bautin_curve"]))
     ]
     if unlocated := int(v["bautin_unlocated"]):
-        lines.append(f"{counted(unlocated, 'change')} of criticality could not be located")
+        lines.append(f"{counted(unlocated, 'change')} of criticality along Hopf curves could not be located")
     return lines
 
 
@@ -215,9 +233,11 @@ def bautin_curve_lines(view: View) -> list[str]:
     for number in np.unique(v["bautin_along_curve"]):
         on = v["bautin_along_curve"] == number
         where = ", ".join(f"{name} = {span_text(v[f'bautin_along_{name}'][on])}" for name in names)
-        ends = [BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())] for side in END_SUFFIXES]
+        start, end = (
+            BAUTIN_END_WORDS[BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())]] for side in END_SUFFIXES
+        )
         lines.append(
             f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
-            f"ends: {ends[0]} and {ends[1]}"
+            + (f"both ends lie at {start}" if start == end else f"it begins at {start} and ends at {end}")
         )
     return lines

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.limit_cycle import CYCLE_WORDS, SECOND_STATES
+from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from ..hopf_points import StoredThresholds
@@ -23,8 +23,16 @@ from .summary_lines import (
     varied_parameters_at_points,
 )
 
-OUTCOME_WORDS = {"cycle": "beats", "straight": "stays straight"}
-"""Phrase for the outcome at a point, by status; for other statuses the name of the status is used."""
+OUTCOME_WORDS = {
+    "cycle": "beats",
+    "straight": "stays straight",
+    "unstable": "has an unstable cycle",
+    "torus": "beats with two frequencies",
+    "not_settled": "does not settle",
+    "left_the_model": "leaves the model",
+    "failed": "is not solved",
+}
+"""Predicate for the rod at a point, by status; for other statuses the name of the status is used."""
 CYCLE_NUMBERS = (
     ("period", "period", "tau2"),
     ("frequency", "frequency", ANGULAR_UNIT),
@@ -38,7 +46,7 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
     v = view.variables
     beats = done & view.has_status("cycle")
-    orbit = done & view.has_status(*CYCLE_WORDS)
+    orbit = done & view.has_status(*CYCLE_STATUSES)
     stability, arm_sentences = _threshold_lines(view)
     answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(view, done)]
     if view.quantities and done.size > 1 and not beats[done].all():
@@ -50,7 +58,8 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     on_torus = done & view.has_status("torus")
     if on_torus.any():
         details.append(
-            f"tori: the cycles inside have multipliers {known_range_text(v, 'multiplier', on_torus)}"
+            "quasiperiodic motions: the unstable cycles inside the tori have a largest |Floquet multiplier| "
+            f"of {known_range_text(v, 'multiplier', on_torus)}"
         )
     if done.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))
@@ -77,9 +86,10 @@ def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarra
     }
     if len(found) == 1:
         word = next(iter(found))
+        outcome = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
         if done.size > 1:
-            return f"{word} at all {whole}" if done.sum() > 1 else f"{word} at the only solved point"
-        return f"the rod {word}" if word in OUTCOME_WORDS.values() else word
+            return f"{outcome} at all {whole}" if done.sum() > 1 else f"{outcome} at the only solved point"
+        return outcome
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {whole}: {', '.join(counts)}"
 
@@ -144,16 +154,16 @@ def _second_state_lines(view: View, done: np.ndarray) -> list[str]:
     straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
     two = straight & view.has_status("cycle", "torus")
     if two.any():
-        lines.append(f"two states{_at_count(two, done)}: the straight rod is stable too")
+        lines.append(f"two stable states{_at_count(two, done)}: the straight rod is stable as well")
     if (one := straight & ~two).any():
         lines.append(
             f"the straight rod is stable{_at_count(one, done)} where the motion reached no stable state"
         )
     if cycle.any():
         lines.append(
-            f"a second state is possible{_at_count(cycle, done)}: the rod is straight, and its Hopf point at "
+            f"a stable cycle may exist beside the straight rod{_at_count(cycle, done)}: the Hopf point at "
             f"F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may "
-            "lead to a cycle; the task branch follows this cycle"
+            "lead to a cycle; `task: branch` follows the branch of these cycles"
         )
     return lines
 
@@ -176,15 +186,16 @@ def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
         )
     )  # fmt: skip
     frequency = known_range_text(v, "frequency", beats)
-    lines = [f"frequency {frequency} rad/tau2{_relative_frequency_clause(v, beats)}"]
+    lines = [f"frequency of the cycle: {frequency} rad/tau2{_relative_frequency_clause(v, beats)}"]
     if "period_tau1" in v:
         lines.append(f"period: {known_range_text(v, 'period_tau1', beats)} tau1")
     return [
         *lines,
         f"tip: {', '.join(tips)}",
-        f"power of the force, mean: {known_range_text(v, 'injection_mean', beats)} k3/(L tau2)",
-        f"multiplier: {known_range_text(v, 'multiplier', beats)}; periods integrated: "
-        f"{span_text(v['periods'][beats])}; least stretch: {known_range_text(v, 'least_stretch', beats)}",
+        f"mean power of the force: {known_range_text(v, 'injection_mean', beats)} k3/(L tau2)",
+        f"largest |Floquet multiplier|: {known_range_text(v, 'multiplier', beats)}; periods integrated in "
+        f"time: {span_text(v['periods'][beats])}; smallest stretch h1: "
+        f"{known_range_text(v, 'least_stretch', beats)}",
     ]
 
 
@@ -198,9 +209,9 @@ def _relative_frequency_clause(v: Mapping[str, np.ndarray], beats: np.ndarray) -
     if oscillates.any():
         ratio = v["frequency"][oscillates] / v["linear_frequency"][oscillates]
         times = span_text(ratio, ratio * v["period_error"][oscillates])
-        clause = f", {times} times the frequency of the leading mode"
+        clause = f", {times} times that of the leading mode of the straight rod"
     if monotone.any():
-        clause += f"; the leading mode does not oscillate{_at_count(monotone, beats)}"
+        clause += f"; the leading mode of the straight rod does not oscillate{_at_count(monotone, beats)}"
     return clause
 
 
@@ -210,8 +221,8 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
     """
     names = {
         "period": "period_error",
-        "amplitude": "amplitude_error",
-        "other extrema": "extrema_error",
+        "largest y of the tip": "amplitude_error",
+        "other extrema of the tip": "extrema_error",
         "energy balance": "energy_imbalance",
         "multiplier": "multiplier_error",
     }

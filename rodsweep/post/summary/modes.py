@@ -48,7 +48,7 @@ def growth_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     condition = v["condition"][done][:, 0]
     error = absolute_errors(v, "condition")[done][:, 0]
-    lines = [f"condition of the leading eigenvalue: {span_text(condition, error)}"]
+    lines = [f"condition number of the leading eigenvalue: {span_text(condition, error)}"]
     if "transient_growth" not in v:
         return lines
     growth = v["transient_growth"][done]

@@ -5,26 +5,37 @@ import numpy as np
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ...results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
-from .diagram_curves import agreement_lines, criticality_lines, curve_lines, cut_lines
+from .diagram_curves import CYCLE_CHANGE_WORDS, agreement_lines, criticality_lines, curve_lines, cut_lines
 from .ranges import axis_values_text, span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
+STABLE_STATE_WORDS = {
+    "neither_known": "no stable state known",
+    "straight": "straight rod only",
+    "cycle": "cycle only",
+    "both": "straight rod and cycle",
+}
+"""Phrase for the stable states of a rod, by name; other names are printed as they are."""
 LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
 """Values of `stable_states` whose regions are listed, by the phrase in the summary."""
-CYCLE_CHANGE_WORDS = {
-    "fold": "folds of cycles",
-    "torus": "torus points of cycles",
-    "symmetry_breaking": "cycles lose their symmetry",
-    "left_the_model": "cycles leave the model (h1 = 0)",
+
+CROSSING_REMARKS = {
+    "onset": " of oscillations",
+    "hopf": " (a pair becomes unstable)",
+    "hopf_reverse": " (a pair becomes stable, other modes stay unstable)",
+    "restabilization": " (the last unstable pair becomes stable)",
+    "real_again": " (the leading pair becomes two real eigenvalues)",
+    "real_leads": " (a real eigenvalue becomes the leading eigenvalue)",
+    "pair_leads": " (a complex pair becomes the leading pair)",
 }
-"""Phrase for the special points of cycles on rows, by kind."""
+"""Explanation printed after the name of a kind of crossing."""
 GRID_RESOLUTION = 1e-8
 """Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 
@@ -50,7 +61,9 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
 def count_lines(found: np.ndarray) -> list[str]:
     """List with a line on the number of grid points in each class. found: class of each point, of any
     shape."""
-    counts = [f"{int((found == value).sum())} {word}" for value, word in CLASSES if (found == value).any()]
+    counts = [
+        f"{int((found == value).sum())} {word}" for value, word in STABILITY_CLASSES if (found == value).any()
+    ]
     return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
@@ -85,8 +98,10 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
     kinds = v["cycle_special_kind"]
     at = v[f"cycle_special_{line}"]
     shares = ((100 * float((states[done] == value).mean()), word) for value, word in STABLE_STATES)
-    parts = ", ".join(f"{share:.1f} % {word.replace('_', ' ')}" for share, word in shares if share)
-    lines = [f"stable states, of the grid: {parts}"]
+    parts = ", ".join(
+        f"{share:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for share, word in shares if share
+    )
+    lines = [f"stable states, in % of the grid points: {parts}"]
     found_on = {}
     for words, state in LISTED_STATES.items():
         there = (states == flag_number(state, STABLE_STATES)) & done[..., np.newaxis]
@@ -106,8 +121,9 @@ def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
 def class_share_lines(found: np.ndarray) -> list[str]:
     """List with a line on the fraction of the grid points in each class. found: class of each point, of any
     shape."""
-    shares = ((100 * float((found == value).mean()), word) for value, word in CLASSES)
-    return [f"of the grid: {', '.join(f'{share:.1f} % {word}' for share, word in shares if share)}"]
+    shares = ((100 * float((found == value).mean()), word) for value, word in STABILITY_CLASSES)
+    parts = ", ".join(f"{share:.1f} % {word}" for share, word in shares if share)
+    return [f"behaviour of the straight rod, in % of the grid points: {parts}"]
 
 
 def row_start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
@@ -115,7 +131,7 @@ def row_start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
     done: mask of the computed rows, (...,). line: parameter along a row.
     """
     start = view.variables["class"][done][:, 0]
-    words = [f"{word} on {int((start == n).sum())}" for n, word in CLASSES if (start == n).any()]
+    words = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
     if words == [f"monotone on {len(start)}"]:
         return []
     rows = f"of {counted(len(start), 'row')}"
@@ -139,20 +155,21 @@ def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[
             again = of_kind & ~first
             at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
             least = "at least " * bool((unknown & ~on_row).any())
-            text = f"{word}: on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}, {line} = {at}"
+            on_rows = f"on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}"
+            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {at}"
             text += f", {row} = {axis_values_text(of_row[on_row])}"
             if again.any():
                 least = "at least " * bool(unknown.any())
                 rows = f"{least}{int(again.any(axis=-1).sum())} of these rows"
                 text += f"; a second time or more on {rows}, at {line} = {later}"
             lines.append(text)
-    flutter, unknown_class = (flag_number(word, CLASSES) for word in ("flutter", "undecided"))
+    flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & done[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)
         places = np.broadcast_to(v[line], undecided.shape)[undecided]
         on_rows = f"on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
-        lines.append(f"undecided: {on_rows}, {row} = {axis_values_text(of_row[rows])}")
+        lines.append(f"behaviour undecided: {on_rows}, {row} = {axis_values_text(of_row[rows])}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
     never = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)

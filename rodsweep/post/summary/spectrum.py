@@ -17,7 +17,7 @@ LOCATION_EXPLANATION = (
     "is missing"
 )
 """Explanation of the method by which the forces in `threshold_lines` are located."""
-NOT_LOCATED_NOTE = "not located between the forces of the file; `task: thresholds` finds them"
+NOT_LOCATED_NOTE = "known only to lie between two forces of the file; `task: thresholds` locates them"
 """Explanation for arms that are not uniform or not of linear material: the forces are bracketed, not
 located."""
 PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
@@ -105,7 +105,10 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
     relative = v["error_estimate"][done] / size
     if not np.isfinite(relative).any():
         return []
-    return [f"error estimate, relative: worst {np.nanmax(relative):.1e}, median {np.nanmedian(relative):.1e}"]
+    return [
+        f"relative error of the eigenvalues: at most {np.nanmax(relative):.1e}, median "
+        f"{np.nanmedian(relative):.1e}"
+    ]
 
 
 def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
@@ -115,9 +118,13 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
-        return ["no mesh: the eigenvalues of all points were followed along the sweep, or not found"]
-    without = f"; no mesh at {counted(followed, 'point')}, followed or failed" if followed else ""
-    return [f"unknowns per point: {span_text(unknowns[unknowns > 0])}{without}"]
+        return ["no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"]
+    without = (
+        f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
+        if followed
+        else ""
+    )
+    return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{without}"]
 
 
 def stability_line(view: View, done: np.ndarray) -> str:
@@ -131,7 +138,7 @@ def stability_line(view: View, done: np.ndarray) -> str:
     if (unstable < 0).all():
         return "number of unstable modes: not known at any point"
     certified = int(view.variables["certified"][done].sum())
-    how = "counted by an estimate" if estimates_counts(view.config) else "proved"
+    how = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
     text = f"largest number of unstable modes: {int(unstable.max())}; the number is {how} at "
     text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())

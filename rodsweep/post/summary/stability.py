@@ -15,7 +15,7 @@ MAX_LISTED_LINES = 3
 """The thresholds of up to this number of lines of points are listed one by one; for more lines the range is
 printed."""
 FORCE_THRESHOLD_WORDS = {
-    "onset": "F* (straight rod starts to oscillate)",
+    "onset": "F* (straight rod starts to oscillate, still stable)",
     "hopf": "F** (straight rod starts to beat)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
@@ -66,7 +66,7 @@ def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], alon
     stated = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(stated))})" if stated else ""
     some = (
-        f", on {count_of_total(len(found), len(names), 'line')} over {along}"
+        f", on {count_of_total(len(found), len(names), 'line')} of points along {along}"
         if len(found) < len(names)
         else ""
     )

@@ -54,7 +54,7 @@ def monotony_lines(view: View) -> list[str]:
         if not known.any():
             continue
         rising = int((trends == Trend.rises).sum())
-        text = f"{force} rises with {label} on {count_of_total(rising, known.sum(), 'line')}"
+        text = f"{force} rises with {label} on {count_of_total(rising, known.sum(), 'line')} of rods"
         for trend, verb in ((Trend.falls, "falls"), (Trend.constant, "is constant")):
             if number := int((trends == trend).sum()):
                 text += f", {verb} on {number}"

@@ -17,22 +17,32 @@ from .threshold_trends import monotony_lines
 
 FIRST_THRESHOLD_WORDS = {
     "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
-    "restabilization": ("stable again", "restabilization_frequency", "frequency", ANGULAR_UNIT),
-    "onset": ("F* (straight rod starts to oscillate)", "onset_growth_rate", "growth rate", "1/tau2"),
+    "restabilization": (
+        "restabilization (straight rod is stable again)",
+        "restabilization_frequency",
+        "frequency",
+        ANGULAR_UNIT,
+    ),
+    "onset": (
+        "F* (straight rod starts to oscillate, still stable)",
+        "onset_growth_rate",
+        "growth rate",
+        "1/tau2",
+    ),
 }
 """(phrase for the first threshold, second variable, name of this variable, unit of this variable), by kind of
 threshold."""
 ENDED_EARLY = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
-    "onset": "oscillates from",
-    "hopf": "beats from",
+    "onset": "decaying oscillation from",
+    "hopf": "beating from",
     "restabilization": "stable again from",
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
 
 
-LATER_CROSSING_WORDS = {"hopf": "beats again from", "restabilization": "stable again from"}
+LATER_CROSSING_WORDS = {"hopf": "beating again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
 
 
@@ -161,7 +171,10 @@ def completeness_lines(view: View) -> list[str]:
     searched = f"searched up to F = {v['F_end']:.15g}; " if np.isfinite(v["F_end"]) else ""
     lines = [f"{searched}the list of crossings is {proof}{unstored_clause(max(hidden, 0))}"]
     if np.isfinite(v["open_from"]):
-        lines.append(f"undecided: F = {v['open_from']:.9g} to {v['open_to']:.9g}")
+        lines.append(
+            f"undecided from F = {v['open_from']:.9g} to {v['open_to']:.9g}: this range may contain a window "
+            "of flutter that is too narrow to be resolved"
+        )
     return lines
 
 
@@ -193,7 +206,7 @@ def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
     worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
     undecided = int(np.isfinite(v["open_from"][done]).sum())
     proved = count_of_total(int(v["certified"][done].sum()), searches, noun)
-    window = f"; a range stays undecided for {counted(undecided, noun)}" if undecided else ""
+    window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
     hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
     return [
         f"the list of crossings {proof_clause(view)} for {proved}{window}",
@@ -213,7 +226,7 @@ def cost_lines(view: View, done: np.ndarray) -> list[str]:
     v = view.variables
     boxes, solves = (v[name][done] for name in ("boxes", "solves"))
     return [
-        f"cost of a search: {count_range(boxes, 'evaluation')} of D over a box, "
+        f"cost of a search: {count_range(boxes, 'evaluation')} of the determinant D over a box, "
         f"{count_range(solves, 'eigenproblem')}"
     ]
 

@@ -46,6 +46,12 @@ class Column:
         return "" if self.unit == "1" else self.unit
 
     @property
+    def heading_with_unit(self) -> str:
+        """Heading of the column with its unit, as in "F_onset [k3/L^2]"; without unit for a dimensionless
+        number."""
+        return f"{self.name} [{self.unit}]" if self.printed_unit else self.name
+
+    @property
     def is_estimate(self) -> bool:
         """Whether the values are estimates: errors, or computing times."""
         return "error" in self.name or self.name == SECONDS.name

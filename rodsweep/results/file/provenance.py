@@ -68,6 +68,17 @@ def merged_blas_kernels(*several: Iterable[str]) -> str:
     return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
 
 
+def failure_sentence(failure: str) -> str:
+    """Sentence about a failed point, whose parameters have at most nine significant digits: "failed, for
+    example at F = 0.3, k1 = 200: no mesh ...". failure: stored text, "F=0.3, k1=200.0: failed no mesh ...".
+    """
+    where, _, outcome = failure.partition(": ")
+    status, _, message = outcome.partition(" ")
+    pairs = (pair.partition("=") for pair in where.split(", "))
+    point = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in pairs)
+    return f"{status}, for example at {point}" + f": {message}" * bool(message)
+
+
 def failure_kind(line: str) -> str:
     """Status and reason in a line "parameters: status reason", with every number replaced by #."""
     return NUMBER_PATTERN.sub("#", line.partition(": ")[2])

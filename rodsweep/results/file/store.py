@@ -19,9 +19,9 @@ import numpy as np
 from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import IndexRange, index_count
 from ..layouts.variables import MISSING_STATUS, FilledVariable, Layout
-from ..run.checkpoints import CHECKPOINTS
+from ..run.checkpoints import CHECKPOINT_GLOB
 from ..run.journal import (
-    JOURNALS,
+    JOURNAL_GLOB,
     delete_matching_files,
     journal_directory,
     journalled_points_clause,
@@ -40,7 +40,7 @@ from .refusals import header_of_existing_file, require_room, require_same_config
 from .replacement import FileReplacement, disk_refusals, file_identity
 from .validation import ResultHeader, damage_refusals, is_rodsweep_file
 
-BACKUPS = "before-*.h5"
+BACKUP_GLOB = "before-*.h5"
 """Pattern of the names of backups of the file, kept with the journals until an extension is complete."""
 
 
@@ -81,7 +81,7 @@ class Store:
                 require_same_config(header, self.plan, self.journal_directory)
         other = journals_without_fingerprint(self.journal_directory, self.plan.fingerprint)
         self._set_aside(other, "journals that do not match the config and its points")
-        delete_matching_files(self.journal_directory, JOURNALS)  # the remaining journals have no points
+        delete_matching_files(self.journal_directory, JOURNAL_GLOB)  # the remaining journals have no points
 
     def _create(self, fresh: bool) -> None:
         """Creates the file of the plan, with the points of its journals unless `fresh`; raises InputError."""
@@ -90,9 +90,9 @@ class Store:
         require_room(self.path, self.plan)
         own = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
         if fresh:
-            delete_matching_files(self.journal_directory, CHECKPOINTS)
+            delete_matching_files(self.journal_directory, CHECKPOINT_GLOB)
             self._set_aside(own, "journals that --fresh does not use")
-        self._set_aside(sorted(self.journal_directory.glob(BACKUPS)), "points from before an extension")
+        self._set_aside(sorted(self.journal_directory.glob(BACKUP_GLOB)), "points from before an extension")
         with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
         if own and not fresh:
@@ -119,14 +119,14 @@ class Store:
                 self.notes.append(
                     f"{anew} of {done} stored points are computed again; until then {before} has their values"
                 )
-        delete_matching_files(self.journal_directory, CHECKPOINTS)
+        delete_matching_files(self.journal_directory, CHECKPOINT_GLOB)
         self.add_journals({})
 
     def _back_up_file(self) -> Path:
         """Copies the file into the journal directory; returns the path of the copy, which is kept until the
         extension is complete."""
-        number = 1 + sum(1 for _ in self.journal_directory.glob(BACKUPS))
-        copy = self.journal_directory / BACKUPS.replace("*", str(number))
+        number = 1 + sum(1 for _ in self.journal_directory.glob(BACKUP_GLOB))
+        copy = self.journal_directory / BACKUP_GLOB.replace("*", str(number))
         shutil.copyfile(self.path, copy)
         return copy
 
@@ -172,7 +172,7 @@ class Store:
         blocks = read_journals(self.journal_directory, plan.layout, plan.fingerprint, plan.points.count)
         self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
-            for pattern in (CHECKPOINTS, BACKUPS):
+            for pattern in (CHECKPOINT_GLOB, BACKUP_GLOB):
                 delete_matching_files(self.journal_directory, pattern)
 
     def restore_missing_file(self) -> None:

@@ -30,7 +30,7 @@ EXTENSION_RULES: dict[str, dict[str, ExtensionRule]] = {
 cannot be extended if any other option changes."""
 SWEEP_WIDE_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
     "spectrum": spectrum.sweep_wide_variables,
-    "modes": lambda config, is_grid: spectrum.FORCE_CHANGES,
+    "modes": lambda config, is_grid: spectrum.FORCE_CHANGE_VARIABLES,
     "phase_diagram": phase_diagram.sweep_wide_variables,
     "limit_cycle": limit_cycle.sweep_wide_variables,
 }

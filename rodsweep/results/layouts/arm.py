@@ -86,7 +86,7 @@ NEGLECTED_EFFECTS = (
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 VALIDITY_NOT_KNOWN = -1
 """Value of the variable model_applies where the solver may have missed an unstable mode or a cycle."""
-VALIDITY = (
+VALIDITY_VARIABLES = (
     word(
         "model_applies",
         "whether the model applies to the arm, judged by the effects that it neglects",
@@ -110,7 +110,7 @@ def with_si_variables(layout: Layout, config: Mapping[str, Any]) -> Layout:
     """The layout with the SI and validity variables and the axes of an arm; unchanged without an arm."""
     if config.get("parameters", {}).get("arm") is None:
         return layout
-    variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY)
+    variables = (*layout.variables, *si_variables_of(layout, config).values(), *VALIDITY_VARIABLES)
     return replace(layout, variables=variables, arm_axes=arm_axis_names(config))
 
 

@@ -60,7 +60,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real(
             f"branch_{parameter}_error",
             "1",
-            f"estimate of the relative error of branch_{parameter}, at a given deflection at t = 0",
+            f"estimate of the relative error of branch_{parameter}, for a fixed deflection at t = 0",
         ),
         real("period", "tau2", "period of the cycle"),
         real("tip_y_max", "L", "largest y of the tip"),

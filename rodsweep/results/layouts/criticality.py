@@ -34,7 +34,7 @@ def criticality_variable(name: str, decided_by: str) -> Variable:
     return Variable(name, "<f8", nan, "1", meaning, flags=CRITICALITY_WORDS)
 
 
-NORMAL_FORM = along_dimension(
+NORMAL_FORM_VARIABLES = along_dimension(
     HOPF_POINT_DIMENSION,
     real("crossing_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of crossing_frequency"),
     real("growth_slope_real", SLOPE_UNIT, "d(growth rate)/dF of the pair at the Hopf point"),
@@ -73,7 +73,7 @@ def layout(config: dict[str, Any]) -> Layout:
         integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
     )
     variables = with_certified_meaning(
-        (*search[:after], *NORMAL_FORM, *ends, *search[after:]), config, "Hopf points"
+        (*search[:after], *NORMAL_FORM_VARIABLES, *ends, *search[after:]), config, "Hopf points"
     )
     return Layout(
         variables,

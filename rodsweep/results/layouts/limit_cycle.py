@@ -12,7 +12,7 @@ from .rods import has_standard_rods, optional_parameters_in, with_meaning
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
-    MESH,
+    MESH_VARIABLES,
     NEEDS_NEW_SOLVE,
     NOT_KNOWN_SUFFIX,
     SECONDS,
@@ -31,7 +31,7 @@ POWER_UNIT = "k3/(L tau2)"
 STORED_MULTIPLIERS = 6
 """Number of stored nontrivial Floquet multipliers, the solver's `MULTIPLIER_LIST_SETTINGS.length`; NaN stands
 for a modulus below its `min_modulus`."""
-CYCLE_WORDS = ("cycle", "unstable")
+CYCLE_STATUSES = ("cycle", "unstable")
 """Names of the statuses of points with a limit cycle, stable or unstable."""
 SECOND_STATES = ((-1, "not_known"), (0, "none_known"), (1, "straight"), (2, "cycle_possible"))
 """(stored number, word) for a second stable state of the rod, besides the state that the solve reached."""
@@ -75,7 +75,7 @@ CYCLE_VARIABLES = (
     ),
     real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
     integer("periods", "number of returns to the Poincare section during the time integration"),
-    *MESH,
+    *MESH_VARIABLES,
     SECONDS,
     STATUS,
 )
@@ -102,14 +102,14 @@ TRANSIENT_VARIABLES = (
 )
 HOPF_DIMENSION = "hopf"
 """Dimension of the Hopf points on the lines of points of a file."""
-PAIR_CROSSINGS = ("none", "hopf", "hopf_reverse", "restabilization")
+HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 """Names of the kinds of crossings at which a pair of eigenvalues crosses the imaginary axis."""
 
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
     at = "at the Hopf point"
-    kinds = ((CROSSING_KINDS.index(kind), kind) for kind in PAIR_CROSSINGS)
+    kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
     return (
         *along_dimension(
             HOPF_DIMENSION,
@@ -140,12 +140,14 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     )
 
 
-SOLVE_CYCLES_AGAIN = ExtensionRule(lambda records, before: np.isnan(records["period"]))
+NEEDS_NEW_SOLVE_OF_CYCLES = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-OPTION_EXTENSION_RULES = dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), SOLVE_CYCLES_AGAIN) | {
+OPTION_EXTENSION_RULES = dict.fromkeys(
+    ("harmonics", "samples", "shapes", "nodes"), NEEDS_NEW_SOLVE_OF_CYCLES
+) | {
     "transient": NEEDS_NEW_SOLVE,
-    "time": ExtensionRule(SOLVE_CYCLES_AGAIN.has_data, ("tau2", "tau1")),
+    "time": ExtensionRule(NEEDS_NEW_SOLVE_OF_CYCLES.has_data, ("tau2", "tau1")),
 }
 
 

@@ -2,17 +2,17 @@
 
 from typing import Any
 
-from .spectrum import MODE_VARIABLES, POINT_VARIABLES, VECTORS, complex_pair
+from .spectrum import EIGENVECTOR_VARIABLES, MODE_VARIABLES, POINT_VARIABLES, complex_pair
 from .variables import NEEDS_NEW_SOLVE, Layout, along_dimension, real
 
-MODE_FIELDS = (
-    *VECTORS,
+MODE_FIELD_VARIABLES = (
+    *EIGENVECTOR_VARIABLES,
     *complex_pair("h2", "1", "the eigenmode's shear strain h2 = Y' - nu Theta, with the scale of Y"),
     *complex_pair("Pi", "1/L", "the eigenmode's bending strain Pi = Theta', with the scale of Y"),
     *complex_pair("adjoint_Y", "1", "the adjoint mode's deflection, scaled to adjoint_Y(1) = 1"),
     *complex_pair("adjoint_Theta", "1", "the adjoint mode's angle, with the scale of adjoint_Y"),
 )
-MODE_NUMBERS = along_dimension(
+MODE_SCALAR_VARIABLES = along_dimension(
     "mode",
     real(
         "mode_error",
@@ -39,5 +39,5 @@ def layout(config: dict[str, Any]) -> Layout:
     asks for it."""
     options = config["modes"]
     growth = GROWTH_VARIABLES if options["growth"] else ()
-    variables = MODE_VARIABLES + MODE_FIELDS + MODE_NUMBERS + growth + POINT_VARIABLES
+    variables = MODE_VARIABLES + MODE_FIELD_VARIABLES + MODE_SCALAR_VARIABLES + growth + POINT_VARIABLES
     return Layout(variables, {"mode": options["modes"], "u": options["nodes"]})

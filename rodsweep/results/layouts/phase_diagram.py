@@ -21,7 +21,8 @@ from .variables import (
     word,
 )
 
-CLASSES = ((-1, "missing"), *enumerate(("monotone", "oscillatory", "flutter", "undecided", "crushed")))
+CLASS_NAMES = ("monotone", "oscillatory", "flutter", "undecided", "crushed")
+STABILITY_CLASSES = ((-1, "missing"), *enumerate(CLASS_NAMES))
 """(stored number, word) for the behaviour of the rod at a point of a phase diagram."""
 BAUTIN_ENDS = ("none", "range_end", "plane_edge", "not_found", "list_full", "closed")
 """Names of the reasons why a curve of generalised Hopf points ends; the file stores the position in this
@@ -41,9 +42,9 @@ of Hopf points."""
 STABLE_STATE_NAMES = ("neither_known", "straight", "cycle", "both", "undecided", "crushed")
 STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
 """(stored number, word) for the stable states of the rod at a point of a phase diagram with cycles."""
-CYCLE_SPECIAL = "cycle_special"
+CYCLE_SPECIAL_DIMENSION = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
-MAX_CYCLE_SPECIAL = 64
+MAX_CYCLE_SPECIAL_POINTS = 64
 """Maximum number of special points stored for a row; the variable cycle_special_count counts all special
 points."""
 CYCLE_CURVE_ENDS = {
@@ -67,8 +68,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(("certify", "cycles"), NEEDS_NEW_SOLVE) |
 
 def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
     """Returns ((line, row), number of values by parameter) for a resolved config. line: name of the parameter
-    that varies along each row. row: name of the parameter that differs between rows.
-    """
+    that varies along each row. row: name of the parameter that differs between rows."""
     axes = config["parameters"]
     names = (name for name in TRANSVERSE_PARAMETERS if name in axes)
     sizes = {name: len(axes[name].get("values", ())) or axes[name]["num"] for name in names}
@@ -95,14 +95,14 @@ def layout(config: dict[str, Any]) -> Layout:
     options = config["phase_diagram"]
     (line, _), sizes = plane_of(config)
     variables: tuple[Variable, ...] = (
-        word("class", "behaviour of the rod", CLASSES, line),
+        word("class", "behaviour of the rod", STABILITY_CLASSES, line),
         integer("unstable_count", UNSTABLE_COUNT.long_name, line),
         *search_variables(line, "crossing_at"),
     )
     extents = {line: sizes[line], "crossing": options["crossings"]}
     if options["cycles"]:
         variables += cycle_variables(line)
-        extents[CYCLE_SPECIAL] = MAX_CYCLE_SPECIAL
+        extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
     variables = with_certified_meaning(variables, config, "crossings")
     return Layout(variables, extents, parameter_names_except(line), needs_all_points=options["curves"])
 
@@ -119,7 +119,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
         *along_dimension(
-            CYCLE_SPECIAL,
+            CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
             real(f"cycle_special_{line}", unit, f"{line} {at}"),
             real("cycle_special_error", unit, f"estimate of the absolute error of cycle_special_{line}"),
@@ -147,8 +147,8 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
         *end_variables("cycle_curve", CYCLE_CURVE_ENDS, at),
-        real("cycle_curve_agreement", "1", f"largest distance of a fold or torus point of a row from its "
-             f"curve, in units of the axis of {line}"),
+        real("cycle_curve_agreement", "1", "largest distance of a fold or torus point of a row from its "
+             f"curve along {line}, as a fraction of the range of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
     )  # fmt: skip
     return {variable.name: variable for variable in variables}
@@ -187,8 +187,8 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve, in units of the range "
-             f"of {line}"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line}, as a "
+             f"fraction of the range of {line}"),
         integer("curves_untraced", "number of crossings on rows without a curve"),
         real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),

@@ -11,7 +11,7 @@ from .rods import estimates_counts, has_linear_law, has_standard_rods, with_mean
 from .thresholds import CROSSING_KINDS
 from .variables import (
     ANGULAR_UNIT,
-    MESH,
+    MESH_VARIABLES,
     NEEDS_NEW_SOLVE,
     NEEDS_NO_SOLVE,
     SECONDS,
@@ -54,17 +54,20 @@ ESTIMATED_MEANING = (
     "complete; for arms that vary along their length the proof is partly an estimate"
 )
 """Long name of the variable `certified` in a file of arms that vary along their length."""
-POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH, SECONDS, STATUS)
-SHARED_TIME = "time spent on the point, or its share of the time of a stretch of points"
-EACH_FOLLOWED_POINT = (
+POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH_VARIABLES, SECONDS, STATUS)
+SHARED_TIME = "time spent on the point; for points solved together, an equal share of their time"
+FOLLOWED_POINT_VARIABLES = (
     UNSTABLE_COUNT,
     CERTIFIED,
-    *(replace(v, long_name=f"{v.long_name}; 0: eigenvalues followed from a neighbour") for v in MESH),
+    *(
+        replace(v, long_name=f"{v.long_name}; 0: eigenvalues continued from a neighbouring point")
+        for v in MESH_VARIABLES
+    ),
     replace(SECONDS, long_name=SHARED_TIME),
     STATUS,
 )
 """Variables of a point of the task spectrum, whose eigenvalues may be followed from a neighbouring point."""
-VECTORS = (
+EIGENVECTOR_VARIABLES = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
     *complex_pair("Theta", "1", "the eigenmode's angle, with the scale of Y"),
 )
@@ -95,7 +98,7 @@ def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ..
 
 CHANGE_DIMENSION = "change"
 """Name of the dimension of the thresholds of the straight rod on lines of points along F."""
-FORCE_CHANGES = (
+FORCE_CHANGE_VARIABLES = (
     word(
         "change_kind",
         "kind of the change as F grows",
@@ -112,8 +115,8 @@ FORCE_CHANGES = (
 )
 """Variables of the forces at which the straight rod starts to oscillate, becomes unstable or stable again,
 which are computed after the last point."""
-OPTIONS_SOLVED_ANEW = ("modes", "certify", "vectors", "nodes", "follow")
-OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_SOLVED_ANEW, NEEDS_NEW_SOLVE) | {
+OPTIONS_THAT_NEED_NEW_SOLVE = ("modes", "certify", "vectors", "nodes", "follow")
+OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEEDS_NEW_SOLVE) | {
     "longitudinal": NEEDS_NO_SOLVE
 }
 
@@ -124,21 +127,24 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     """
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
-        return FORCE_CHANGES
+        return FORCE_CHANGE_VARIABLES
     in_closed_form = has_standard_rods(config)
     names = longitudinal_parameters(in_closed_form, has_linear_law(config))
     along = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
-    return (*longitudinal_variables(float(gamma1), *along, in_closed_form=in_closed_form), *FORCE_CHANGES)
+    return (
+        *longitudinal_variables(float(gamma1), *along, in_closed_form=in_closed_form),
+        *FORCE_CHANGE_VARIABLES,
+    )
 
 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task spectrum, for a resolved config; eigenmodes only if the config
     asks for them."""
     options = config["spectrum"]
-    each_point: tuple[Variable, ...] = EACH_FOLLOWED_POINT
+    each_point: tuple[Variable, ...] = FOLLOWED_POINT_VARIABLES
     extents = {"mode": options["modes"]}
     if estimates_counts(config):
         each_point = with_meaning(each_point, CERTIFIED.name, ESTIMATED_MEANING)
     if not options["vectors"]:
         return Layout(MODE_VARIABLES + each_point, extents)
-    return Layout(MODE_VARIABLES + VECTORS + each_point, extents | {"u": options["nodes"]})
+    return Layout(MODE_VARIABLES + EIGENVECTOR_VARIABLES + each_point, extents | {"u": options["nodes"]})

@@ -135,7 +135,7 @@ def along_dimension(dimension: str, *variables: Variable) -> tuple[Variable, ...
 
 SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
 STATUS = Variable("status", "|i1", MISSING_STATUS, "1", "outcome of the point")
-MESH = (
+MESH_VARIABLES = (
     Variable("elements", "<i2", 0, "1", "number of spectral elements"),
     Variable("order", "<i2", 0, "1", "polynomial order of the elements"),
 )

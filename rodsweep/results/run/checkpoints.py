@@ -16,9 +16,9 @@ import numpy as np
 
 from .journal import delete_matching_files
 
-CHECKPOINTS = "chain-*"
+CHECKPOINT_GLOB = "chain-*"
 """Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
-ITEM_RESULTS = "unit-*"
+ITEM_RESULT_GLOB = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
@@ -82,7 +82,7 @@ class ArrayStore:
 class Checkpoints(ArrayStore):
     """Store with the last solved point of each unfinished chain, and the solver state after this point."""
 
-    pattern = CHECKPOINTS
+    pattern = CHECKPOINT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
         """directory, fingerprint: as in `ArrayStore`. state_of: makes a solver state from its arrays (the
@@ -117,7 +117,7 @@ class ItemResults(ArrayStore):
     computed.
     """
 
-    pattern = ITEM_RESULTS
+    pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
         """directory, fingerprint: as in `ArrayStore`."""
@@ -129,13 +129,13 @@ class ItemResults(ArrayStore):
 
     def read(self) -> dict[int, Arrays]:
         """Results of all work items with an intact file, by number of the work item."""
-        names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULTS))
+        names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULT_GLOB))
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {item: arrays for item, arrays in found.items() if arrays is not None}
 
     def drop(self) -> None:
         """Deletes the results of all items."""
-        delete_matching_files(self.directory, ITEM_RESULTS)
+        delete_matching_files(self.directory, ITEM_RESULT_GLOB)
 
 
 def _checksum(content: bytes) -> bytes:

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..layouts.variables import Layout
 
-JOURNALS = "rank-*"
+JOURNAL_GLOB = "rank-*"
 """Pattern of the file names of journals."""
 JOURNAL_HEAD = b"rodsweep journal 1\n"
 """First line of a journal. The second line is the fingerprint of config and points."""
@@ -138,13 +138,13 @@ def delete_matching_files(directory: Path, pattern: str) -> None:
 def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
     known = _journal_header(fingerprint)
-    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) == known]
+    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) == known]
 
 
 def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
     known = (b"", _journal_header(fingerprint))
-    return [path for path in sorted(directory.glob(JOURNALS)) if _header_if_points(path) not in known]
+    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) not in known]
 
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:

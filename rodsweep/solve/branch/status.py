@@ -16,11 +16,14 @@ class BranchStatus(PointStatus):
     )
     stopped = (
         1,
-        "no further cycle was found on a branch before its end, or the limit `work` was reached; the message "
-        "says where; all other branches are complete; raise `work` if it is reached, use a smaller or larger "
-        "number for the accuracy, or shorten the range",
+        "a branch was not followed to its end, because no further cycle was found or the limit on the work "
+        "was reached; the message says where; all other branches are complete; raise the option `work` if "
+        "the limit was reached, use a smaller or larger number for the accuracy, or shorten the range",
     )
-    list_full = 2, "there are more cycles or special points than the file holds; raise `cycles` or `special`"
+    list_full = (
+        2,
+        "the file has no room for all cycles or special points; raise the options `cycles` or `special`",
+    )
     special_undecided = (
         3,
         "the error of a special point exceeds the requested accuracy, or multipliers cross the unit circle "
@@ -28,9 +31,9 @@ class BranchStatus(PointStatus):
     )
     search_open = (
         4,
-        "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide "
-        "within an open range, the search may have ended early, or a count of unstable modes may disagree; "
-        "`certify: false` ignores the count",
+        "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide, "
+        "the search may have stopped before the end of the range, or a count of unstable modes may "
+        "disagree with the list; `certify: false` ignores the count",
     )
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
 
@@ -66,6 +69,6 @@ class CoexistenceStatus(PointStatus):
     )
     special_full = (
         8,
-        "there are more special points on the branches of the row than the file holds; choose a smaller "
-        "range of the parameter along the row",
+        "the file has no room for all special points on the branches of the row; choose a smaller range of "
+        "the parameter along the row",
     )

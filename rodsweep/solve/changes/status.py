@@ -6,11 +6,7 @@ from ..status import PointStatus
 class ThresholdStatus(PointStatus):
     """Status of a search for all thresholds along a path of rods."""
 
-    ok = (
-        0,
-        "all thresholds have the requested accuracy, and their list is certified if requested",
-        True,
-    )
+    ok = 0, "all thresholds have the requested accuracy; if certified, none is missing", True
     not_certified = (
         1,
         "the thresholds are accurate, but a count of the unstable modes between them is undecided or "
@@ -19,18 +15,19 @@ class ThresholdStatus(PointStatus):
     )
     window_open = (
         2,
-        "within the open range two crossings nearly coincide, so it is undecided whether the rod flutters "
-        "between them; move a parameter slightly",
+        "two crossings nearly coincide, so it is undecided whether the rod flutters between them, in the "
+        "range from open_from to open_to; change a parameter slightly",
     )
     accuracy_not_reached = (
         3,
-        "a threshold misses the requested accuracy, as its error says, for example where two thresholds "
+        "the error estimate of a threshold exceeds the requested accuracy, for example where two thresholds "
         "nearly coincide; use a larger number for the accuracy",
     )
-    list_full = 4, "there are more thresholds than the list holds; raise the option crossings"
+    list_full = 4, "the file has no room for all thresholds; raise the option crossings"
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
-        "the search ends before the requested range, at a rod whose unstable modes could not be counted, or "
-        "once the list is full; thresholds beyond this end are not known; the message says why",
+        "the search stopped before the end of the requested range, at a rod whose unstable modes could not "
+        "be counted, or because the list was full; thresholds beyond this rod are not known; the message "
+        "says why",
     )

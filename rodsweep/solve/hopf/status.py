@@ -15,18 +15,20 @@ class CriticalityStatus(PointStatus):
     window_open = (
         2,
         "two Hopf points nearly coincide, so it is undecided whether the rod flutters between them, in the "
-        "open range; the coefficients of all other Hopf points are stored; move a parameter slightly",
+        "range from open_from to open_to; the coefficients of all other Hopf points are stored; change a "
+        "parameter slightly",
     )
     accuracy_not_reached = (
         3,
-        "a Hopf point or a coefficient misses the requested accuracy, as its error says; use a larger number "
-        "for the accuracy",
+        "the error estimate of a Hopf point or of a coefficient exceeds the requested accuracy; use a larger "
+        "number for the accuracy",
     )
-    list_full = 4, "there are more Hopf points than the list holds; raise the option crossings"
+    list_full = 4, "the file has no room for all Hopf points; raise the option crossings"
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
     coefficients_failed = (
         6,
-        "a Hopf point has no coefficients; the other Hopf points are stored; the message says why",
+        "the normal form of a Hopf point could not be computed; the other Hopf points are stored; the "
+        "message says why",
     )
     sign_undecided = (
         7,
@@ -35,6 +37,7 @@ class CriticalityStatus(PointStatus):
     )
     ended_early = (
         9,
-        "the search ends before the requested force, at a rod whose unstable modes could not be counted, or "
-        "once the list is full; Hopf points beyond this end are not known; the message says why",
+        "the search stopped before the end of the requested range of F, at a rod whose unstable modes "
+        "could not be counted, or because the list was full; Hopf points beyond this rod are not known; "
+        "the message says why",
     )

@@ -6,7 +6,7 @@ from ..status import PointStatus
 class SpectrumStatus(PointStatus):
     """Outcome of one rod in the tasks spectrum and modes."""
 
-    ok = 0, "every number has the requested accuracy, and is certified if requested", True
+    ok = 0, "every number has the requested accuracy; if certified, no mode is missing", True
     not_certified = (
         1,
         "the eigenvalues are accurate, but no a-priori bound applies or the winding number could "

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
 from ...model.arm.drag import LEAST_SLENDERNESS
 from ...model.arm.neglected import Validity
-from ...results.layouts.arm import VALIDITY
+from ...results.layouts.arm import VALIDITY_VARIABLES
 from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
@@ -21,7 +21,7 @@ from ...sweep.points.points import Points
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-MODEL_APPLIES_NAME = VALIDITY[0].name
+MODEL_APPLIES_NAME = VALIDITY_VARIABLES[0].name
 """Name of the variable that states whether the model applies."""
 CACHE_BYTES = 1e8
 """Approximate memory, in bytes, of the outcomes that a rank caches for equal rods."""

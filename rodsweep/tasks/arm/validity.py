@@ -25,7 +25,7 @@ from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR
 from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
-from ...results.layouts.phase_diagram import CLASSES
+from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import STATUS
 from ...solve.cycle.status import CycleStatus
@@ -42,7 +42,7 @@ AT_REST_STATUSES: dict[str, tuple[str, ...]] = {
 }
 """Unsuccessful statuses for which an arm without a stored Hopf point is nevertheless treated as at rest, by
 task."""
-CLASSES_WITH_FLUTTER = [value for value, name in CLASSES if name in ("flutter", "undecided")]
+CLASSES_WITH_FLUTTER = [value for value, name in STABILITY_CLASSES if name in ("flutter", "undecided")]
 """Values of the variable class, in a phase diagram, of rods that flutter or may flutter."""
 
 
@@ -132,7 +132,7 @@ MOTION_OF_TASK: dict[str, Callable[[Record], ArmMotion]] = {
 
 
 class ArmValidity:
-    """Computes the variables of VALIDITY, which state whether the model applies to the arms of a config."""
+    """Computes the VALIDITY_VARIABLES, which state whether the model applies to the arms of a config."""
 
     def __init__(self, config: Config, points: Points, statuses: Iterable[PointStatus] = ()):
         """statuses: all statuses that points of the task can have."""
@@ -150,7 +150,7 @@ class ArmValidity:
         """Function from a number to the arm with this number; caches the latest arms."""
 
     def variables_of_points(self, record: Record, index: int | NDArray[np.int64]) -> dict[str, Any]:
-        """The variables of VALIDITY for one point, or for n points of one arm, (n,).
+        """The VALIDITY_VARIABLES for one point, or for n points of one arm, (n,).
 
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
@@ -160,7 +160,7 @@ class ArmValidity:
         return self._validity_variables(arm, replace(motion, may_be_missed=missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
-        """The variables of VALIDITY at the n points with a rod, (n,), as if all arms were at rest."""
+        """The VALIDITY_VARIABLES at the n points with a rod, (n,), as if all arms were at rest."""
         found = []
         for first in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(first, first + self.points_per_arm)

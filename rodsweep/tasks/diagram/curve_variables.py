@@ -13,8 +13,8 @@ import numpy as np
 
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import (
-    CYCLE_SPECIAL,
-    MAX_CYCLE_SPECIAL,
+    CYCLE_SPECIAL_DIMENSION,
+    MAX_CYCLE_SPECIAL_POINTS,
     bautin_curve_variables,
     criticality_variables,
     curve_variables,
@@ -163,13 +163,13 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
     line: parameter that varies along the row.
     """
-    variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL,)]
-    own = {f"cycle_special_{line}": "at"}
+    variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
+    own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=own)
         for point in result.special_points
     ]
-    values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL)
+    values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL_POINTS)
     values |= {"cycle_special_count": len(result.special_points), "stable_states": result.stable_states}
     return values | {"seconds": result.seconds, "status": int(result.status)}
 

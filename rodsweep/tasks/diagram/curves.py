@@ -10,7 +10,7 @@ from ...config.axis import Axis
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...model.rod import Rod
 from ...results.file.view import View
-from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL
+from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ...results.layouts.variables import FilledVariable
 from .curve_variables import (
     bautin_curve_values,
@@ -187,7 +187,7 @@ class DiagramCurves:
         if number not in self.special_points_by_row:
             request = self.task.row_request()
             return special_points_of(
-                row_branches(self.task.rod_of_row(number), request, MAX_CYCLE_SPECIAL, self.workspace)
+                row_branches(self.task.rod_of_row(number), request, MAX_CYCLE_SPECIAL_POINTS, self.workspace)
             )
         return self.special_points_by_row[number]
 

@@ -16,14 +16,14 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.rod import Rod
-from ...results.layouts.spectrum import FORCE_CHANGES
+from ...results.layouts.spectrum import FORCE_CHANGE_VARIABLES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points, lines_along
 
 MAX_POINTS_IN_MEMORY = 1 << 13
 """Maximum number of points whose eigenvalues are read at once; this limits memory for large files."""
-FAR_FORCES = 0.02
+MAX_FORCE_SPACING = 0.02
 """Two neighbouring forces are far from each other if their difference exceeds this share of the range of all
 forces."""
 
@@ -54,10 +54,14 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
     if len(np.unique(F[np.isfinite(F)])) < 2:
         return ()
     lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
-    kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGES])
-    rows = (tuple(row[v.name] for v in FORCE_CHANGES) for some in lines for row in _thresholds_on_lines(some))
+    kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGE_VARIABLES])
+    rows = (
+        tuple(row[v.name] for v in FORCE_CHANGE_VARIABLES)
+        for some in lines
+        for row in _thresholds_on_lines(some)
+    )
     table = np.fromiter(rows, kind)
-    return tuple((v, table[v.name]) for v in FORCE_CHANGES)
+    return tuple((v, table[v.name]) for v in FORCE_CHANGE_VARIABLES)
 
 
 def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
@@ -113,7 +117,7 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
         rod = Rod(F=0.0, **fixed)
         here = w[number]
         rods = rod.coefficients, rod.coefficient_derivative("F")
-        far = FAR_FORCES * (F[-1] - F[0])
+        far = MAX_FORCE_SPACING * (F[-1] - F[0])
         tried = (
             locate_onset(rods, rod, (F[i], F[j]), here[i], here[j])
             if F[j] - F[i] > far
@@ -160,7 +164,7 @@ def _pairs_at_onset(F: Array, w: Complex) -> NeighbourPairs:
         return np.empty((0, 3), np.int64)
     real = w[..., :2].imag == 0
     line, before, behind = _neighbouring_points(np.isfinite(w[..., :2].real).all(axis=-1))
-    far = F[behind] - F[before] > FAR_FORCES * np.ptp(F)
+    far = F[behind] - F[before] > MAX_FORCE_SPACING * np.ptp(F)
     begins = real[line, before, 0] & (real[line, before, 1] | far) & (w[line, behind, 0].imag > 0)
     return np.stack([line, before, behind], axis=-1)[begins]
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from rodsweep.solve.branch.special.augmented.functions import correct_until_converged
 from surveyed import survey_only
 
 from rodsweep.model.rod import Rod
@@ -10,6 +9,7 @@ from rodsweep.solve.branch.branch_errors import BranchCalibration
 from rodsweep.solve.branch.branch_request import WORK_UNIT, BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special import locating
+from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import correct_until_converged
 from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
 from rodsweep.solve.branch.special.special_point_meshes import first_mesh
 from rodsweep.solve.branch.status import BranchStatus

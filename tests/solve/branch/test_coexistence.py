@@ -212,8 +212,8 @@ def test_it_is_told_and_drawn(diagram):
     told = " ".join(diagram("show", "c.h5").stdout.split())
     assert "straight rod and cycle both stable: on 1 of 2 rows, F = 90.5 to 91, k1 = 152" in told
     assert "folds of cycles: on 1 of 2 rows" in told
-    curve = r"curve of folds: from k1 = 149.616892, F = 84.4786266\d* \(\+- \de-\d+\) \(Hopf point, where"
-    assert re.search(curve, told)
+    start = r"from k1 = 149.616892, F = 84.4786266\d* \(\+- \de-\d+\) \(Hopf point, where"
+    assert re.search(f"curve of folds of cycles: {start}", told)
     assert diagram.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 

@@ -10,7 +10,7 @@ from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.results.layouts.phase_diagram import CLASSES
+from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
@@ -156,7 +156,7 @@ def test_newton_for_a_double_eigenvalue_ends_where_there_is_no_arm():
         for j, gamma3 in enumerate((0.01, 2.0)):
             rod = rs.Rod(F=40.0, k1=300.0, k2=100.0, gamma3=gamma3, taper=taper)
             spectrum = rod.spectrum(modes=2)
-            word = dict(CLASSES)[classes[i, j]]
+            word = dict(STABILITY_CLASSES)[classes[i, j]]
             assert (spectrum.growth_rate[0] > 0) == (word == "flutter")
             assert (spectrum.frequency[0] > 0) == (word in ("flutter", "oscillatory"))
 

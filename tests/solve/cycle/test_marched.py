@@ -90,7 +90,7 @@ def test_a_motion_beside_the_hopf_point_is_not_called_a_cycle_before_it_has_sett
     rod = Rod(F=27.45, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
     found = solve_by_integration(rod, request(1e-6, most_periods=60))
     assert found.status == MarchedStatus.not_settled
-    assert "returns of the tip the last return has a relative distance" in found.message
+    assert "returns of the tip the state still differs by a relative" in found.message
 
 
 def test_a_tip_that_does_not_return_has_a_reason_in_words():

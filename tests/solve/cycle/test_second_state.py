@@ -79,7 +79,7 @@ accuracy: 1.0e-5
 
 def test_cycle_beside_a_stable_straight_rod_says_that_there_are_two_states(command):
     told = shown(command, CHAIN)
-    assert "two states at 1 of 2 points: the straight rod is stable too" in told
-    assert "a second state is possible" not in told
+    assert "two stable states at 1 of 2 points: the straight rod is stable as well" in told
+    assert "a stable cycle may exist" not in told
     v = read_view(command.directory / "c.h5").variables
     assert v["second_state"].ravel().tolist() == [SecondState.none_known, SecondState.straight]

@@ -294,9 +294,10 @@ CONFIG = (
 def test_numbers_of_one_rod_come_out_of_show(command):
     told = shown(command, CONFIG.format(k1=200))
     assert re.search(r"F, k3/L\^2 +49\.758004916\d+ +\de-1\d +155\.6001592987\d+ +\de-1\d", told)
-    above = "2 unstable modes above"
-    assert f"hopf at F = 49.758: supercritical, stable cycles at F above it; {above}" in told
-    assert "restabilization at F = 155.6: subcritical, unstable cycles at F above it; 0 unstable" in told
+    above = "the straight rod has 2 unstable modes beyond it"
+    assert f"hopf at F = 49.758: supercritical, stable cycles at larger F; {above}" in told
+    none = "the straight rod has 0 unstable modes beyond it"
+    assert f"restabilization at F = 155.6: subcritical, unstable cycles at larger F; {none}" in told
     assert re.search(r"frequency, rad/tau2 +334\.32146573", told)
     assert re.search(r"Re c, 1/\(tau2 L\^2\) +-971\.91953336\d* +\de-\d+", told)
     assert re.search(r"Im c, 1/\(tau2 L\^2\) +-387\.9588634", told)
@@ -308,9 +309,11 @@ def test_numbers_of_one_rod_come_out_of_show(command):
 def test_show_counts_the_signs_of_many_rods_and_names_the_subcritical(command):
     told = shown(command, CONFIG.format(k1="[100, 150, 200, 1.0e4]"))
     assert "Hopf points at 3 of 4 rods" in told
-    assert "first Hopf point: 3 supercritical;" in told
+    assert "first Hopf point of each rod: 3 supercritical;" in told
     assert "all Hopf points: 4 supercritical, 2 subcritical;" in told
-    assert "subcritical for k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1: F = 85.5693 (" in told
+    assert (
+        "subcritical Hopf points for k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1: F = 85.5693 (" in told
+    )
 
 
 def test_file_has_a_value_where_there_is_a_hopf_point_and_none_elsewhere(command):

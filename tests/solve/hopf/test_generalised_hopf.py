@@ -13,7 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.stability.diagram_curves import parts_of_one_side
+from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, generalised
@@ -191,7 +191,7 @@ def test_a_diagram_tells_shows_and_draws_it(command):
     assert "generalised Hopf point (Re c = 0) on curve 2: k1 = 149.6168916" in told
     assert "supercritical" in told
     view = read_view(command.directory / "generalised_hopf.h5")
-    (one, before), (other, beyond) = parts_of_one_side(view, 2, "F", "k1")
+    (one, before), (other, beyond) = parts_of_equal_criticality(view, 2, "F", "k1")
     assert {one, other} == {-1, 1}
     assert before[-1] == pytest.approx((F, k1), rel=1e-8)
     assert before[-1].tolist() == beyond[0].tolist()
@@ -397,7 +397,7 @@ def test_curves_over_a_third_parameter_are_shown_drawn_and_the_same_on_two_ranks
     assert same(one, two)
     told = command("show", "c.h5").stdout.replace("\n", " ")
     assert "curve 1 of generalised Hopf points: " in told
-    assert "k2 = 9600 to 10400; ends: range_end and range_end" in told
+    assert "k2 = 9600 to 10400; both ends lie at the end of the range" in told
     assert command.drawn("plot", "c.h5", "-o", "c.png").returncode == 0
 
 

@@ -52,8 +52,10 @@ def _threshold_panels(view: View) -> list[Panel]:
 def _mode_panels(view: View) -> list[Panel]:
     """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
     return [
-        Panel("growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"),
-        Panel("frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
+        Panel(
+            "leading growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"
+        ),
+        Panel("leading frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
     ]
 
 
@@ -61,7 +63,7 @@ def _cycle_panels(view: View) -> list[Panel]:
     """Panels of the task `limit_cycle`: frequency and amplitude of the cycle."""
     amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
-        Panel("frequency (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
+        Panel("frequency of the cycle (Hz)", view.variables["frequency_hz"], empty_label="no cycle"),
         Panel(f"largest deflection of the tip ({unit})", amplitude, empty_label="no cycle"),
     ]
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.arm.axes import CHANGED_PARAMETER
 from ....results.file.view import View
-from ....results.layouts.limit_cycle import CYCLE_WORDS
+from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
 from ...hopf_points import LocatedThreshold, StoredThresholds
 from ..style import (
@@ -72,7 +72,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     """
     points = point_map(view)
     words = view.status_names[points.point_indices]
-    cycles = np.isin(words, CYCLE_WORDS)
+    cycles = np.isin(words, CYCLE_STATUSES)
     require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
@@ -133,7 +133,7 @@ def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> lis
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
         cells = words == word
-        if word in CYCLE_WORDS or not cells.any():
+        if word in CYCLE_STATUSES or not cells.any():
             continue
         colour, hatch = STATUS_LOOKS.get(word) or next(further)
         look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}

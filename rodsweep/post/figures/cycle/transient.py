@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....results.file.view import View
-from ....results.layouts.limit_cycle import CYCLE_WORDS
+from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ..style import BLUE, VERMILION
 from .selection import TRANSIENT_VARIABLE_NAMES, StoredCycle, chosen_transients
 from .units_and_labels import CycleUnits
@@ -30,7 +30,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
     for (upper, lower), cycle in zip(rows.T, selection.cycles, strict=True):
         draw_start_of_motion(upper, lower, cycle)
         ends = [cycle.status_name.replace("_", " ")]
-        if cycle.status_name in CYCLE_WORDS:
+        if cycle.status_name in CYCLE_STATUSES:
             ends[0] += "" if narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
@@ -49,7 +49,7 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
     for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
-        for name, sign in pair if cycle.status_name in CYCLE_WORDS else ():
+        for name, sign in pair if cycle.status_name in CYCLE_STATUSES else ():
             axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

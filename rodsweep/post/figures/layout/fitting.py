@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 
-from .remembered_ticks import remembered_ticks
+from .cached_ticks import cached_ticks
 from .ticks import thin_ticks
 
 MIN_ASPECT = 0.45
@@ -72,7 +72,7 @@ def _position_panels(figure: Figure) -> None:
     if not isinstance(canvas, FigureCanvasAgg):
         canvas = FigureCanvasAgg(figure)  # otherwise each text creates a canvas to measure itself
     if engine := figure.get_layout_engine():
-        with remembered_ticks(figure):
+        with cached_ticks(figure):
             engine.execute(figure)
     for legend in figure.legends:
         legend.draw(canvas.get_renderer())  # drawing places the entries

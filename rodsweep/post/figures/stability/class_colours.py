@@ -7,7 +7,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from ....arrays import Array
-from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 
 CLASS_COLOURS = {
     "missing": "white",
@@ -31,10 +31,13 @@ STATE_COLOURS = {
 }
 """Colours of the words of `stable_states`. The colour of "both" lies between the colours of the two
 states."""
-STATE_LEGEND = {
-    "straight": "straight rod stable",
-    "cycle": "cycle stable",
-    "both": "both stable",
+LEGEND_ENTRIES = {
+    "missing": "not computed",
+    "monotone": "monotone decay",
+    "oscillatory": "oscillatory decay",
+    "straight": "only straight rod stable",
+    "cycle": "only cycle stable",
+    "both": "rod and cycle stable",
     "neither_known": "no stable state known",
 }
 """Legend entries for the words of `stable_states` and `class`. A word that is not listed is its own legend
@@ -44,7 +47,10 @@ entry."""
 def class_legend_entries(seen: set[str]) -> list[Patch]:
     """Legend entries for the classes in `seen`."""
     shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
-    return [Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=word) for word, colour in shown.items()]
+    return [
+        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
+        for word, colour in shown.items()
+    ]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,12 +76,12 @@ class Palette:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
         shown = (word for number, word in self.words if (table == number).any())
         return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=STATE_LEGEND.get(word, word))
+            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
             for word in shown
         ]
 
 
-CLASS_PALETTE = Palette("class", CLASSES, CLASS_COLOURS)
+CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)
 """Palette for the stability class of the straight rod."""
 STATE_PALETTE = Palette("stable_states", STABLE_STATES, STATE_COLOURS)
 """Palette for the stable states listed in STABLE_STATES."""

@@ -15,26 +15,26 @@ from ..style import number_in_tex as number_text
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
-CURVE_NAMES = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
+CURVE_SYMBOLS = {1: (r"$\tilde F_{**}$", 0.85), 0: (r"$\tilde F_*$", 0.12)}
 """(symbol, position) of the symbol at the longest curve of a kind; position: fraction of the visible
 length."""
-SIDE_LOOKS = {
+CRITICALITY_LOOKS = {
     -1: ("supercritical Hopf points", 1.4, "-"),
     1: ("subcritical Hopf points", 1.4, "--"),
-    0: ("Hopf points, side undecided", 0.6, "-"),
+    0: ("Hopf points, criticality undecided", 0.6, "-"),
 }
 """(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
 CYCLE_MARKS = {
-    "fold": ("folds of cycles on rows", "s"),
-    "torus": ("torus points on rows", "D"),
-    "symmetry_breaking": ("symmetry breakings", "^"),
-    "period_doubling": ("period doublings", "v"),
+    "fold": ("folds of cycles, on no curve", "s"),
+    "torus": ("torus points of cycles, on no curve", "D"),
+    "symmetry_breaking": ("symmetry breakings of cycles", "^"),
+    "period_doubling": ("period doublings of cycles", "v"),
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
 """A point lies on a curve if its distance from the chords, divided by the axis length, is at most this
 number."""
-CYCLE_CURVES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
+CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
 CHORD_ROUNDING = 1e-6
 """Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
@@ -64,7 +64,7 @@ def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, states: bo
             paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
             if paths and "F" in (line, row):
                 paths = _lowest_parts(paths, 0 if line == "F" else 1)
-            name, share = CURVE_NAMES[number]
+            name, share = CURVE_SYMBOLS[number]
             if paths:
                 _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), share)
     return handles if states else handles + _mark_curve_folds(axes, view, line, row)
@@ -113,7 +113,7 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
     """Draws curves of folds and torus points of cycles; returns legend entries. line, row: see the module."""
     v = view.variables
     handles = []
-    for kind, (word, colour) in CYCLE_CURVES.items():
+    for kind, (word, colour) in CYCLE_CURVE_STYLES.items():
         of_kind = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
         for curve in np.unique(v["cycle_curve_number"][of_kind]):
             one = v["cycle_curve_number"] == curve
@@ -165,19 +165,19 @@ def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2
     v = view.variables
     used = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
-        for side, points in parts_of_one_side(view, int(curve), line, row):
-            _, width, style = SIDE_LOOKS[side]
+        for side, points in parts_of_equal_criticality(view, int(curve), line, row):
+            _, width, style = CRITICALITY_LOOKS[side]
             axes.plot(*points.T, style, color="k", lw=width)
             used.add(side)
     handles = [
         Line2D([], [], color="k", lw=width, ls=style, label=word)
-        for side, (word, width, style) in SIDE_LOOKS.items()
+        for side, (word, width, style) in CRITICALITY_LOOKS.items()
         if side in used
     ]
     for i in range(len(v["bautin_curve"])):
         x = v[f"bautin_{line}"][i]
         y = v[f"bautin_{row}"][i]
-        label = rf"Re $c$ = 0: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
+        label = rf"generalised Hopf point: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
     return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
 
@@ -191,13 +191,13 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
         on = v["bautin_along_curve"] == number
         reach = v[f"bautin_along_{third}"][on]
         low, high = (number_text(float(end), 3) for end in (reach.min(), reach.max()))
-        label = rf"Re $c$ = 0, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
+        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
         x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
         drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return drawn
 
 
-def parts_of_one_side(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
+def parts_of_equal_criticality(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     v = view.variables
     rows = np.flatnonzero(v["curve_number"] == curve)

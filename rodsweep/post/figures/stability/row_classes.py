@@ -9,12 +9,12 @@ from ....arrays import Array
 from ....model.crushing import uncrushed_interval
 from ....model.material.build import Build
 from ....results.file.view import View
-from ....results.layouts.phase_diagram import CLASSES, STABLE_STATES
+from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
 from ....results.layouts.variables import flag_number
 from ...crushing import build_of_rods
 
-CLASS_WORDS = {"class": CLASSES, "stable_states": STABLE_STATES}
+CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
 ONSET = CROSSING_KINDS.index("onset")
 """Code of an onset of oscillations."""
@@ -57,7 +57,7 @@ def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, A
             words[-1] = ""
         for word, (start, end) in zip(words, pairwise(ends), strict=True):
             if word and start < end:
-                found.append(((start + end) / 2, float(values[index]), flag_number(word, CLASSES)))
+                found.append(((start + end) / 2, float(values[index]), flag_number(word, STABILITY_CLASSES)))
     x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 

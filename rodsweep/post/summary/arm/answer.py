@@ -9,7 +9,7 @@ from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
-from ....results.layouts.arm import VALIDITY
+from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
@@ -48,7 +48,7 @@ def _validity_lines(view: View, done: np.ndarray) -> Lines:
             if done.any()
             else []
         )
-    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY}
+    validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
@@ -77,7 +77,8 @@ def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]
 
     def lines(view: View, rods: np.ndarray) -> Lines:
         failed = rods & view.has_status(FAILED_STATUS)
-        unsolved = [f"not known{_count_clause(failed, rods)}: the search failed"] if failed.any() else []
+        failure = f"the result is not known{_count_clause(failed, rods)}: the search failed"
+        unsolved = [failure] if failed.any() else []
         if (failed == rods).all():
             return unsolved
         first, further = answer(view, rods & ~failed)
@@ -96,23 +97,22 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
-        lines.append(f"a disturbance swings as it dies away from {load_range_text(view, onset)} on")
+        lines.append(f"decaying disturbances oscillate from {load_range_text(view, onset)} on")
     if len(hopf) > 1 and np.isfinite(back).any():
         points = count_of_total(int(np.isfinite(back).sum()), len(back), "point")
-        lines.append(f"is straight again at {points}, from {load_range_text(view, back)} on")
+        lines.append(f"the straight arm is stable again at {points}, from {load_range_text(view, back)} on")
     return _flutter_lines(view, hopf, end, rate), lines
 
 
 def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
     """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
-    fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,).
-    """
+    fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return []
     places = np.flatnonzero(rods)
     ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
     least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
-    lines = [] if least == most else [f"smallest at {least}; largest at {most}"]
+    lines = [] if least == most else [f"smallest flutter load at {least}; largest at {most}"]
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
     whole = {name: np.full(rods.size, np.nan) for name in numbers}
     for name, values in numbers.items():
@@ -141,7 +141,8 @@ def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.
     if not flutters.any():
         return [f"does not flutter {searched}".rstrip()]
     of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    lines = [f"flutters{of} from {load_range_text(view, hopf)}; beats at {range_text(view, frequency, 'Hz')}"]
+    begins = f"flutter begins{of} at {load_range_text(view, hopf)}"
+    lines = [f"{begins}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
     if not flutters.all():
         stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
         lines.append(stable.rstrip())
@@ -171,8 +172,7 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
 
 def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
-    list if drag is not varied or an outcome is undecided. rods: mask of the points with a rod.
-    """
+    list if drag is not varied or an outcome is undecided. rods: mask of the points with a rod."""
     arms = arms_of_drags(view)
     if arms is None:
         return []
@@ -183,7 +183,7 @@ def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     always = sum(each.all() for each in of_arms)
     never = sum(not each.any() for each in of_arms)
     some = len(of_arms) - always - never
-    numbers = {"with every drag": always, "with part of the range of drag": some, "with no drag": never}
+    numbers = {"for every drag": always, "for part of the range of drag": some, "for no drag": never}
     counts = ", ".join(f"{words} at {count}" for words, count in numbers.items() if count)
     return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
 
@@ -196,11 +196,12 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     lines = []
     if unstable.any():
         frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        lines = [f"gives way{_count_clause(unstable, rods)}; its leading mode oscillates at {frequency}"]
+        where = _count_clause(unstable, rods)
+        lines = [f"the straight arm is unstable{where}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
-        lines = ["stays straight"]
+        lines = ["the straight arm is stable"]
     if unknown.any():
-        lines.append(f"whether the arm gives way is not known{_count_clause(unknown, rods)}")
+        lines.append(f"whether the straight arm is stable is not known{_count_clause(unknown, rods)}")
     return lines
 
 
@@ -211,7 +212,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
     rate = range_text(view, frequency, "Hz", errors=frequency * view.variables["period_error"][rods])
-    return [f"beats at {load_range_text(view, loads)}, at {rate}"], []
+    return [f"cycles, stable or not, exist at {load_range_text(view, loads)}; they beat at {rate}"], []
 
 
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
@@ -225,8 +226,7 @@ def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm in the
-    mask `rods`, (n,) each; NaN for an arm without a Hopf point.
-    """
+    mask `rods`, (n,) each; NaN for an arm without a Hopf point."""
     hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)
     values, frequency = (

@@ -38,9 +38,9 @@ AXIS_DIGITS = 3
 QUANTITY_WORDS = {"young": "Young's modulus", "poisson": "Poisson's ratio"}
 """Printed names of quantities of an arm, if different from the key of the config."""
 THRESHOLD_SENTENCES = {
-    "hopf": "flutters at {load}{rate}",
-    "restabilization": "is straight again from {load} on",
-    "onset": "a disturbance swings as it dies away from {load} on",
+    "hopf": "flutter begins at {load}{rate}",
+    "restabilization": "the straight arm is stable again from {load} on",
+    "onset": "decaying disturbances oscillate from {load} on",
 }
 """Sentence on the load at a threshold of the straight arm, by kind of threshold."""
 
@@ -230,7 +230,7 @@ def thresholds_of_arm(
     frequency = np.repeat([place.frequency for place, _ in found], each)
     rate = ""
     if np.isfinite(frequency).any():
-        rate = f", where it begins to beat at {_in_hertz(view, frequency, points)}"
+        rate = f", where the arm begins to beat at {_in_hertz(view, frequency, points)}"
     return [THRESHOLD_SENTENCES[kind].format(load=load, rate=rate)]
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
-from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY, VALIDITY_NOT_KNOWN
+from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from ....wording import count_of_total
 
 OTHER_PLANE = (
@@ -35,17 +35,17 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
     not known; empty if the model applies, and for a rod. variables: of a result with one point, by name, ()
     or (1,) each.
     """
-    if any(variable.name not in variables for variable in VALIDITY):
+    if any(variable.name not in variables for variable in VALIDITY_VARIABLES):
         return ""
-    validity = {variable.name: np.ravel(variables[variable.name]) for variable in VALIDITY}
+    validity = {variable.name: np.ravel(variables[variable.name]) for variable in VALIDITY_VARIABLES}
     return "" if validity["model_applies"][0] == Validity.applies else validity_sentence(validity)
 
 
 def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
-    largest neglected effect. validity: variables of VALIDITY, (n,) each. when: conditional clause to insert.
+    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. when: conditional clause.
     """
-    applies, effect, excess = (validity[variable.name] for variable in VALIDITY)
+    applies, effect, excess = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     unknown = applies == VALIDITY_NOT_KNOWN
     if unknown.all():
         where = f" at all {len(applies)} points" if len(applies) > 1 else ""

@@ -13,7 +13,7 @@ import h5py
 from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.ranges import index_count
-from ...run.journal import JOURNALS, journal_directory
+from ...run.journal import JOURNAL_GLOB, journal_directory
 from ..creation import Plan, add_variables, create_file
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
 from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
@@ -102,10 +102,10 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
     files = []
     for path in paths:
         files.append(read_header(path))
-        if any(journal_directory(path).glob(JOURNALS)):
+        if any(journal_directory(path).glob(JOURNAL_GLOB)):
             raise InputError(
-                f"{path} has points in the journal that are not in the file yet: first run the command of "
-                "this file again"
+                f"{path} has points in the journal that are not in the file yet; first repeat the run of "
+                "this file, which adds them"
             )
     return files
 

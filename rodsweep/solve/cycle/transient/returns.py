@@ -160,8 +160,8 @@ def not_settled_text(waited: int, returns: int, last: float) -> str:
     """
     if isfinite(last):
         return (
-            f"the motion does not repeat: after {waited} returns of the tip the last return has a relative "
-            f"distance of {last:.1e} from an earlier return"
+            f"the motion does not repeat: after {waited} returns of the tip the state still differs by a "
+            f"relative {last:.1e} from that at an earlier return"
         )
     if isnan(last):
         return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"

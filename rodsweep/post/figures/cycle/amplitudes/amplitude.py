@@ -12,7 +12,7 @@ from .....config.arm.axes import CHANGED_PARAMETER
 from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import View
-from .....results.layouts.limit_cycle import CYCLE_WORDS
+from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from ...grid_sections import left_out_clause
 from ...style import (
     LABELS,
@@ -195,7 +195,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str
 def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
     """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
     statuses of these points. Points with status missing are not marked."""
-    lost = ~np.isin(branch.status_names, (*CYCLE_WORDS, "straight", "missing"))
+    lost = ~np.isin(branch.status_names, (*CYCLE_STATUSES, "straight", "missing"))
     for x in branch.x[lost]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
     return {str(word).replace("_", " ") for word in branch.status_names[lost]}

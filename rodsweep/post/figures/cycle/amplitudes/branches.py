@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .....arrays import Array
 from .....errors import InputError
 from .....results.file.view import View
-from .....results.layouts.limit_cycle import CYCLE_WORDS
+from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from .....sweep.points.points import lines_along
 from ....hopf_points import LocatedThreshold, StoredThresholds
 from ..units_and_labels import PLAIN_UNITS, CycleUnits
@@ -73,7 +73,7 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
     words = view.status_names
     v = view.variables
     straight = words == "straight"
-    cycle = np.isin(words, CYCLE_WORDS)
+    cycle = np.isin(words, CYCLE_STATUSES)
     reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
     along_x, along_y = (
         units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))

@@ -17,7 +17,7 @@ used."""
 
 
 @contextmanager
-def remembered_ticks(figure: Figure) -> Iterator[None]:
+def cached_ticks(figure: Figure) -> Iterator[None]:
     """Context in which an axis of the figure computes its ticks again only after the panel or its limits have
     changed. Nothing except positions and limits of panels may change in this context. Without effect if
     matplotlib lacks a method in CACHED_METHODS.
