@@ -136,13 +136,11 @@ class Store:
             self.notes.append(f"{what} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
     def _changed_text_attributes(self) -> dict[str, Any]:
-        """Attributes to change if config and file differ in title, or in the text of the config, such as a
-        comment; empty otherwise."""
-        names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
+        """Attributes to change if config and file differ in title or config text; empty otherwise."""
+        texts = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
         stored = self.attributes()
-        if all(text == stored.get(name, "") for name, text in names.items()):
-            return {}
-        return names | {"config_resolved": json.dumps(self.plan.config)}
+        is_equal = all(text == stored.get(name, "") for name, text in texts.items())
+        return {} if is_equal else texts | {"config_resolved": json.dumps(self.plan.config)}
 
     def attributes(self) -> dict[str, Any]:
         """Attributes of the result file, by name."""

@@ -170,10 +170,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
-        raise Unsolvable(
-            f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces; the task "
-            "`branch` follows it"
-        )
+        why = "starts towards smaller forces: follow it with the task `branch`"
+        raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} {why}")
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
@@ -181,8 +179,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
         try:
             return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
         except Unsolvable as error:
-            why = error
-    raise why
+            failure = error
+    raise failure
 
 
 def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
