@@ -170,8 +170,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     at = replace(rod, F=hopf.F)
     normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
-        why = f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces"
-        raise Unsolvable(f"{why}; the task `branch` follows it")
+        start = f"the branch from the Hopf point at F = {hopf.F:g} starts towards smaller forces"
+        raise Unsolvable(f"{start}; the task `branch` follows it")
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
