@@ -415,7 +415,7 @@ def solve_thresholds(rod, request):
         os._exit(9)
     status = ThresholdStatus.list_full if k1 == 14 else ThresholdStatus.ok
     found = (Value(value=k1 / 2, kind=2, frequency=k2, growth_rate=0.0, error=1e-12, unstable_after=2),)
-    found = real.ThresholdList(
+    found = real.ThresholdSearchResult(
         thresholds=found, unstable_at_end=2, proved=True, evaluation_count=3, solve_count=4
     )
     return real.Thresholds(

@@ -53,9 +53,9 @@ class CurveSearch(Generic[AnyCurve]):
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
     each seed point from the nearest curve so far, by index. curves: curves traced so far, each only once.
-    missing_items: numbers of the work items whose missing results stopped the search. open_seeds: indices of
-    the seed points that lie on no curve so far and were not tried, without the seed point at which the search
-    stopped.
+    missing_items: numbers of the work items whose missing results stopped the search. untried_seeds: indices
+    of the seed points that lie on no curve so far and were not tried, without the seed point at which the
+    search stopped.
     """
 
     tolerance: float

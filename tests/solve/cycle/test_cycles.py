@@ -469,7 +469,7 @@ def test_a_motion_that_takes_too_many_steps_is_not_settled_and_says_so(monkeypat
     assert c.status == CycleStatus.not_settled
     assert c.periods < REQUEST.most_periods
     assert "no periodic motion within" in c.message
-    assert "and the maximum of" in c.message
+    assert "at the maximum of" in c.message
 
 
 @pytest.mark.parametrize(("repeats", "meshes"), [(1, 4), (9, 1)])

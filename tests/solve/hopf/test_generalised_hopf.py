@@ -166,7 +166,7 @@ def test_a_point_within_the_error_of_the_change_is_undecided_and_brackets_nothin
     (point,) = told.points
     x, y = (axis.coordinate(v) for axis, v in zip(plane.axes, point.values, strict=True))
     there = np.insert(curve.scaled_points, point.preceding_index + 1, [x, y, np.log(point.frequency)], axis=0)
-    again = curve_criticality(plane, replace(curve, scaled=there), 1e-10)
+    again = curve_criticality(plane, replace(curve, scaled_points=there), 1e-10)
     assert again.criticality[point.preceding_index + 1] == 0
     assert again.points[0].values == pytest.approx(point.values, rel=1e-10)
     assert again.points[0].preceding_index in (point.preceding_index, point.preceding_index + 1)
