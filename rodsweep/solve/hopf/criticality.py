@@ -35,14 +35,14 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `F_end`. search_result: result of the search for
-    Hopf points. coefficients: normal form coefficients of the first Hopf points, at most as many as
-    requested. seconds: computing time."""
+    """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
+    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
+    seconds: computing time."""
 
     status: CriticalityStatus
     search_result: ThresholdList
     coefficients: tuple[HopfCoefficients, ...]
-    F_end: float
+    end: float
     seconds: float = 0.0
     message: str = ""
 
@@ -70,7 +70,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             status=status,
             search_result=found,
             coefficients=coefficients,
-            F_end=found.searched_interval[1],
+            end=found.searched_interval[1],
             message=message,
         )
 
@@ -83,10 +83,8 @@ def warm_up() -> None:
     solve_criticality(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), CriticalityRequest(40.0, 1e-8, True, 4))
 
 
-@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.max_cached_searches)
+@lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.cached_searches)
 def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdList:
-    """Crossings of the imaginary axis at forces from 0 to `end`, cached; arguments as of
-    `find_axis_crossings`."""
     return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 
@@ -100,12 +98,11 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 
 
 def _empty_criticality(cause: str) -> Criticality:
-    """The result of a failed search, without Hopf points; cause: its message."""
     return Criticality(
         status=CriticalityStatus.failed,
         search_result=ThresholdList(proved=False),
         coefficients=(),
-        F_end=math.nan,
+        end=math.nan,
         message=cause,
     )
 

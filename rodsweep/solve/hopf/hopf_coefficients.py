@@ -47,7 +47,7 @@ class HopfCoefficientSettings:
     high modes of rods soft in shear; where a flutter window closes the value is 1."""
     relative_force_step: float = 1e-5
     """Force step of the difference quotient for the second derivative of w(F), divided by |F|."""
-    max_cached_searches: int = 8
+    cached_searches: int = 8
     """Number of searches for Hopf points in the cache; rods that differ only in gamma1 share a search."""
 
 

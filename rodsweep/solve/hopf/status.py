@@ -14,8 +14,8 @@ class CriticalityStatus(PointStatus):
     )
     window_open = (
         2,
-        "two Hopf points nearly coincide, so it is undecided whether the rod flutters between them, in the "
-        "open range; the coefficients of all other Hopf points are stored; move a parameter slightly",
+        "within the open range two Hopf points nearly coincide, so it is undecided whether the rod flutters "
+        "between them; the coefficients of all other Hopf points are stored; move a parameter slightly",
     )
     accuracy_not_reached = (
         3,
