@@ -66,5 +66,5 @@ def criticality_values(result: "Criticality", max_crossings: int) -> dict[str, A
         del search[name]
     pairs = zip(result.coefficients, result.hopf_points, strict=False)
     rows = [outcome_values(NORMAL_FORM_VARIABLES, *pair, prefix="crossing_") for pair in pairs]
-    ends = {"F_end": result.F_end, "unstable_at_end": result.search_result.unstable_at_end}
+    ends = {"F_end": result.end, "unstable_at_end": result.search_result.unstable_at_end}
     return search | ends | value_lists(NORMAL_FORM_VARIABLES, rows, max_crossings)

@@ -35,14 +35,14 @@ class CriticalityRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
-    """Result for one rod: all Hopf points up to the force `F_end`. search_result: result of the search for
-    Hopf points. coefficients: normal form coefficients of the first Hopf points, at most as many as
-    requested. seconds: computing time."""
+    """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
+    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
+    seconds: computing time."""
 
     status: CriticalityStatus
     search_result: ThresholdSearchResult
     coefficients: tuple[HopfCoefficients, ...]
-    F_end: float
+    end: float
     seconds: float = 0.0
     message: str = ""
 
@@ -70,7 +70,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             status=status,
             search_result=found,
             coefficients=coefficients,
-            F_end=found.searched_interval[1],
+            end=found.searched_interval[1],
             message=message,
         )
 
@@ -98,12 +98,11 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
 
 
 def _empty_criticality(cause: str) -> Criticality:
-    """The result of a failed search, without Hopf points; cause: its message."""
     return Criticality(
         status=CriticalityStatus.failed,
         search_result=ThresholdSearchResult(proved=False),
         coefficients=(),
-        F_end=math.nan,
+        end=math.nan,
         message=cause,
     )
 
