@@ -136,13 +136,10 @@ class Store:
             self.notes.append(f"{what} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
     def _changed_text_attributes(self) -> dict[str, Any]:
-        """Attributes to change if config and file differ in title, or in the text of the config, such as a
-        comment; empty otherwise."""
-        names = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
-        stored = self.attributes()
-        if all(text == stored.get(name, "") for name, text in names.items()):
-            return {}
-        return names | {"config_resolved": json.dumps(self.plan.config)}
+        """Attributes to change if config and file differ in title or text; empty otherwise."""
+        names = ("title", "config")
+        ours, theirs = ({n: a.get(n, "") for n in names} for a in (self.plan.attributes, self.attributes()))
+        return {} if ours == theirs else ours | {"config_resolved": json.dumps(self.plan.config)}
 
     def attributes(self) -> dict[str, Any]:
         """Attributes of the result file, by name."""
