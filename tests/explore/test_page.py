@@ -20,6 +20,7 @@ from rodsweep.explore.pictures.diagram import (
     diagram_cells,
     unstable_count_words,
 )
+from rodsweep.explore.pictures.diagram_regions import region_table
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
 from rodsweep.explore.solving.question_inputs import INSTANT_KINDS
@@ -230,6 +231,31 @@ def test_the_diagram_names_its_areas_under_the_pointer_and_nothing_else():
     ]  # fmt: skip
     (hover,) = picture.card.figure.select(HoverTool)
     assert [renderer.data_source for renderer in hover.renderers] == [picture.cell_source]
+
+
+def test_areas_of_a_diagram_end_at_its_curves_of_hopf_points():
+    """A curve between the points, a window narrower than their distance, and a double eigenvalue."""
+    y = np.array([1.0, 10.0])
+    found = {
+        "x": np.array([0.0, 1.0, 2.0]), "y": y, "unstable_count": np.array([[0, 2, 2], [0, 0, 2]]),
+        "curve_x": np.array([0.2, 1.9, 0.5, 0.5, 1.95, 1.95, 1.97, 1.97]),
+        "curve_y": np.tile(y, 4), "curve_number": np.repeat([1, 2, 3, 4], 2),
+        "curve_kind": ["hopf"] * 2 + ["double"] * 2 + ["hopf"] * 4,
+        "between_x": np.full(2, 1.96), "between_y": y, "between_count": np.full(2, 4),
+        "crushing_load": np.array([1.98, 19.8]),
+    }  # fmt: skip
+    sides, levels, counts = region_table(found)
+    middles = (sides[1:] + sides[:-1]) / 2
+    for level, row in zip(np.log10(levels[1:] * levels[:-1]) / 2, counts, strict=True):
+        hopf = 0.2 + 1.7 * level
+        assert (row[middles < hopf - 0.01] == 0).all()
+        assert (row[(middles > hopf + 0.01) & (middles < 1.94)] == 2).all()
+        assert row[np.abs(middles - 1.96).argmin()] == 4
+        assert row[-1] == (CRUSHED_COUNT if 1.98 * 10**level < sides[-2] else 2)
+    assert (levels[0], levels[-1]) == pytest.approx((1, 10))
+    assert region_table(found | {"curve_kind": ["double"] * 8}) is None
+    rigid = region_table(found | {"crushing_load": np.full(2, np.inf)})
+    assert (rigid.counts[:, -1] == 2).all()
 
 
 def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():

@@ -25,6 +25,7 @@ from .card import (
     new_figure,
     set_axis_range,
 )
+from .diagram_regions import region_table
 
 BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
 """Colour of a stability boundary, by kind; other kinds have the colour STABLE_COLOUR."""
@@ -64,8 +65,13 @@ def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
     (rows,). counts: numbers of unstable modes, (rows, columns).
     """
-    sides = np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]]))
-    levels = cell_edges(y)
+    return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
+
+
+def joined_cells(sides: Array, levels: Array, counts: Array) -> list[DiagramCell]:
+    """Rectangles of equal numbers of unstable modes in rows of cells. sides: edges of the columns, (columns +
+    1,). levels: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
+    """
     found = []
     for row, line in enumerate(counts):
         start = 0
@@ -149,7 +155,12 @@ class DiagramPicture:
         """
         x = found["x"] * load.factor
         y = found["y"] * second.factor
-        grid = diagram_cells(x, y, found["unstable_count"])
+        regions = region_table(found)
+        grid = (
+            diagram_cells(x, y, found["unstable_count"])
+            if regions is None
+            else joined_cells(regions.sides * load.factor, regions.levels * second.factor, regions.counts)
+        )
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable) for cell in grid]

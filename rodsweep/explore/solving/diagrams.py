@@ -14,6 +14,7 @@ from ...errors import InputError
 from ...model.arm.quantities import QUANTITIES
 from ...model.units import quantity_in_si
 from ..state import MATERIAL_CHOICES, PageState, float_or_text
+from .region_bounds import region_bounds
 
 Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
@@ -52,8 +53,10 @@ def diagram_answer(state: PageState) -> dict[str, Any]:
     """Stability diagram around the rod or arm of `state`, as arrays by name.
 
     x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_COUNT
-    or CRUSHED_COUNT, (rows, columns). curve_x, curve_y, curve_number, curve_kind: stability boundaries,
-    (curve points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
+    or CRUSHED_COUNT, (rows, columns). between_x, between_y, between_count: places between neighbouring
+    crossings of a row, and numbers of unstable modes there, (places,). crushing_load: load that crushes the
+    rods of a row, (rows,), or empty. curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve
+    points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
     crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
@@ -138,6 +141,8 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
         is_crushed = flag_words(data["class"].transpose(second, "F")) == "crushed"
         counts = np.where(is_crushed, CRUSHED_COUNT, counts)
     found = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_empty_curves()}
+    if "crossing_at" in data:
+        found |= region_bounds(data, second)
     for curve in ("curve", "cycle_curve"):
         if f"{curve}_F" in data and f"{curve}_{second}" in data:
             names = {"x": "F", "y": second, "number": "number"}
@@ -224,7 +229,9 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
 def _empty_curves() -> dict[str, Any]:
     empty = np.zeros(0)
     none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
-    return none | {f"cycle_{name}": values for name, values in none.items()}
+    between = {f"between_{name}": empty for name in ("x", "y", "count")}
+    cycles = {f"cycle_{name}": values for name, values in none.items()}
+    return none | between | cycles | {"crushing_load": empty}
 
 
 def flag_words(array: Dataset) -> Any:

@@ -12,7 +12,12 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
-from rodsweep.solve.orbit.matrix.workspace import WORKSPACE_SETTINGS, MatrixMemory, NewtonWorkspace
+from rodsweep.solve.orbit.matrix.workspace import (
+    WORKSPACE_SETTINGS,
+    MatrixMemory,
+    NewtonWorkspace,
+    block_count,
+)
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 from rodsweep.solve.unsolvable import WorkLimitReached
@@ -103,7 +108,7 @@ def test_a_workspace_serves_smaller_and_larger_matrices():
 
 
 def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
-    """Of twenty that are all alive, of which the largest needs 29 MB and all together 420."""
+    """Of twenty that are all alive, of which the largest needs 20 MB and all together 280."""
     workspace = NewtonWorkspace()
     gc.collect()
     tracemalloc.start()
@@ -112,7 +117,7 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
         _, most = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    largest = 8 * 59 * 4 * 4 * 72**2
+    largest = 8 * 59 * 8 * 72**2  # half the blocks of the 4 x 4 stages
     assert len(kept) == 20
     assert largest < most < 1.1 * largest
 
@@ -123,12 +128,12 @@ def test_a_released_workspace_keeps_what_most_rods_need():
         (WORKSPACE_SETTINGS.max_kept_buffer_size, True),
         (WORKSPACE_SETTINGS.max_kept_buffer_size + 1, False),
     ):
-        memory = MatrixMemory(workspace, numbers, 1, 1)
+        memory = MatrixMemory(workspace, -(-numbers // block_count(3)), 3, 1)
         buffer = memory.factors.eliminated_blocks.base
         workspace.release()
         with pytest.raises(RuntimeError, match="its workspace was used again"):
             memory.factors  # noqa: B018 - raises
-        again = MatrixMemory(workspace, 1, 1, 1).factors.eliminated_blocks.base
+        again = MatrixMemory(workspace, 1, 3, 1).factors.eliminated_blocks.base
         assert np.shares_memory(again, buffer) == kept
 
 

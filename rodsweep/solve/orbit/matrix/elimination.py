@@ -22,7 +22,14 @@ from ...backend.products import square_product
 from ..semidiscrete import SemidiscreteEquations
 from .inversion import INVERSION_SETTINGS, invert_matrix
 from .substitution import map_start_to_end, reduce_right_sides
-from .workspace import NewtonFactors
+from .workspace import (
+    FIRST_STAGE,
+    INTERVAL_MAP,
+    SECOND_STAGE,
+    NewtonFactors,
+    stage_block,
+    start_block,
+)
 
 
 @compiled_for_vectors
@@ -49,24 +56,24 @@ def eliminate_newton_matrix(
         B = factors.eliminated_blocks[k]
         h = duration * p.interval_lengths[k]
         for i in range(s):
-            write_jacobian(points[1 + k * s + i], V[k, i], B[i, i], tip, p.rod, p.node_matrices)
+            diagonal = B[i] if i < 2 else B[stage_block(i, i, s)]
+            write_jacobian(points[1 + k * s + i], V[k, i], diagonal, tip, p.rod, p.node_matrices)
             for r in range(n):
                 for q in range(n):
                     # Diagonal block d_ii M - h F'. Column 0 of d is for the start of the interval, so stage i
                     # has the column i + 1.
-                    B[i, i, r, q] *= -h
-                B[i, i, r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
+                    diagonal[r, q] *= -h
+                diagonal[r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
         _eliminate_interval(B, right, parts, p)
-        # Row 0 of the blocks is unused after two stages are eliminated. The effect of the start on the end
-        # and on the later stages is stored there, for `substitute_stages`.
-        square_product(B[s - 1, s - 1], right[s - 1], B[0, 1], 1.0, 0.0)
+        # The effect of the start on the end and on the later stages is stored for `substitute_stages`.
+        square_product(B[stage_block(s - 1, s - 1, s)], right[s - 1], B[INTERVAL_MAP], 1.0, 0.0)
         for a in range(2, s - 1):
-            B[0, a] = right[a]
+            B[start_block(a)] = right[a]
         reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
-        # `right` was computed for x_0 = M^-1, so that B[0, 1] acts on M x_0: M is between the maps of two
-        # intervals.
-        square_product(B[0, 1], so_far, factors.propagator, 1.0, 0.0)
+        # `right` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between the maps of
+        # two intervals.
+        square_product(B[INTERVAL_MAP], so_far, factors.propagator, 1.0, 0.0)
         for r in range(n):
             for q in range(n):
                 so_far[r, q] = p.mass[r] * factors.propagator[r, q]
@@ -75,12 +82,12 @@ def eliminate_newton_matrix(
 
 @compiled_for_vectors
 def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
-    """Eliminates the blocks B of one interval, (s, s, n, n), whose diagonal blocks are given. p: equations.
+    """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given. p: equations.
 
     right: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand side of the
     stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
     """
-    s = B.shape[0]
+    s = len(right)
     n = B.shape[2]
     pivots = np.empty(n, np.int64)
     rows = np.empty((n, INVERSION_SETTINGS.panel_width))
@@ -88,35 +95,36 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEqu
     d = p.stage_differentiation
     mass = p.mass
     Z = parts[0]
-    invert_matrix(B[0, 0], pivots, rows)
+    invert_matrix(B[FIRST_STAGE], pivots, rows)
     # Schur complement of the second stage. It needs no product of matrices, because both off-diagonal blocks
     # are multiples of M.
     factor = d[1, 1] * d[0, 2]
     for r in range(n):
         for q in range(n):
-            Z[r, q] = mass[r] * B[0, 0, r, q]
-            B[1, 1, r, q] -= factor * Z[r, q] * mass[q]
-    invert_matrix(B[1, 1], pivots, rows)
+            Z[r, q] = mass[r] * B[FIRST_STAGE, r, q]
+            B[SECOND_STAGE, r, q] -= factor * Z[r, q] * mass[q]
+    invert_matrix(B[SECOND_STAGE], pivots, rows)
     _eliminate_first_two_stages(B, right, parts, p)
     for a in range(2, s):
-        invert_matrix(B[a, a], pivots, rows)
+        pivot = B[stage_block(a, a, s)]
+        invert_matrix(pivot, pivots, rows)
         for i in range(a + 1, s):
-            square_product(B[i, a], B[a, a], end, 1.0, 0.0)
-            B[i, a] = end
+            square_product(B[stage_block(i, a, s)], pivot, end, 1.0, 0.0)
+            B[stage_block(i, a, s)] = end
             for j in range(a + 1, s):
-                square_product(end, B[a, j], B[i, j], -1.0, 1.0)
+                square_product(end, B[stage_block(a, j, s)], B[stage_block(i, j, s)], -1.0, 1.0)
             square_product(end, right[a], right[i], -1.0, 1.0)
 
 
 @compiled_for_vectors
 def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
-    """Eliminates the first two stages: computes the blocks of all later stages in B, (s, s, n, n), and their
-    matrices in `right` (see `_eliminate_interval`). p: equations.
+    """Eliminates the first two stages: computes the blocks of all later stages in B, (blocks, n, n), and
+    their matrices in `right` (see `_eliminate_interval`). p: equations.
 
     parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the remaining products are
     computed.
     """
-    s = B.shape[0]
+    s = len(right)
     n = B.shape[2]
     d = p.stage_differentiation
     mass = p.mass
@@ -127,7 +135,7 @@ def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: Semidis
     ZW = parts[2]
     for r in range(n):
         for q in range(n):
-            W[r, q] = mass[r] * B[1, 1, r, q]
+            W[r, q] = mass[r] * B[SECOND_STAGE, r, q]
     square_product(Z, W, ZW, 1.0, 0.0)
     square_product(W, Z, parts[3], 1.0, 0.0)
     square_product(ZW, Z, parts[4], 1.0, 0.0)
@@ -135,18 +143,20 @@ def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: Semidis
         right[i] = 0.0
         for j in range(2, s):
             if i != j:
-                B[i, j] = 0.0
+                B[stage_block(i, j, s)] = 0.0
     for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
         last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
         for i in range(2, s):
             _subtract_first_stage_terms(right[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):
-                _subtract_first_stage_terms(B[i, j], parts, (i, j + 1), (first, last), d, mass)
+                _subtract_first_stage_terms(
+                    B[stage_block(i, j, s)], parts, (i, j + 1), (first, last), d, mass
+                )
     for i in range(2, s):
         for r in range(n):
             right[i, r, r] -= d[i, 0]
             for j in range(2, s):
-                B[i, j, r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
+                B[stage_block(i, j, s), r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
 
 
 @compiled_for_vectors

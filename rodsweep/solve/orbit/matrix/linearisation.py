@@ -87,8 +87,8 @@ def eliminate_at_orbit(
     along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals with
     respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
-    K = factors.eliminated_blocks.shape[0]
-    s = factors.eliminated_blocks.shape[1]
+    K = len(factors.eliminated_blocks)
+    s = len(p.stage_differentiation)
     n = len(p.mass)
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.period_parts
@@ -178,8 +178,8 @@ def reduced_residuals(
     Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
     fixed start, (1, n).
     """
-    K = factors.eliminated_blocks.shape[0]
-    s = factors.eliminated_blocks.shape[1]
+    K = len(factors.eliminated_blocks)
+    s = len(p.stage_differentiation)
     n = len(p.mass)
     columns = np.empty((K, s, 1, n))
     ends = np.zeros((1, n))
@@ -205,8 +205,8 @@ def reduced_variation_sides(
     Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
     of the last interval for a fixed start, (m, n).
     """
-    K = factors.eliminated_blocks.shape[0]
-    s = factors.eliminated_blocks.shape[1]
+    K = len(factors.eliminated_blocks)
+    s = len(p.stage_differentiation)
     n = len(p.mass)
     m = len(variations)
     columns = np.empty((K, s, m, n))

@@ -17,7 +17,7 @@ from ....arrays import Array, Complex
 from ..orbit import Orbit
 from ..semidiscrete import SemidiscreteEquations
 from .substitution import map_start_to_end, substitute_stages
-from .workspace import NewtonFactors
+from .workspace import INTERVAL_MAP, NewtonFactors
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,12 +115,12 @@ def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingInterv
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
         return ShootingIntervals((0, len(blocks)), factors.propagator[None])
     firsts = [0]
-    maps = [blocks[0, 0, 1] * mass]
+    maps = [blocks[0, INTERVAL_MAP] * mass]
     for k in range(1, len(blocks)):
-        longer = blocks[k, 0, 1] @ (mass[:, None] * maps[-1])
+        longer = blocks[k, INTERVAL_MAP] @ (mass[:, None] * maps[-1])
         if np.linalg.norm(longer) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
             maps[-1] = longer
         else:
             firsts.append(k)
-            maps.append(blocks[k, 0, 1] * mass)
+            maps.append(blocks[k, INTERVAL_MAP] * mass)
     return ShootingIntervals((*firsts, len(blocks)), np.array(maps))

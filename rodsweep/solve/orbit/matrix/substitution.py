@@ -2,7 +2,7 @@
 sides.
 
 The first two stages of an interval need only the inverses of their diagonal blocks; later stages need all
-blocks of the interval, B: (s, s, n, n).
+blocks of the interval, B: (blocks, n, n), as in `NewtonFactors`.
 """
 
 import numpy as np
@@ -10,14 +10,21 @@ import numpy as np
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
 from ..semidiscrete import SemidiscreteEquations
-from .workspace import NewtonFactors
+from .workspace import (
+    FIRST_STAGE,
+    INTERVAL_MAP,
+    SECOND_STAGE,
+    NewtonFactors,
+    stage_block,
+    start_block,
+)
 
 
 @compiled_for_vectors
 def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> None:
     """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
     first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
-    end for a fixed start. B: eliminated blocks of the interval, (s, s, n, n). p: equations."""
+    end for a fixed start. B: eliminated blocks of the interval, (blocks, n, n). p: equations."""
     s, count, n = columns.shape
     d = p.stage_differentiation
     mass = p.mass
@@ -29,45 +36,45 @@ def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> No
             for r in range(n):
                 columns[i, m, r] -= mass[r] * (d[i, 1] * t[m, r] + d[i, 2] * u[m, r])
         for a in range(2, i):
-            add_products(B[i, a], columns[a], columns[i], -1.0)
+            add_products(B[stage_block(i, a, s)], columns[a], columns[i], -1.0)
     # Only the last stage is solved here, because the next interval needs only the end of this interval.
     t[:] = columns[s - 1]
     columns[s - 1] = 0.0
-    add_products(B[s - 1, s - 1], t, columns[s - 1], 1.0)
+    add_products(B[stage_block(s - 1, s - 1, s)], t, columns[s - 1], 1.0)
 
 
 @compiled_for_vectors
 def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: Array) -> None:
     """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
-    interval. B: eliminated blocks of the interval, (s, s, n, n). columns: reduced right-hand sides of the
+    interval. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
     # The map of an interval acts on M x_0, as in `eliminate_newton_matrix`.
     scaled = ends * p.mass
     ends[:] = columns[-1]
-    add_products(B[0, 1], scaled, ends, 1.0)
+    add_products(B[INTERVAL_MAP], scaled, ends, 1.0)
 
 
 @compiled_for_vectors
 def _write_first_two_stages(B: Array, y: Array, p: SemidiscreteEquations, t: Array, u: Array) -> None:
-    """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (s, s, n, n). y:
-    right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages are
-    taken as 0."""
+    """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (blocks, n, n).
+    y: right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages
+    are taken as 0."""
     d = p.stage_differentiation
     mass = p.mass
     (count, n) = t.shape
     side = np.empty((count, n))
     t[:] = 0.0
     u[:] = 0.0
-    add_products(B[0, 0], y[0], t, 1.0)
+    add_products(B[FIRST_STAGE], y[0], t, 1.0)
     for m in range(count):
         for r in range(n):
             side[m, r] = y[1, m, r] - d[1, 1] * mass[r] * t[m, r]
-    # B[1, 1] is the inverse of the Schur complement. The coupling of t to u is subtracted below.
-    add_products(B[1, 1], side, u, 1.0)
+    # B[SECOND_STAGE] is the inverse of the Schur complement. The coupling of t to u is subtracted below.
+    add_products(B[SECOND_STAGE], side, u, 1.0)
     for m in range(count):
         for r in range(n):
             side[m, r] = d[0, 2] * mass[r] * u[m, r]
-    add_products(B[0, 0], side, t, -1.0)
+    add_products(B[FIRST_STAGE], side, t, -1.0)
 
 
 @compiled_for_vectors
@@ -124,18 +131,18 @@ def substitute_stages(
 
 @compiled_for_vectors
 def _substitute_stage(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
-    """Writes the changes of stage a >= 2 into out[a]. B: eliminated blocks, (s, s, n, n). columns: reduced
+    """Writes the changes of stage a >= 2 into out[a]. B: eliminated blocks, (blocks, n, n). columns: reduced
     right-hand sides, (s, k, n). scaled: M times the changes of the start, (k, n). out: changes of all stages,
     (s, k, n), in which the changes of later stages are known."""
-    s = len(B)
+    s = len(columns)
     out[a] = 0.0
     # `reduce_right_sides` has solved the last stage for a fixed start; the effect of the start is added.
     if a == s - 1:
         out[a] = columns[a]
-        add_products(B[0, 1], scaled, out[a], 1.0)
+        add_products(B[INTERVAL_MAP], scaled, out[a], 1.0)
         return
     side = columns[a].copy()
-    add_products(B[0, a], scaled, side, 1.0)
+    add_products(B[start_block(a)], scaled, side, 1.0)
     for j in range(a + 1, s):
-        add_products(B[a, j], out[j], side, -1.0)
-    add_products(B[a, a], side, out[a], 1.0)
+        add_products(B[stage_block(a, j, s)], out[j], side, -1.0)
+    add_products(B[stage_block(a, a, s)], side, out[a], 1.0)

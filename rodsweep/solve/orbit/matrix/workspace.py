@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
+from ....model.compiled.compilation import compiled
 from ...unsolvable import WorkLimitReached
 
 
@@ -31,13 +32,36 @@ class WorkspaceSettings:
 WORKSPACE_SETTINGS = WorkspaceSettings()
 
 
+FIRST_STAGE, SECOND_STAGE, INTERVAL_MAP = range(3)
+"""Numbers of the blocks of an interval for the first two stages, and for the map from its start to its end.
+"""
+
+
+def block_count(s: int) -> int:
+    """Number of blocks of an interval of s >= 3 stages."""
+    return int(s + (s - 2) ** 2)
+
+
+@compiled
+def start_block(a: int) -> int:
+    """Number of the block for the effect of the start of the interval on stage a, 2 <= a <= s - 2."""
+    return a + 1
+
+
+@compiled
+def stage_block(i: int, j: int, s: int) -> int:
+    """Number of the block in row i and column j of the later stages, 2 <= i, j < s. s: stages."""
+    return s + (i - 2) * (s - 2) + j - 2
+
+
 class NewtonFactors(NamedTuple):
     """Eliminated Newton matrix of all K intervals.
 
-    eliminated_blocks: (K, s, s, n, n); the diagonal has inverses of the pivot blocks, the part below has row
-    multipliers, the part above has Schur-updated blocks. Off the diagonal, the first two rows and columns are
-    unused, except row 0: its blocks multiply M x_0, x_0: state at the start; block 1 gives the change of the
-    end, blocks 2 to s - 2 the right-hand sides of these stages. propagator: map P over all intervals, (n, n).
+    eliminated_blocks: (K, `block_count(s)`, n, n). Blocks `FIRST_STAGE` and `SECOND_STAGE` are the inverses
+    of the pivot blocks of these stages. The blocks `stage_block` of later stages are the inverses of pivot
+    blocks on the diagonal, row multipliers below, and Schur-updated blocks above. The remaining blocks
+    multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the change of the end, `start_block(a)` the
+    right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all intervals, (n, n).
     closing_inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
     """
 
@@ -101,8 +125,8 @@ class MatrixMemory:
 
     def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
         self.workspace = workspace
-        self._shape = (intervals, stages, stages, unknowns, unknowns)
-        workspace.add_work(float(prod(self._shape)) * unknowns)
+        self._shape = (intervals, block_count(stages), unknowns, unknowns)
+        workspace.add_work(float(intervals * stages**2) * float(unknowns) ** 3)
         self._reservation = workspace.reserve(prod(self._shape))
         self.propagator = np.zeros((unknowns, unknowns))
         """P, (n, n), which stays valid when the workspace is used again."""

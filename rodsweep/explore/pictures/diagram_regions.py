@@ -1,0 +1,67 @@
+"""Regions of the stability diagram of the page: areas of equal numbers of unstable modes, bounded by the
+stored curves of Hopf points and by the crushing load as in the figures of `rodsweep plot`.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...arrays import Array
+from ...post.figures.phase_diagram import CURVES_END_AT_RATIO
+from ...post.figures.stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
+from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
+
+PIXELS_PER_ROW = 2
+"""Rows of pixels that are drawn as one. A picture of the page is about as high as the remaining rows."""
+
+
+class RegionTable(NamedTuple):
+    """Numbers of unstable modes in narrow rows of cells. sides: edges of the columns, (columns + 1,). levels:
+    edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
+    """
+
+    sides: Array
+    levels: Array
+    counts: Array
+
+
+def region_table(found: dict[str, Any]) -> RegionTable | None:
+    """Regions of the answer `found` to the question "diagram", in its units. None if the answer has no curve
+    of Hopf points, or fewer than two finite positive values of the second parameter.
+    """
+    x = found["x"]
+    y = found["y"]
+    is_hopf = np.asarray(found["curve_kind"], dtype=object) == "hopf"
+    if not is_hopf.any() or len(y) < 2 or not (np.isfinite(y) & (y > 0)).all():
+        return None
+    # The axis of the loads is linear, and the axis of the second parameter logarithmic, for any values.
+    plane = DrawnPlane(np.linspace(x[0], x[-1], 3), np.linspace(np.log(y[0]), np.log(y[-1]), 3))
+    columns, rows = np.meshgrid(x, np.log(y))
+    counts = np.asarray(found["unstable_count"])
+    known = counts != CRUSHED_COUNT
+    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), counts[known])
+    between = plane.fractions_of_axes(found["between_x"], np.log(found["between_y"]))
+    further = ClassifiedPoints(between, np.asarray(found["between_count"]))
+    numbers = np.asarray(found["curve_number"])
+    curves = []
+    for number in np.unique(numbers[is_hopf]):
+        own = is_hopf & (numbers == number)
+        curves.append(plane.fractions_of_axes(found["curve_x"][own], np.log(found["curve_y"][own])))
+    ratio = _crushing_ratio(plane, np.log(y), found["crushing_load"])
+    pixels = pixel_classes(computed, further, curves, ratio > CURVES_END_AT_RATIO, UNKNOWN_COUNT)
+    pixels = np.where(ratio < 1, pixels, CRUSHED_COUNT)
+    sides = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
+    levels = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
+    return RegionTable(sides, levels, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
+
+
+def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
+    """Load divided by the load that crushes the rod, at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
+    logarithms of the second parameter, (rows,). load: crushing load of each row, infinite on no row or on all
+    rows, (rows,).
+    """
+    if np.isinf(load).all():
+        return np.zeros((PIXEL_COUNT, PIXEL_COUNT))
+    # With two logarithmic axes the crushing load is a straight line over k1, and over the taper.
+    crushing = np.exp(np.interp(plane.pixel_centres(plane.y), logs, np.log(load)))
+    return np.asarray(plane.pixel_centres(plane.x) / crushing[:, None])
