@@ -125,7 +125,7 @@ def find_thresholds(
         near = [p + side * THRESHOLD_SETTINGS.anchor_shift * (high - low) for p in missed for side in (-1, 1)]
         edges = sorted({*edges, *(p for p in near if low < p < high)})
     else:
-        counts.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
+        counts.doubts.append("a pair that crosses the imaginary axis must lead, but another eigenvalue leads")
     if certify and not tracer.leaders_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
     counted = _with_counts(counts, unstable, crossings, at_end)

@@ -95,8 +95,8 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     if form.is_omega_unknown != orbit.form.is_omega_unknown:
         limit = STRESS_FORM_SETTINGS.min_eliminated_drag
         raise Unsolvable(
-            f"the solver changes its unknowns at a rotational drag of {limit:.0e} gamma2 L^2, which lies "
-            "between the two cycles"
+            f"the smallest rotational drag along the rod passes {limit:.0e} gamma2 L^2, below which the "
+            "equations have other unknowns"
         )
 
 

@@ -151,8 +151,7 @@ class AxisModesOfPath:
         if found.unstable_count < 0:
             decided = found.status != SpectrumStatus.ok  # else only the number of unstable modes is unknown
             name = found.status.name if decided else SpectrumStatus.undecided.name
-            where = self.problem.path.text_at(p)
-            raise Unsolvable(f"the spectrum at {where} is {name}: {found.message}".rstrip(": "))
+            raise Unsolvable(f"{self.problem.path.text_at(p)}: {name} {found.message}".rstrip())
         if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_known_modes):
             raise Unsolvable(
                 f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, more than "
