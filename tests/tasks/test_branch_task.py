@@ -127,7 +127,7 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
         (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
     ] or (stable[1][1] == 200.0)
     assert unstable == [(pytest.approx(67.3869842879), pytest.approx(85.569316943))]
-    assert RodBranches(view).coexistence == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
+    assert RodBranches(view).coexistence_ranges == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
 
 
 def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_points():
