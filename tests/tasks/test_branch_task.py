@@ -261,7 +261,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
     drawn = " ".join(command.drawn("plot", "c.h5", "-o", "c.png").stdout.split())
-    assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
+    assert "1 branch of cycles over F; 1 more is not drawn: the list of special points is full" in drawn
 
 
 @pytest.mark.long
