@@ -134,7 +134,7 @@ def test_branches_without_all_special_points_are_counted(portrait):
     more = {"special_count": view.variables["special_count"] + 1}
     views = {**portrait.results.views, "branch": replace(view, variables={**view.variables, **more})}
     text = paragraph(replace(portrait.results, views=views))
-    assert "1 of its branches of cycles is not drawn: some special points are not" in text
+    assert "1 of its branches of cycles is not drawn: the list of special points" in text
 
 
 def test_a_search_that_ended_early_is_not_said_to_end_where_the_rod_is_crushed(portrait):

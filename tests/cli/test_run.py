@@ -58,7 +58,9 @@ def test_resume_after_a_kill_gives_the_same_file(command, whole_job):
     assert process.returncode not in (0, 1, 2, 75), err
     wait_for_end(command.directory)
     assert read_view(path).journalled_count == 100
-    assert "100 of the computed points are in the journal" in " ".join(command("show", "c.h5").stdout.split())
+    assert "100 of the computed points are so far only in the journal" in " ".join(
+        command("show", "c.h5").stdout.split()
+    )
     again = command("run", "c.yaml", ranks=2)
     assert again.returncode == 0, again.stderr
     assert "380 of 480 points to do, 100 kept" in again.stdout
@@ -343,7 +345,7 @@ def test_forces_beyond_every_mesh_end_soon(command, F):
     command.write("c.yaml", f"task: spectrum\nparameters: {{F: {F:e}, k1: inf, k2: inf, gamma3: 0}}\n")
     checked = command("check", "c.yaml")
     assert checked.returncode == 0
-    assert "unknowns allowed and will end with status failed" in " ".join(checked.stdout.split())
+    assert "unknowns allowed and will end with the status failed" in " ".join(checked.stdout.split())
     run = command("run", "c.yaml")
     assert run.returncode == 1
     assert "1 failed" in run.stdout

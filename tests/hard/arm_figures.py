@@ -139,7 +139,7 @@ def _arm_numbers(view, label, scales):
     w = np.array(
         [roots_of(rod, 2)[0] if ok else np.nan for rod, ok in zip(rods_of(view), known, strict=True)]
     )
-    return {"": w.real / scales["tau2"] if label.startswith("growth") else np.abs(w.imag) * hertz}
+    return {"": w.real / scales["tau2"] if "growth rate" in label else np.abs(w.imag) * hertz}
 
 
 def _drawn_arms(d, gridded, view):

@@ -55,7 +55,7 @@ def test_running_sweep_is_seen_as_far_as_it_has_come(command, waiting):
     assert taken.stdout == "wrote c-snapshot.h5: 40 of 120 points are done\n", taken.stderr
     shown = " ".join(command("show", "c.h5").stdout.split())
     assert "80 points are missing" in shown
-    assert "40 of the computed points are in the journal" in shown
+    assert "40 of the computed points are so far only in the journal" in shown
     assert "ok 40" in shown
     assert "wrote c.csv" in command("export", "c.h5").stdout
     data = open_result(path)

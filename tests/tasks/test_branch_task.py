@@ -127,7 +127,7 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
         (pytest.approx(85.569316943), 150 * (1 - 1e-4)),
     ] or (stable[1][1] == 200.0)
     assert unstable == [(pytest.approx(67.3869842879), pytest.approx(85.569316943))]
-    assert RodBranches(view).coexistence == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
+    assert RodBranches(view).coexistence_ranges == [(pytest.approx(85.569316943), pytest.approx(FOLD))]
 
 
 def test_undecided_cycles_are_as_stable_as_others_between_the_same_special_points():
@@ -261,7 +261,7 @@ def test_those_whose_special_points_are_stored_are_told_and_drawn_before_others(
     assert "branch 1, from the Hopf point at F = 27.427194126" in told
     assert "beside a stable straight rod" not in told
     drawn = " ".join(command.drawn("plot", "c.h5", "-o", "c.png").stdout.split())
-    assert "1 branch of cycles over F; 1 more have special points that are not stored" in drawn
+    assert "1 branch of cycles over F; 1 more is not drawn: the list of special points is full" in drawn
 
 
 @pytest.mark.long

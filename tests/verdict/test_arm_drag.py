@@ -297,7 +297,7 @@ def test_check_says_which_units_it_took_and_warns_of_thin_walls(command):
     thin = told("15 cm", "[3 mm, 4.8 mm]")
     assert "without a unit" not in thin
     assert "warning: Wall: as the tip moves by half the length" in thin
-    assert "the worst of 2 tubes" in thin
+    assert "Of 2 tubes this is the worst" in thin
 
 
 def test_a_tube_flattens_as_brazier_found():

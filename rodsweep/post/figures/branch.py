@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from ...results.layouts.variables import MISSING_STATUS
-from ...wording import count_of_total, counted, has_or_have
+from ...wording import count_of_total, counted, has_or_have, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
 from ..crushing import uncrushed_ranges
 from ..parameter_ranges import ParameterRange
@@ -131,7 +131,7 @@ def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> 
     number of drawn rods.
     """
     hidden = sum(rod.hidden_count for rod in rods)
-    more = f"; {hidden} more are not drawn: the list of special points is full" if hidden else ""
+    more = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (hidden > 0)
     if drawn < beating:
         more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())

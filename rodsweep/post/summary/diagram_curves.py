@@ -116,9 +116,8 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
 
 
 def agreement_lines(view: View, line: str) -> list[str]:
-    """Sentences on the numbers of curves by kind, their largest distance, along the parameter `line`, from
-    the points located on rows, and the number of points on no curve.
-    """
+    """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
+    along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
     v = view.variables
     hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double = len(np.unique(v["curve_number"])) - hopf
