@@ -31,7 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
-from .settled_motion import NoCycleFound, SettledMotion
+from .settled_motion import NoCycleFound, ReturnClock, SettledMotion
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
 from .transient.from_motion import collocation_states
@@ -70,6 +70,7 @@ class _MarchedMotion:
         self.beam = Beam(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
+        self.clock = ReturnClock(self.leading_mode.period)
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
@@ -126,14 +127,15 @@ class _MarchedMotion:
                 z,
                 MARCHING_SETTINGS.max_run_duration_ratio
                 * MARCHING_SETTINGS.returns_per_test
-                * self.leading_mode.period,
+                * self.clock.time_per_return,
                 step,
                 until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
-            states = self._crossings(run)[1]
+            times, states = self._crossings(run)
+            self.clock.record_run(times, float(run.times[-1]))
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
@@ -188,7 +190,7 @@ class _MarchedMotion:
         returns = settled.returns_per_period + 2
         limit = until_returns(tip_angle_row(self.beam), settled.state, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
-        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.leading_mode.period
+        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]

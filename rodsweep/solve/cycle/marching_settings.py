@@ -26,7 +26,8 @@ class MarchingSettings:
     first_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
     max_run_duration_ratio: int = 3
-    """Longest duration of a run divided by (number of returns * period of the leading mode)."""
+    """Longest duration of a run divided by the number of returns and by the expected time per return: the
+    period of the leading mode, or the time between the last two returns if it is longer."""
     returns_per_test: int = 5
     """Number of returns of the tip between two tests whether the motion repeats."""
     pair_error_factor: float = 2.0

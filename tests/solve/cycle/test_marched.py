@@ -10,6 +10,8 @@ from rods import rod_of
 from surveyed import RODS
 
 from rodsweep.discretization.elements.periodic import time_derivative
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
@@ -143,3 +145,30 @@ def test_the_straight_rod_beside_a_motion_is_not_that_of_its_mesh(k1):
     exact = solve_spectrum(rod, SpectrumRequest(1, 1e-12, True)).eigenvalues[0]
     found = solve_by_integration(rod, request(1e-3))
     assert complex(found.linear_growth_rate, found.linear_frequency) == pytest.approx(exact, rel=1e-9)
+
+
+def arm_with_jump(u, tip_gamma2=1.0, tip_gamma3=1.0, **parameters):
+    """An arm whose drags jump at u, with factors 1 before the jump."""
+    base, tip = (1.0,) * 6, (1.0,) * 4 + (tip_gamma2, tip_gamma3)
+    return Rod(
+        build=Build("linear", "fixed", Profile((0.0, u, u, 1.0), (base, base, tip, tip))), **parameters
+    )
+
+
+def test_a_cycle_may_be_much_longer_than_the_time_constant_of_a_mode_that_does_not_oscillate():
+    """Twenty times here: runs of so many time constants ended before the next return of the tip."""
+    rod = arm_with_jump(0.5, tip_gamma3=20.0, F=30.0, k1=1e3, k2=30.0, gamma3=0.05)
+    one, other = solve_cycle(rod, request(1e-4)), solve_by_integration(rod, request(1e-3))
+    assert other.linear_frequency == 0
+    assert one.measures.period * other.linear_growth_rate > 15
+    assert (one.status, other.status) == (CycleStatus.cycle, MarchedStatus.cycle)
+    assert abs(other.measures.period / one.measures.period - 1) <= (
+        one.errors.period_error + other.errors.period_error
+    )
+
+
+def test_a_mode_with_the_tip_almost_at_rest_starts_a_small_motion():
+    """At this force the tip of the mode moves by 1/2000 of the largest deflection."""
+    rod = arm_with_jump(0.75, tip_gamma2=5.0, F=30.0, k1=1e3, k2=30.0, gamma3=0.01)
+    found = solve_cycle(rod, replace(request(1e-3), amplitude=0.01))
+    assert found.status == CycleStatus.cycle
