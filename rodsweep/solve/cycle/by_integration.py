@@ -8,7 +8,7 @@ the difference gives the error estimate. Near a Hopf point a motion may not sett
 
 from collections import deque
 from dataclasses import replace
-from math import isnan, nan
+from math import nan
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -31,7 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
-from .settled_motion import NoCycleFound, ReturnClock, SettledMotion
+from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
 from .transient.from_motion import collocation_states
@@ -118,8 +118,7 @@ class _MarchedMotion:
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
-        last = nan
-        rate = 0.0
+        distances = ReturnDistances(MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance)
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
@@ -143,17 +142,13 @@ class _MarchedMotion:
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            noise = MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance
-            # Below the noise the quotient of two distances is not the contraction rate per return.
-            if last > noise:
-                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
-            elif isnan(last):
-                rate = 0.0 if distance <= noise else 1.0
-            last = distance
+            distances.record_test(distance, turns / MARCHING_SETTINGS.returns_per_test)
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            if distance <= MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy * (1 - rate):
+            enough = MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy
+            if distance <= enough * (1 - distances.contraction_rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), last))
+        why = not_settled_text(self.return_count, len(past), distances.last)
+        raise NoCycleFound(MarchedStatus.not_settled, why)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None

@@ -23,6 +23,8 @@ class MarchingSettings:
     return_noise_ratio: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
+    tests_below_noise: int = 3
+    """Number of successive distances below this noise that show that the integration errors are smaller."""
     first_steps_per_period: int = 1000
     """Period of the leading mode divided by the first time step of a motion."""
     max_run_duration_ratio: int = 3

@@ -1,9 +1,11 @@
-"""A motion that has settled on a cycle, the clock of its returns, and the exception for a motion without a
-cycle."""
+"""A motion that has settled on a cycle, times of its returns and distances between them, and the exception
+for a motion without a cycle."""
 
 from dataclasses import dataclass
+from math import isfinite, isnan, nan
 
 from ...arrays import Array
+from .marching_settings import MARCHING_SETTINGS
 from .status import MarchedStatus
 
 
@@ -38,6 +40,41 @@ class ReturnClock:
                 self.time_per_return = max(self.shortest, time - self._last_return)
             self._last_return = time
         self._elapsed += duration
+
+
+class ReturnDistances:
+    """Relative distances between the returns of a motion that approaches a cycle, at successive tests.
+
+    noise: distance that integration errors alone may cause. contraction_rate: upper estimate of the factor by
+    which the distance from the cycle changes in one period. last: distance at the last test; NaN before the
+    first test."""
+
+    def __init__(self, noise: float) -> None:
+        self.noise = noise
+        self.contraction_rate = 0.0
+        self.last = nan
+        self._last_above_noise = nan
+        self._below_noise: list[float] = []
+
+    def record_test(self, distance: float, periods: float) -> None:
+        """Records the distance of a test. periods: inverse of the number of periods between two tests."""
+        if self.last > self.noise:
+            # Below the noise the quotient of two distances is not the contraction rate.
+            self.contraction_rate = min(max(distance, self.noise) / self.last, 1.0) ** periods
+        elif isnan(self.last):
+            self.contraction_rate = 0.0 if distance <= self.noise else 1.0
+        if distance > self.noise:
+            self._last_above_noise = distance
+            self._below_noise = []
+        else:
+            self._below_noise.append(distance)
+        recent = self._below_noise[-MARCHING_SETTINGS.tests_below_noise :]
+        if len(recent) == MARCHING_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
+            # Distances that stay small are no coincidence, so the noise is smaller than assumed.
+            fall = max(recent) / self._last_above_noise
+            rate = fall ** (periods / len(self._below_noise))
+            self.contraction_rate = min(self.contraction_rate, rate)
+        self.last = distance
 
 
 class NoCycleFound(Exception):
