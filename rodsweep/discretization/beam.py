@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Complex
 from ..model.balance import Values
 from .elements.mesh import shape_from_strains
 from .rod_on_mesh import RodOnMesh
@@ -24,7 +24,7 @@ class TipVelocitySettings:
     """Settings for the velocity of the tip."""
 
     imaginary_step: float = 1e-30
-    """Imaginary step, in tau2, of the complex-step derivative in `tip_position_and_velocity`. The square of
+    """Imaginary step, in tau2, of the complex-step derivative in `_shape_and_velocities`. The square of
     the step underflows, so the derivative has no truncation error."""
 
 
@@ -97,16 +97,30 @@ class Beam(RodOnMesh):
 
         z, direction: (..., unknowns). The velocity is a complex-step derivative, which has no cancellation.
         """
-        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
-        moved = shape_from_strains(self.mesh, self.element_strains(z) + 1j * change, np.zeros(3))[..., -1]
-        # The imaginary part is the derivative times the step.
-        return moved.real, moved.imag / TIP_VELOCITY_SETTINGS.imaginary_step
+        shape = self._shape_and_velocities(z, direction)[..., -1]
+        return shape.real, shape.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 
     def tip_velocity(self, z: Array, direction: Array) -> Array:
         """Time derivative of (x, y, theta) of the tip at z for dz/dt = direction, (3, ...); z, direction:
         (..., unknowns).
         """
         return self.tip_position_and_velocity(z, direction)[1]
+
+    def transverse_velocities(self, z: Array, direction: Array) -> Array:
+        """Time derivative of y at z for dz/dt = direction, at all nodes, (..., nodes + 1); z, direction:
+        (..., unknowns).
+        """
+        velocities: Array = (
+            self._shape_and_velocities(z, direction)[1].imag / TIP_VELOCITY_SETTINGS.imaginary_step
+        )
+        return velocities
+
+    def _shape_and_velocities(self, z: Array, direction: Array) -> Complex:
+        """(x, y, theta) at z at all nodes, (3, ..., nodes + 1), plus i times the imaginary step times its
+        time derivative for dz/dt = direction."""
+        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
+        strains = self.element_strains(z) + 1j * change
+        return shape_from_strains(self.mesh, strains, np.zeros(3)).astype(complex, copy=False)
 
     def _broadcast_sqrt_compliance(self, field: Values) -> Array:
         """`sqrt_compliance`, reshaped to broadcast against a field (3, ..., nodes + 1)."""

@@ -22,7 +22,8 @@ class LimitCycleOptions(StrictSection):
     """Method: collocation in time, with Floquet multipliers, or time integration only, without Floquet
     multipliers."""
     amplitude: Annotated[Number, Field(gt=0, le=1, description="a number above 0, at most 1")] = 0.01
-    """Tip deflection of the initial guess, which is the leading mode, in L."""
+    """Tip deflection of the initial guess, which is the leading mode, in L; smaller if another part of the
+    rod would deflect more than twice as far."""
     start: Literal["mode", "neighbour", "hopf"] = "mode"
     """Initial guess at each point: the leading mode, the cycle of a neighbouring point, or the cycle near the
     Hopf point."""

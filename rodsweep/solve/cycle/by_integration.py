@@ -31,7 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
-from .settled_motion import NoCycleFound, SettledMotion, SettlingCriterion, max_settled_distance
+from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
 from .transient.from_motion import collocation_states
@@ -70,6 +70,7 @@ class _MarchedMotion:
         self.beam = Beam(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
+        self.clock = ReturnClock(self.leading_mode.period)
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
@@ -116,7 +117,7 @@ class _MarchedMotion:
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
-        criterion = SettlingCriterion(self.request.accuracy, self.scheme.tolerance)
+        distances = ReturnDistances(MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance)
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
@@ -124,14 +125,15 @@ class _MarchedMotion:
                 z,
                 MARCHING_SETTINGS.max_run_duration_ratio
                 * MARCHING_SETTINGS.returns_per_test
-                * self.leading_mode.period,
+                * self.clock.time_per_return,
                 step,
                 until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
-            states = self._crossings(run)[1]
+            times, states = self._crossings(run)
+            self.clock.record_run(times, float(run.times[-1]))
             past.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
@@ -139,11 +141,13 @@ class _MarchedMotion:
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            if criterion.is_settled(distance, turns):
+            distances.record_test(distance, turns / MARCHING_SETTINGS.returns_per_test)
+            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
+            enough = max_settled_distance(self.request.accuracy)
+            if distance <= enough * (1 - distances.contraction_rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(
-            MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), criterion.distance)
-        )
+        why = not_settled_text(self.return_count, len(past), distances.last)
+        raise NoCycleFound(MarchedStatus.not_settled, why)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -180,7 +184,7 @@ class _MarchedMotion:
         returns = settled.returns_per_period + 2
         limit = until_returns(tip_angle_row(self.beam), settled.state, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
-        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.leading_mode.period
+        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]

@@ -2,7 +2,7 @@
 motion without a cycle."""
 
 from dataclasses import dataclass
-from math import isnan, nan
+from math import isfinite, isnan, nan
 
 from ...arrays import Array
 from .marching_settings import MARCHING_SETTINGS
@@ -20,6 +20,68 @@ class SettledMotion:
     last_time_step: float
 
 
+def max_settled_distance(accuracy: float) -> float:
+    """Largest relative distance of a settled motion from its cycle, for a requested relative accuracy."""
+    return MARCHING_SETTINGS.settled_distance_ratio * accuracy
+
+
+class ReturnClock:
+    """Times of the returns of the tip to theta = 0 during successive runs of one motion.
+
+    shortest: smallest value of `time_per_return`, in tau2, the period of the leading mode. time_per_return:
+    expected time per return, in tau2: the time between the last two returns, or `shortest` if it is longer. A
+    slow-fast cycle may take many time constants of a leading mode that does not oscillate."""
+
+    def __init__(self, shortest: float) -> None:
+        self.shortest = self.time_per_return = shortest
+        self._elapsed = 0.0
+        self._last_return: float | None = None
+
+    def record_run(self, times: Array, duration: float) -> None:
+        """Records a run that follows the earlier runs. times: times of the returns during the run, (k,).
+        duration: length of the run. Times are in tau2."""
+        for time in (self._elapsed + times).tolist():
+            if self._last_return is not None:
+                self.time_per_return = max(self.shortest, time - self._last_return)
+            self._last_return = time
+        self._elapsed += duration
+
+
+class ReturnDistances:
+    """Relative distances between the returns of a motion that approaches a cycle, at successive tests.
+
+    noise: distance that integration errors alone may cause. contraction_rate: upper estimate of the factor by
+    which the distance from the cycle changes in one period. last: distance at the last test; NaN before the
+    first test."""
+
+    def __init__(self, noise: float) -> None:
+        self.noise = noise
+        self.contraction_rate = 0.0
+        self.last = nan
+        self._last_above_noise = nan
+        self._below_noise: list[float] = []
+
+    def record_test(self, distance: float, periods: float) -> None:
+        """Records the distance at a test. periods: one period over the time between two tests."""
+        if self.last > self.noise:
+            # Below the noise the quotient of two distances is not the contraction rate.
+            self.contraction_rate = min(max(distance, self.noise) / self.last, 1.0) ** periods
+        elif isnan(self.last):
+            self.contraction_rate = 0.0 if distance <= self.noise else 1.0
+        if distance > self.noise:
+            self._last_above_noise = distance
+            self._below_noise = []
+        else:
+            self._below_noise.append(distance)
+        recent = self._below_noise[-MARCHING_SETTINGS.tests_below_noise :]
+        if len(recent) == MARCHING_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
+            # Distances that stay small are no coincidence, so the noise is smaller than assumed.
+            fall = max(recent) / self._last_above_noise
+            rate = fall ** (periods / len(self._below_noise))
+            self.contraction_rate = min(self.contraction_rate, rate)
+        self.last = distance
+
+
 class NoCycleFound(Exception):
     """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
 
@@ -27,38 +89,3 @@ class NoCycleFound(Exception):
         super().__init__(message)
         self.status = status
         self.message = message
-
-
-def max_settled_distance(accuracy: float) -> float:
-    """Largest relative distance of a settled motion from its cycle, for a requested relative accuracy."""
-    return MARCHING_SETTINGS.settled_distance_ratio * accuracy
-
-
-class SettlingCriterion:
-    """Criterion by which one integrated motion has settled, tested after every
-    `MARCHING_SETTINGS.returns_per_test` returns.
-
-    distance: relative distance between the last two returns one period apart, at the last test; NaN before
-    the first test. contraction_rate: estimated ratio of two such distances one period apart, at most 1.
-    """
-
-    def __init__(self, accuracy: float, local_tolerance: float) -> None:
-        """accuracy: requested relative accuracy of the cycle. local_tolerance: tolerance of the
-        integrator."""
-        self.distance = nan
-        self.contraction_rate = 0.0
-        self._limit = max_settled_distance(accuracy)
-        self._noise = MARCHING_SETTINGS.return_noise_ratio * local_tolerance
-
-    def is_settled(self, distance: float, returns_per_period: int) -> bool:
-        """Whether the distance of the motion from its cycle is at most `max_settled_distance`. distance:
-        relative distance between the last two returns one period apart. The method is called once a test."""
-        # Below the noise the quotient of two distances is not the contraction rate.
-        if self.distance > self._noise:
-            ratio = min(max(distance, self._noise) / self.distance, 1.0)
-            self.contraction_rate = ratio ** (returns_per_period / MARCHING_SETTINGS.returns_per_test)
-        elif isnan(self.distance):
-            self.contraction_rate = 0.0 if distance <= self._noise else 1.0
-        self.distance = distance
-        # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-        return distance <= self._limit * (1 - self.contraction_rate)

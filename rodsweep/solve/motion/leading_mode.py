@@ -8,11 +8,17 @@ from ...arrays import Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
 from ...discretization.beam import Beam
 
+MAX_DEFLECTION = 2.0
+"""Largest deflection |y| along the rod of a mode, in L, if its tip deflects by 1. The tip of an arm may be at
+rest in a mode: with a heavy tip, for example, at a single force. A mode scaled by its tip is then no small
+disturbance of the rod."""
+
 
 @dataclass(frozen=True, slots=True)
 class LeadingMode:
     """Leading eigenvalue w of the straight rod, in 1/tau2, Im w >= 0, and its mode z, (unknowns,), scaled to
-    a tip deflection y(1) = 1 to first order."""
+    a tip deflection y(1) = 1 to first order; y(1) is smaller, but not negative, if the largest deflection |y|
+    along the rod would exceed `MAX_DEFLECTION`."""
 
     w: complex
     z: Complex
@@ -38,6 +44,9 @@ def leading_mode(beam: Beam) -> LeadingMode:
     k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknown_count, complex)
     layout.transverse_unknowns(z)[:] = vectors[:, k]
-    # The tip's y is linear in z about the straight rod, so the tip's 'velocity' along z is its deflection.
-    tip = complex(*(beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag)))
-    return LeadingMode(complex(values[k]), z / tip)
+    # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
+    real, imag = (beam.transverse_velocities(rest, part) for part in (z.real, z.imag))
+    tip = complex(real[-1], imag[-1])
+    least = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
+    scale = tip if abs(tip) >= least else least * (tip / abs(tip) if tip else 1.0)
+    return LeadingMode(complex(values[k]), z / scale)

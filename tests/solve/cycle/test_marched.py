@@ -10,9 +10,12 @@ from rods import rod_of
 from surveyed import RODS
 
 from rodsweep.discretization.elements.periodic import time_derivative
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.settled_motion import ReturnDistances
 from rodsweep.solve.cycle.status import MarchedStatus
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -143,3 +146,56 @@ def test_the_straight_rod_beside_a_motion_is_not_that_of_its_mesh(k1):
     exact = solve_spectrum(rod, SpectrumRequest(1, 1e-12, True)).eigenvalues[0]
     found = solve_by_integration(rod, request(1e-3))
     assert complex(found.linear_growth_rate, found.linear_frequency) == pytest.approx(exact, rel=1e-9)
+
+
+def arm_with_jump(u, tip_gamma2=1.0, tip_gamma3=1.0, **parameters):
+    """An arm whose drags jump at u, with factors 1 before the jump."""
+    base, tip = (1.0,) * 6, (1.0,) * 4 + (tip_gamma2, tip_gamma3)
+    return Rod(
+        build=Build("linear", "fixed", Profile((0.0, u, u, 1.0), (base, base, tip, tip))), **parameters
+    )
+
+
+def test_a_cycle_may_be_much_longer_than_the_time_constant_of_a_mode_that_does_not_oscillate():
+    """Twenty times here: runs of so many time constants ended before the next return of the tip."""
+    rod = arm_with_jump(0.5, tip_gamma3=20.0, F=30.0, k1=1e3, k2=30.0, gamma3=0.05)
+    one, other = solve_cycle(rod, request(1e-4)), solve_by_integration(rod, request(1e-3))
+    assert other.linear_frequency == 0
+    assert one.measures.period * other.linear_growth_rate > 15
+    assert (one.status, other.status) == (CycleStatus.cycle, MarchedStatus.cycle)
+    assert abs(other.measures.period / one.measures.period - 1) <= (
+        one.errors.period_error + other.errors.period_error
+    )
+
+
+def test_a_mode_with_the_tip_almost_at_rest_starts_a_small_motion():
+    """At this force the tip of the mode moves by 1/2000 of the largest deflection."""
+    rod = arm_with_jump(0.75, tip_gamma2=5.0, F=30.0, k1=1e3, k2=30.0, gamma3=0.01)
+    found = solve_cycle(rod, replace(request(1e-3), amplitude=0.01))
+    assert found.status == CycleStatus.cycle
+
+
+def rates_of(distances):
+    """Contraction rate after each of the tests with these distances, with a noise of 1e-3."""
+    seen = ReturnDistances(1e-3)
+    rates = []
+    for distance in distances:
+        seen.record_test(distance, 0.2)
+        rates.append(seen.contraction_rate)
+    return rates
+
+
+def test_distances_that_stay_below_the_noise_show_that_the_motion_has_settled():
+    """The first distance was hardly above the noise, and its quotient with the noise was kept for good."""
+    assert rates_of([1.05e-3] + [8e-5] * 4)[1:] == pytest.approx([0.99, 0.99, 0.842, 0.842], abs=1e-3)
+    slow = [1.05e-3 * 0.998**k for k in range(200)]
+    assert min(rates_of(slow)) >= 0.998**0.2
+
+
+def test_a_motion_that_settles_fast_is_settled_at_low_accuracy():
+    """After 400 returns, each 8e-5 from the one before, the motion was said not to repeat."""
+    base, tip = (1.0, 1.0, 3.51, 1.0, 1.0, 1.0), (3.51, 1.0, 4.21, 1.0, 0.196, 1.11)
+    build = Build("neo_hookean", "swelling", Profile((0.0, 0.237, 0.237, 1.0), (base, base, tip, tip)))
+    rod = Rod(F=68.823, k1=254.7, k2=346.3, gamma3=0.1302, gamma1=1.196, taper=0.663, build=build)
+    found = solve_by_integration(rod, replace(request(1e-2, most_periods=60), amplitude=0.01))
+    assert found.status == MarchedStatus.cycle

@@ -141,6 +141,17 @@ def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
     assert leading_mode(beam).w == pytest.approx(transverse[0], rel=1e-9)
 
 
+@pytest.mark.parametrize(("F", "k1", "k2", "tip"), [(40.0, 1e4, 1e4, 1.0), (8.0, 30.0, 0.3, 0.6)])
+def test_leading_mode_has_a_bounded_deflection_everywhere(F, k1, k2, tip):
+    """The mode of the second rod, which is soft in shear, deflects three times as far beside its tip."""
+    beam = Beam(Rod(F=F, k1=k1, k2=k2, gamma3=0.1), uniform_mesh(1, 20))
+    z, rest = leading_mode(beam).z, np.zeros(60)
+    y = np.hypot(*(beam.transverse_velocities(rest, part) for part in (z.real, z.imag)))
+    assert y.max() == pytest.approx(1.0 if tip == 1 else 2.0, rel=1e-9)
+    deflection, turned = (beam.tip_velocity(rest, part)[1] for part in (z.real, z.imag))
+    assert (deflection, turned) == pytest.approx((tip, 0), rel=0.02, abs=1e-12)
+
+
 def test_shape_converges_with_order_and_with_elements():
     exact = Beam(ROD, uniform_mesh(1, 36))
     for elements, order in ((1, 24), (2, 18), (4, 12)):
