@@ -87,9 +87,8 @@ class SpectrumSearch:
         """The comparison of the last count that disagrees with the eigenvalues found."""
         self.is_leader_unresolved = False
         """Whether on one of the meshes neither the eigenvalues nor a count showed which eigenvalue leads."""
-        self.failure_reason = (
-            f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns resolves the requested modes"
-        )
+        self.last_failure = ""
+        """Error message of SLEPc or LAPACK on the last mesh; empty if the last mesh was solved."""
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
@@ -101,6 +100,7 @@ class SpectrumSearch:
             found = candidates_on_mesh(
                 self.problem, self.mesh, self.requested_count, self.needs_vectors, tight
             )
+            self.last_failure = found.failure
             judged = self.check_candidates(found)
             if judged is None:
                 continue
@@ -120,7 +120,6 @@ class SpectrumSearch:
         if len(found.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
             self.failure_count += bool(found.failure)
-            self.failure_reason = found.failure or self.failure_reason
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
             if len(found.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
                 self.requested_count += self.modes
@@ -214,7 +213,9 @@ class SpectrumSearch:
         if self.is_leader_unresolved:
             why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
-        return failed_spectrum(SpectrumStatus.failed, self.request, self.failure_reason)
+        most = RESOLUTION_SETTINGS.max_unknowns
+        unresolved = f"no mesh of at most {most} unknowns resolves the requested modes"
+        return failed_spectrum(SpectrumStatus.failed, self.request, self.last_failure or unresolved)
 
 
 def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:

@@ -257,6 +257,16 @@ def test_lasting_error_inside_slepc_is_told(monkeypatch):
     assert result.message == "Error in LAPACK subroutine trexc: info=1"
 
 
+def test_error_inside_slepc_is_not_the_reason_if_later_meshes_are_solved(monkeypatch):
+    # The leading eigenvalue of this strongly pulled rod is -9e-133; no mesh resolves four modes.
+    rod = Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0)
+    failing = Failing(problem_module.uniform_solver, 1, SystemError("[0] Zero pivot in row 806"))
+    monkeypatch.setattr(problem_module, "uniform_solver", failing)
+    result = solve_spectrum(rod, TIGHT)
+    assert (result.status, len(failing.meshes) > 4) == (SpectrumStatus.failed, True)
+    assert result.message == "no mesh of at most 10000 unknowns resolves the requested modes"
+
+
 def test_overflowing_parameters_fail_with_a_reason_and_harm_no_later_point():
     result = solve_spectrum(Rod(F=1e200, k1=np.inf, k2=1e-5, gamma3=1e-4), TIGHT)
     assert result.status == SpectrumStatus.failed
