@@ -442,8 +442,14 @@ def _flutter_answer(view, page, told, start, chosen, scales):
         onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
         told(rf"a disturbance{some} swings as it dies away from {value} on$", 0, onset)
         told(rf"is straight again{some}, from {value} on$", np.isfinite(back).sum(), back)
+    in_newton = []
+    if view.task == "thresholds" and force_unit(view) == "pressure_scale":
+        forces = loads * scales["force_scale"] / scales["pressure_scale"]
+        words = "flutter as a force at the tip: "
+        told(rf"{words}{value}(?:$|, )", 0, forces[chosen])
+        in_newton = _extremes(view, page, rf"{start}{words}.*, ", forces, chosen)
     numbers = {"flutter": loads, "its frequency": hertz}
-    found = _drag_sentences(view, page, start, chosen, numbers)
+    found = in_newton + _drag_sentences(view, page, start, chosen, numbers)
     return found + _extremes(view, page, start, loads, chosen)
 
 
@@ -783,6 +789,7 @@ class ArmTruth:
             "axial drag": [d[0] for d in drags],
             "rotational drag": [d[2] for d in drags],
             "tau2": [d[1] * length**4 / k3 for d in drags],
+            "flutter force": [F * k3 / length**2 for F in own["hopf"]],
             "gamma3": own["gamma3"],
             "gamma1": [d[0] / d[1] for d in drags],
         }

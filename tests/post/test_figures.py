@@ -509,6 +509,19 @@ def test_all_stored_roots_are_drawn_where_asked(command, drawn):
     assert sorted(real.get_ydata()) == sorted(view.variables["growth_rate"].ravel())
 
 
+def test_a_section_between_the_values_of_a_long_axis_names_its_neighbours(command):
+    command.write("c.yaml", LINE)
+    command.solved("c.yaml", "--set", "parameters.F={start: 0, stop: 20, num: 21}")
+    view = read_view(command.directory / "c.h5")
+    for value, sentence in (
+        (7.25, "it has F = 0 to 20; the nearest values are 7 and 8"),
+        (99.0, "it has F = 0 to 20; the nearest values are 19 and 20"),
+        (-1.0, "it has F = 0 to 20; the nearest values are 0 and 1"),
+    ):
+        with pytest.raises(InputError, match=f"{sentence}$"):
+            section_at_values(view, {"F": value})
+
+
 def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch):
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.k2=[50, 100]", "--set", "spectrum.modes=3", "-o", "grid.h5")
