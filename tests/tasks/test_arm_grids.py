@@ -108,8 +108,8 @@ def test_hopf_points_of_an_arm_with_a_force_are_forces():
 
 def test_show_states_flutter_as_a_force_too(command):
     """The cone of the thinner tip flutters at the larger pressure and at the smaller force."""
-    command.write("a.yaml", "task: thresholds\nparameters: {arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, "
-                  "viscosity: 10 Pa s, tip_radius: [4 mm, 5 mm]}}\n")  # fmt: skip
+    arm = "{length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 10 Pa s, tip_radius: [4 mm, 5 mm]}"
+    command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {arm}}}\n")
     command.solved("a.yaml")
     lines = command("show", "a.h5").stdout.splitlines()
     assert "smallest at tip radius 5 mm; largest at tip radius 4 mm" in lines
@@ -127,7 +127,7 @@ def test_show_states_flutter_as_a_force_too(command):
 
 
 def test_thresholds_over_quantities_of_arms_share_no_figure(thresholds, tmp_path):
-    with pytest.raises(rs.InputError, match="only if all are grids over one parameter of the rod"):
+    with pytest.raises(rs.InputError, match="only if all are grids over one parameter"):
         rs.plot([thresholds, thresholds], str(tmp_path / "f.png"))
 
 

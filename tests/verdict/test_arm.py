@@ -233,7 +233,9 @@ def test_a_cone_flutters_at_a_larger_pressure_and_a_smaller_force():
         (row,) = [row for row in rod.report().rows if row.name == "flutter force"]
         forces[tip] = [float(number) for number in re.findall(r"[0-9.]+", row.value)]
         found = rod.thresholds()
-        assert forces[tip][0] == pytest.approx(found.pressure_hopf * math.pi * (float(tip.split()[0]) / 1e3) ** 2, rel=3e-3)
+        assert forces[tip][0] == pytest.approx(
+            found.pressure_hopf * math.pi * (float(tip.split()[0]) / 1e3) ** 2, rel=3e-3
+        )
         assert forces[tip][1] <= forces[tip][0] <= forces[tip][2]
     assert forces["2.5 mm"][2] < 0.5 * forces["5 mm"][1]
 
