@@ -292,7 +292,7 @@ def drawn(monkeypatch):
     from matplotlib.figure import Figure
 
     figures: list[Figure] = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: figures.append(figure))
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
     monkeypatch.setattr("rodsweep.post.figures.request.fit_layout", lambda *_: None)
     return figures
 

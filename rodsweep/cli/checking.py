@@ -68,13 +68,15 @@ def _arm_lines(job: Job) -> list[str]:
     }
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
+    given = "F" in job.points.names
+    load_clause = "" if given else ", and compression, by the load that it finds"
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
         *_uncovered_lines(job.points),
-        f"{validity}; inertia depends on the frequency of the arm's motion, and the run tests it",
+        f"{validity}; the run also tests inertia, by the frequency of the arm's motion{load_clause}",
     ]
 
 

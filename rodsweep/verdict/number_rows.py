@@ -1,5 +1,6 @@
 """Rows of the table in a report on an arm: numbers with formulas and sources."""
 
+from math import isfinite
 from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
@@ -30,6 +31,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
         *plane_row(plane),
         *shape_rows(arm),
         *dimensional_rows(arm),
+        *flutter_force_row(plane),
         *drag_rows(arm),
         *dimensionless_rows(arm),
     ]
@@ -86,6 +88,20 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     of_tip = " of the tip" if arm.shape.varies else ""
     formula = f"{arm.shape.tip.section.face_formula}{of_tip}" if arm.load == "pressure" else "as given"
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
+
+
+def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
+    """Row with the force at the tip at which the arm flutters; an empty list if the arm flutters with no drag
+    or only with part of the drags, or if a search failed.
+
+    Of two arms with tips of different size, the larger pressure may be the smaller force.
+    """
+    found = plane.thresholds
+    forces = [] if found.failures else plane.flutter_load_by_drag
+    if not forces or not all(isfinite(force) for force in forces):
+        return []
+    value = value_with_drag_range(plane.arm, forces, " N")
+    return [NumberRow("flutter force", value, "F at flutter times k3/L^2", "paper, Sec. IV, VI")]
 
 
 def value_with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:

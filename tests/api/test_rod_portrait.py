@@ -12,6 +12,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.post.rod_portrait.picture import portrait_figure
+from rodsweep.results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY
 from rodsweep.tasks import rod_portrait
 from rodsweep.tasks.rod_portrait import cycle_forces
 
@@ -73,7 +74,7 @@ def of_arm(portrait):
 
 def test_the_paragraph_of_an_arm_is_in_si_units(portrait, of_arm):
     text = paragraph(of_arm)
-    assert "tau2 for 3.5 s. The model applies." in text
+    assert "tau2 for 3.5 s. The model applies at flutter. In the straight state" in text
     again, fold = portrait.thresholds.F_restabilization, portrait.branch.special_points["special_at"].max()
     found = re.search(r"beside the stable straight arm at a pressure of ([\d.]+) to ([\d.]+\d) kPa", text)
     assert [float(end) for end in found.groups()] == pytest.approx([0.155 * again, 0.155 * fold], rel=1e-8)
@@ -83,6 +84,28 @@ def test_the_paragraph_of_an_arm_is_in_si_units(portrait, of_arm):
     assert numbers(text, "the period is ")[0] == pytest.approx(3.5 * cycle.period, rel=1e-3)
     assert numbers(text, "largest y of the tip ")[0] == pytest.approx(10 * cycle.tip_y_max, rel=1e-3)
     assert "F = " not in text.replace("F = 1 stands for", "")
+
+
+def test_the_paragraph_of_an_arm_judges_each_cycle_at_its_own_load(of_arm):
+    """The model may apply at flutter and not at a cycle far above flutter."""
+    effect = NEGLECTED_EFFECTS.index("Reynolds_number")
+    verdicts = [(0, -1, 0.05), (1, effect, 0.4), (2, effect, 1.4)]
+    names = [variable.name for variable in VALIDITY]
+
+    def judged(view, verdict):
+        one = {
+            name: np.full(view.variables["status"].shape, x) for name, x in zip(names, verdict, strict=True)
+        }
+        return replace(view, variables={**view.variables, **one})
+
+    cycles = [(F, judged(view, each)) for (F, view), each in zip(of_arm.cycles, verdicts, strict=True)]
+    worst = judged(of_arm.views["branch"], verdicts[-1])
+    text = paragraph(replace(of_arm, cycles=cycles, views={**of_arm.views, "branch": worst}))
+    outside = "the model does not apply: Reynolds number is 1.4 times its limit"
+    assert f"The model applies at flutter. Somewhere on its branches of cycles {outside}. " in text
+    first, second, third = text.partition("Cycles: ")[2].split("; ")
+    assert "the model" not in first + second
+    assert third.rstrip(".").endswith(f" cm ({outside})")
 
 
 def test_the_picture_of_an_arm_is_drawn_in_si_units(portrait, of_arm):

@@ -133,3 +133,40 @@ def test_disk_that_fills_up_in_the_middle_costs_no_point(command, ranks):
         assert " kept" in again.stdout
         assert small("run", "c.yaml", "-o", "whole.h5").returncode == 0
         assert same(content(small.directory / "c.h5"), content(small.directory / "whole.h5"))
+
+
+OUTPUTS = [
+    ("plot", "f.png"),
+    ("plot", "f.pdf"),
+    ("plot", "f.svg"),
+    ("plot", "f.gif"),
+    ("export", "f.csv"),
+    ("report", "f.html"),
+    ("snapshot", "f.h5"),
+]
+BEATING = """
+task: limit_cycle
+parameters: {F: [42], k1: 1.0e4, k2: 100, gamma3: 1.0e-2}
+limit_cycle: {shapes: 12}
+accuracy: 1.0e-4
+"""
+
+
+def test_a_full_disk_leaves_no_part_of_a_figure_table_or_page(command):
+    command.write("c.yaml", BEATING)
+    command.solved("c.yaml")
+    with disk(command, "size=64k") as small:
+        (small.directory / "fill").write_bytes(bytes(64 << 10))
+        for word, name in OUTPUTS:
+            done = small(word, command.directory / "c.h5", "-o", name)
+            one_sentence(done, f"{name} cannot be written: No space left on device")
+            assert [path.name for path in small.directory.iterdir()] == ["fill"], word
+
+
+@pytest.mark.parametrize("name", ["f.png", "f.html"])
+def test_a_portrait_is_solved_only_if_it_can_be_written(command, name):
+    with disk(command, "size=64k") as small:
+        subprocess.run(["mount", "-o", "remount,ro", small.directory], check=True)
+        done = small("portrait", "--k1", "1e4", "--k2", "1e2", "--gamma3", "1e-2", "-o", name)
+        one_sentence(done, f"{name} cannot be written: no permission in directory .")
+        assert done.stdout == ""

@@ -57,6 +57,12 @@ def test_an_arm_alike_all_along_is_standard(tmp_path):
     [
         (f"{ROUND}, tip_radius: 0", "", "", "parameters.arm.tip_radius = 0 m is not above 0"),
         (
+            f"{ROUND}, inner_radius: {{start: 0, stop: 1 mm, num: 3}}",
+            "",
+            "",
+            "parameters.arm.inner_radius = 0 m is not above 0; leave it out for a solid arm",
+        ),
+        (
             f"{ROUND}, tip_radius: 3 mm",
             "",
             ", taper: 0.5",

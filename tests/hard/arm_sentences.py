@@ -444,15 +444,21 @@ def _flutter_answer(view, page, told, start, chosen, scales):
         onset, back = (_first(view, scales, kind)[0][chosen] for kind in ("onset", "restabilization"))
         told(rf"decaying disturbances{some} oscillate from {value} on$", 0, onset)
         told(rf"the straight arm is stable again{some}, from {value} on$", np.isfinite(back).sum(), back)
+    in_newton = []
+    if view.task == "thresholds" and force_unit(view) == "pressure_scale":
+        forces = loads * scales["force_scale"] / scales["pressure_scale"]
+        words = "flutter as a force at the tip: "
+        told(rf"{words}{value}(?:$|, )", 0, forces[chosen])
+        in_newton = _extremes(view, page, rf"{start}{words}.*, smallest", forces, chosen)
     numbers = {"flutter": loads, "its frequency": hertz}
-    found = _drag_sentences(view, page, start, chosen, numbers)
-    return found + _extremes(view, page, start, loads, chosen)
+    found = in_newton + _drag_sentences(view, page, start, chosen, numbers)
+    return found + _extremes(view, page, rf"{start}smallest flutter load", loads, chosen)
 
 
 def _extremes(view, page, start, loads, chosen):
     """The check of which arms flutter at the least and at the largest of loads."""
     loads, found = np.where(chosen, loads, np.nan), []
-    for line, match in read(page, rf"{start}smallest flutter load at (.*); largest at (.*)$"):
+    for line, match in read(page, rf"{start} at (.*); largest at (.*)$"):
         ends = (np.nanmin(loads), np.nanmax(loads))
         why = [_of_one(view, text, loads, end) for text, end in zip(match.groups(), ends, strict=True)]
         found.append((line, "; ".join(filter(None, why))))
@@ -785,6 +791,7 @@ class ArmTruth:
             "axial drag": [d[0] for d in drags],
             "rotational drag": [d[2] for d in drags],
             "tau2": [d[1] * length**4 / k3 for d in drags],
+            "flutter force": [F * k3 / length**2 for F in own["hopf"]],
             "gamma3": own["gamma3"],
             "gamma1": [d[0] / d[1] for d in drags],
         }

@@ -52,7 +52,7 @@ def drawn(view, tmp_path, monkeypatch, width, **words):
     """The figure as it is written, with what is wrong with it: the number of ticks depends on the style."""
     figures = []
 
-    def take(figure, *_):
+    def take(figure, *_, **__):
         figure.draw_without_rendering()
         figure.faults = faults(figure)
         figures.append(figure)

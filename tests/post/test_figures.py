@@ -294,7 +294,7 @@ def line_of_spectra(command):
 @pytest.mark.parametrize(("width", "inches"), [("single", 3.375), ("double", 7.0)])
 def test_width_is_that_of_a_column_with_type_of_8_points(command, width, inches, monkeypatch):
     path, drawn = line_of_spectra(command), []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     draw(read_view(path), path.with_suffix(".png"), look=FigureLook(width=width))
     (figure,) = drawn
     assert figure.get_size_inches()[0] == inches
@@ -336,7 +336,7 @@ def drawn_of(command, monkeypatch, config, points=""):
     if points:
         command.write("p.csv", points)
     assert command("run", "c.yaml", "--fresh").returncode in (0, 1)
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     shown = draw(
         read_view(command.directory / "c.h5"), command.directory / "f.png", look=FigureLook(width="single")
     )
@@ -442,7 +442,7 @@ def test_phase_diagram_has_its_edge_as_a_line_marks_apart_and_a_legend_inside(co
     command.write("c.yaml", DIAGRAM)
     command.solved("c.yaml")
     drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     for width in ("single", "double"):
         draw(read_view(command.directory / "c.h5"), command.directory / "f.png", look=FigureLook(width=width))
         figure = drawn[-1]
@@ -529,6 +529,32 @@ def test_all_stored_roots_are_drawn_where_asked(command, drawn):
     assert sorted(real.get_ydata()) == sorted(view.variables["growth_rate"].ravel())
 
 
+def test_a_figure_of_a_run_without_a_point_says_so(command):
+    command.write("c.yaml", LINE)
+    command.solved("c.yaml")
+    view = read_view(command.directory / "c.h5")
+    status = np.full_like(view.variables["status"], -1)
+    nothing = {"status": status, "growth_rate": np.nan * view.variables["growth_rate"]}
+    empty = replace(view, variables={**view.variables, **nothing})
+    with pytest.raises(
+        InputError, match=r"no point of .*c\.h5 is computed yet; `rodsweep run` continues the run"
+    ):
+        draw(empty, command.directory / "f.png")
+
+
+def test_a_section_between_the_values_of_a_long_axis_names_its_neighbours(command):
+    command.write("c.yaml", LINE)
+    assert command("run", "c.yaml", "--set", "parameters.F={start: 0, stop: 20, num: 21}").returncode == 0
+    view = read_view(command.directory / "c.h5")
+    for value, sentence in (
+        (7.25, "it has F = 0 to 20; the nearest values are 7 and 8"),
+        (99.0, "it has F = 0 to 20; the nearest values are 19 and 20"),
+        (-1.0, "it has F = 0 to 20; the nearest values are 0 and 1"),
+    ):
+        with pytest.raises(InputError, match=f"{sentence}$"):
+            section_at_values(view, {"F": value})
+
+
 def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch):
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.k2=[50, 100]", "--set", "spectrum.modes=3", "-o", "grid.h5")
@@ -571,7 +597,7 @@ def test_thresholds_of_every_value_are_lines_or_cells_of_a_map(command, monkeypa
     lines = np.concatenate([line.get_ydata() for line in figure.axes[0].lines])
     assert sorted(lines[np.isfinite(lines)]) == sorted(stored[np.isfinite(stored)])
     drawn = []
-    monkeypatch.setattr(Figure, "savefig", lambda figure, *_: drawn.append(figure))
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: drawn.append(figure))
     assert "k1 = inf has no place" in draw(view, command.directory / "f.png", what="map")
     for axes, name in zip(drawn[0].axes, ("F_onset", "F_hopf"), strict=False):
         (mesh,) = axes.collections

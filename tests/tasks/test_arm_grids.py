@@ -1,5 +1,6 @@
 """Grids over an arm's own quantities: axes in files and Datasets, points without a rod, resume and merge."""
 
+import re
 from pathlib import Path
 
 import h5py
@@ -80,6 +81,54 @@ def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
         assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
     with pytest.raises(rs.InputError, match=r"has no point there; it has length = 0\.04, 0\.1, 0\.12"):
         section_at_values(view, {"length": "11 cm"})
+
+
+def test_a_section_has_the_points_of_a_load_along_F():
+    arm = GLYCEROL | {"length": "10 cm", "force": ["10 mN", "20 mN", "30 mN"]}
+    view = view_of_dataset(rs.sweep("spectrum", arm=arm, modes=1), Path("arm.h5"))
+    cut = section_at_values(view, {"force": "20 mN"})
+    assert cut.variables["force"].tolist() == [0.02]
+    assert cut.variables["F"].tolist() == view.variables["F"][1:2].tolist()
+    assert cut.variables["growth_rate"].shape[0] == 1
+    for at, sentence in (
+        ({"force": "25 mN"}, r"has no point there; it has force = 0\.01, 0\.02, 0\.03"),
+        ({"pressure": "2 kPa"}, "has no such axis; the points differ in F, force$"),
+    ):
+        with pytest.raises(rs.InputError, match=sentence):
+            section_at_values(view, at)
+
+
+def test_hopf_points_of_an_arm_with_a_force_are_forces():
+    arm = GLYCEROL | {"length": "10 cm", "force": ["0.15 N", "0.2 N"]}
+    data = rs.sweep("limit_cycle", arm=arm, accuracy=1e-3)
+    table = rs.table(data, "hopf_points")
+    assert "hopf_pressure" not in table
+    assert table.hopf_force.tolist() == pytest.approx((data.hopf_F * data.force_scale).values, rel=1e-12)
+
+
+def test_show_states_flutter_as_a_force_too(command):
+    """The cone of the thinner tip flutters at the larger pressure and at the smaller force."""
+    arm = "{length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 10 Pa s, tip_radius: [4 mm, 5 mm]}"
+    command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {arm}}}\n")
+    command.solved("a.yaml")
+    lines = command("show", "a.h5").stdout.splitlines()
+    assert "smallest at tip radius 5 mm; largest at tip radius 4 mm" in lines
+    (line,) = [line for line in lines if line.startswith("flutter as a force at the tip: ")]
+    found = re.fullmatch(
+        r"flutter as a force at the tip: ([0-9.]+) to ([0-9.]+) N, "
+        "smallest at tip radius 4 mm; largest at tip radius 5 mm",
+        line,
+    )
+    data = rs.open(command.directory / "a.h5")
+    faces = np.pi * data.tip_radius**2
+    assert [float(each) for each in found.groups()] == pytest.approx(
+        (data.pressure_hopf * faces).values.tolist(), rel=5e-3
+    )
+
+
+def test_thresholds_over_quantities_of_arms_share_no_figure(thresholds, tmp_path):
+    with pytest.raises(rs.InputError, match="only if all are grids over one parameter"):
+        rs.plot([thresholds, thresholds], str(tmp_path / "f.png"))
 
 
 def test_a_force_is_told_as_a_force():

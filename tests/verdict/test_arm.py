@@ -1,6 +1,7 @@
 """An arm in centimetres and kilopascals: formulas against hand-made numbers, units, verdict, command."""
 
 import math
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -223,6 +224,20 @@ def test_frequency_follows_from_tau2():
         assert found.first_frequency(ChangeKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
         )
+
+
+def test_a_cone_flutters_at_a_larger_pressure_and_a_smaller_force():
+    forces = {}
+    for tip in ("2.5 mm", "5 mm"):
+        rod = Arm(length="10 cm", radius="5 mm", tip_radius=tip, young="100 kPa", viscosity="10 Pa s")
+        (row,) = [row for row in rod.report().rows if row.name == "flutter force"]
+        forces[tip] = [float(number) for number in re.findall(r"[0-9.]+", row.value)]
+        found = rod.thresholds()
+        assert forces[tip][0] == pytest.approx(
+            found.pressure_hopf * math.pi * (float(tip.split()[0]) / 1e3) ** 2, rel=3e-3
+        )
+        assert forces[tip][1] <= forces[tip][0] <= forces[tip][2]
+    assert forces["2.5 mm"][2] < 0.5 * forces["5 mm"][1]
 
 
 def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():

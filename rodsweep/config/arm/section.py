@@ -153,7 +153,8 @@ class ArmSection(StrictSection):
             if name in LOAD_OF_RATIO and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
             if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or low > 0):
-                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0")
+                solid = "; leave it out for a solid arm" if name == "inner_radius" and low == 0 else ""
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0{solid}")
         if self.is_parameter_grid:
             self.arm_of(self.first_values, loaded=True)
 

@@ -83,7 +83,8 @@ def arm_quantity_in_si(name: str, given: GivenQuantity | None) -> float:
         return float("nan")
     value = quantity_in_si(name, given, *UNITS[name])
     if not (QUANTITIES[name].may_be_nonpositive or value > 0):
-        raise InputError(f"{quoted_quantity(name, given)} is not above 0")
+        solid = "; leave it out for a solid arm" if name == "inner_radius" and value == 0 else ""
+        raise InputError(f"{quoted_quantity(name, given)} is not above 0{solid}")
     return value
 
 

@@ -19,6 +19,8 @@ from .lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""
+UNITS_OF_ARM = ("tau2", "force_scale", "pressure_scale")
+"""Names of the units of an arm, which a file stores beside its quantities; no axes."""
 MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
@@ -52,31 +54,47 @@ def _number_in_si(name: str, value: float | str) -> float:
 
 def _section_at_value(view: View, name: str, value: float) -> View:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
-    listed = {} if view.is_grid else {n: v for n, v in view.quantities.items() if np.ndim(v)}
+    listed = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
+    if view.is_grid:  # quantities that are stored along an axis of a parameter
+        listed = [n for n in listed if PARAMETER_STORED_ALONG.get(n) in view.parameters]
     axes = view.arm_axes or (*view.parameters, *listed)
     if name not in axes:
-        known = ", ".join(axes)
-        close = similar_keys(name, list(axes))
-        hint = f"did you mean {close[0]}?" if close else f"the points differ in {known}"
-        followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
-        raise InputError(f"--at {name}={value:.15g}: {view.path} has no such axis{followed}; {hint}")
+        raise InputError(f"--at {name}={value:.15g}: {view.path} {_axes_sentence(view, name, axes)}")
     values = view.variables[name]
     chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
     if not chosen.any():
-        unique = np.unique(values)
-        named = [f"{one:.15g}" for one in unique[:MAX_LISTED_VALUES]]
-        more = f", ... {unique[-1]:.15g}" if len(unique) > MAX_LISTED_VALUES else ""
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
-            f"{', '.join(named)}{more}"
+            f"{_values_text(np.unique(values), value)}"
         )
     if view.is_grid or view.arm_axes:
-        return _grid_at(view, name, chosen)
+        along = name if name in (*view.arm_axes, *view.parameters) else PARAMETER_STORED_ALONG[name]
+        return _grid_at(view, along, chosen)
     variables = {
         key: data[chosen] if data.shape[:1] == chosen.shape and key not in OTHER_DIMENSIONS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
+
+
+def _axes_sentence(view: View, name: str, axes: Sequence[str]) -> str:
+    """Predicate that says that `name` is none of the axes `axes`, with a similar name, or with the names of
+    the axes that have several values."""
+    close = similar_keys(name, list(axes))
+    varied = [axis for axis in axes if len(np.unique(view.variables[axis])) > 1]
+    hint = f"did you mean {close[0]}?" if close else f"the points differ in {', '.join(varied or axes)}"
+    followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
+    return f"has no such axis{followed}; {hint}"
+
+
+def _values_text(values: np.ndarray, wanted: float) -> str:
+    """The increasing values of an axis as text; of more than MAX_LISTED_VALUES values, the first and the last
+    value and the two values around `wanted`."""
+    if len(values) <= MAX_LISTED_VALUES:
+        return ", ".join(f"{one:.15g}" for one in values)
+    after = int(np.clip(np.searchsorted(values, wanted), 1, len(values) - 1))
+    nearest = " and ".join(f"{one:.15g}" for one in values[after - 1 : after + 1])
+    return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest}"
 
 
 def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from ...errors import InputError
 from ...model.units import quantity_in_si
 from ...results.file.view import View
+from ..output_files import save_figure
 from .arm.axes import add_si_scales
 from .arm.validity_hatches import hatch_invalid_points
 from .layout.dark_background import adapt_to_dark_background
@@ -179,5 +180,5 @@ class FigureRequest:
         figure.set_layout_engine(
             None
         )  # `fit_layout` has laid out the figure; savefig would repeat the layout
-        figure.savefig(self.output)
+        save_figure(figure, self.output)
         return shown

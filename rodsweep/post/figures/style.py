@@ -14,6 +14,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
+from ...results.layouts.variables import MISSING_STATUS
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
@@ -159,6 +160,8 @@ def varied_axes(view: View) -> list[str]:
 def require_content(view: View, available: object, what: str) -> None:
     """Raises InputError if `available` is false or empty. what: noun for the missing content."""
     if not available:
+        if (view.variables["status"] == MISSING_STATUS).all():
+            raise InputError(f"no point of {view.path} is computed yet; `rodsweep run` continues the run")
         raise InputError(f"{view.path} holds no {what} that could be drawn")
 
 

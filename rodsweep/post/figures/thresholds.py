@@ -71,7 +71,9 @@ def _draw_files(request: FigureRequest) -> str:
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()
     views = request.views
-    along = style.varied_axes(views[0])
+    along = (
+        style.varied_axes(views[0]) if views[0].is_grid else []
+    )  # a list over an arm's quantities has many
     if len(views) > len(FILE_COLOURS):
         raise InputError(
             f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
@@ -85,7 +87,7 @@ def _draw_files(request: FigureRequest) -> str:
         if not view.is_grid or style.varied_axes(view) != along or along[1:]:
             raise InputError(
                 f"{view.path}: files of thresholds share a figure only if all are grids over one parameter, "
-                "the same in every file"
+                "the same in every file; plot each file by itself"
             )
     return request.write(*draw_lines_of_files(views, along[0], searched_range_clause(*views)))
 

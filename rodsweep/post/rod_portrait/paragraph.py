@@ -7,12 +7,13 @@ from math import isfinite
 
 import numpy as np
 
+from ...model.arm.neglected import Validity
 from ...results.layouts.arm import VALIDITY_VARIABLES
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
-from ..summary.arm.validity_sentences import plane_lines, validity_sentence
+from ..summary.arm.validity_sentences import plane_lines, validity_caveat, validity_sentence
 from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded_text
@@ -74,7 +75,8 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
 
 
 def _arm_sentence(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the units of an arm, the validity of the model, and the plane of motion."""
+    """Yields sentences on the units of an arm, the validity of the model at flutter and on the branches of
+    cycles, and the plane of motion."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
     yield (
@@ -83,7 +85,11 @@ def _arm_sentence(results: RodResults) -> Iterator[str]:
         f"{quantities['tau2']:.6g} s."
     )
     validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
-    sentences = [validity_sentence(validity), *plane_lines(view.quantities)]
+    when = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
+    branch = results.views.get("branch")
+    caveat = validity_caveat(branch.variables) if branch else ""
+    on_branches = [f"somewhere on its branches of cycles {caveat}"] if caveat else []
+    sentences = [validity_sentence(validity, when), *on_branches, *plane_lines(view.quantities)]
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
 
@@ -232,8 +238,11 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
             )
         )
         unstable = ", unstable," if word == "unstable" else ""
+        is_outside = v.get("model_applies") == Validity.does_not_apply
+        caveat = validity_caveat(view.variables) if is_outside else ""
         clauses.append(
             f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"
+            f"{f' ({caveat})' if caveat else ''}"
         )
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."

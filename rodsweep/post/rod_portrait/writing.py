@@ -4,7 +4,7 @@ from pathlib import Path
 
 from ...wording import enumeration
 from ..cost_and_provenance import provenance_lines
-from ..output_files import atomic_write, require_output_path
+from ..output_files import atomic_write, require_output_path, save_figure
 from ..report import rendered_template
 from ..report.page_tables import page_tables
 from ..report.pictures import CaptionedPicture, Pictures
@@ -40,7 +40,7 @@ def write_portrait(results: RodResults, output: Path) -> str:
         with atomic_write(output) as stream:
             stream.write(portrait_page(results))
     else:
-        portrait_figure(results).savefig(output)
+        save_figure(portrait_figure(results), output)
     return f"wrote {output}: {portrait_caption(results)}"
 
 

@@ -92,15 +92,16 @@ def si_columns(
     else:
         at = {name: values[0] for name, values in at.items() if np.ptp(values) == 0}
     by_name = {column.name: column for column in columns}
+    as_force = "force" in view.quantities  # not in `at` if the force varies and the list is of the whole file
     for declared in variables:
         column = by_name[declared.name]
         # The position of a crossing along a row over F is a force.
         is_force = declared.name == "crossing_at" and "F" not in view.parameters
         variable = replace(declared, name="crossing_F") if is_force else declared
-        si = si_unit_of(variable, "force" in view.quantities)
+        si = si_unit_of(variable, as_force)
         known = {*si.factors, *si.divisors} <= at.keys()
         if si.unit and known and si_name_of(variable.name, si.unit) not in view.variables:
-            in_si, values = si_variable(variable, column.values, at)
+            in_si, values = si_variable(variable, column.values, at, as_force)
             yield replace(column_of(in_si, values), absent=column.absent)
 
 

@@ -160,11 +160,14 @@ def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
     return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_UNIT)
 
 
-def si_variable(variable: Variable, values: Array, quantities: Mapping[str, Array]) -> tuple[Variable, Array]:
+def si_variable(
+    variable: Variable, values: Array, quantities: Mapping[str, Array], as_force: bool
+) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the quantities of the arm by name, () or (n,) each.
+    quantities: the quantities of the arm by name, () or (n,) each. as_force: whether the arm's load is a
+    force.
     """
-    si = si_unit_of(variable, "force" in quantities)
+    si = si_unit_of(variable, as_force)
     si_variable = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
     return si_variable, values * si.scale(quantities)
 

@@ -61,6 +61,9 @@ def _header_fault(header: list[str]) -> str:
         return f"the header {short_repr(','.join(header))} has an empty name"
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
         return f"the header is {short_repr(','.join(header))}"
+    for separator, word in {";": "semicolons", "\t": "tabs"}.items():
+        if len(header) == 1 and set(header[0].split(separator)) & set(PARAMETERS):
+            return f"the columns are separated by {word}; separate them by commas"
     return "the first line names no parameter"
 
 

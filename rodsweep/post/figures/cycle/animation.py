@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from ....errors import EnvironmentIncomplete, InputError
 from ....results.file.view import View
+from ...output_files import replaced_file
 from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
 from .portrait import draw_clamp, draw_tip_path, force_arrow, set_frame
@@ -47,7 +48,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
         )
     writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
-    with writer.saving(figure, str(output), dpi=100):
+    with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=100):
         for k in range(frames):
             for arm in arms:
                 arm.show_frame(k)
