@@ -8,7 +8,7 @@ the difference gives the error estimate. Near a Hopf point a motion may not sett
 
 from collections import deque
 from dataclasses import replace
-from math import nan
+from math import isnan, nan
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -31,7 +31,7 @@ from .accuracy.cycle_errors import CycleErrors
 from .accuracy.integration_errors import errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
-from .settled_motion import NoCycleFound, SettledMotion, SettlingCriterion, max_settled_distance
+from .settled_motion import NoCycleFound, SettledMotion
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
 from .transient.from_motion import collocation_states
@@ -90,8 +90,9 @@ class _MarchedMotion:
                 settled = self._settled_on_finer_mesh(settled)
                 before = path
                 path = self._measured_path(settled)
-                left = max_settled_distance(self.request.accuracy)
-                errors = errors_of_two_integrations(before, path, left)
+                errors = errors_of_two_integrations(
+                    before, path, MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy
+                )
                 if errors.largest_weighted_error <= enough:
                     break
             if in_limit:
@@ -116,7 +117,8 @@ class _MarchedMotion:
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
-        criterion = SettlingCriterion(self.request.accuracy, self.scheme.tolerance)
+        last = nan
+        rate = 0.0
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
@@ -139,11 +141,17 @@ class _MarchedMotion:
             if len(past) <= MARCHING_SETTINGS.returns_per_test:
                 continue
             turns, distance = repetition(list(past))
-            if criterion.is_settled(distance, turns):
+            noise = MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance
+            # Below the noise the quotient of two distances is not the contraction rate per return.
+            if last > noise:
+                rate = min(max(distance, noise) / last, 1.0) ** (turns / MARCHING_SETTINGS.returns_per_test)
+            elif isnan(last):
+                rate = 0.0 if distance <= noise else 1.0
+            last = distance
+            # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
+            if distance <= MARCHING_SETTINGS.settled_distance_ratio * self.request.accuracy * (1 - rate):
                 return SettledMotion(z, turns, step)
-        raise NoCycleFound(
-            MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), criterion.distance)
-        )
+        raise NoCycleFound(MarchedStatus.not_settled, not_settled_text(self.return_count, len(past), last))
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
