@@ -112,7 +112,7 @@ def test_show_states_flutter_as_a_force_too(command):
     command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {arm}}}\n")
     command.solved("a.yaml")
     lines = command("show", "a.h5").stdout.splitlines()
-    assert "smallest at tip radius 5 mm; largest at tip radius 4 mm" in lines
+    assert "smallest flutter load at tip radius 5 mm; largest at tip radius 4 mm" in lines
     (line,) = [line for line in lines if line.startswith("flutter as a force at the tip: ")]
     found = re.fullmatch(
         r"flutter as a force at the tip: ([0-9.]+) to ([0-9.]+) N, "

@@ -98,8 +98,8 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     if form.is_omega_unknown != orbit.form.is_omega_unknown:
         limit = STRESS_FORM_SETTINGS.min_eliminated_drag
         raise Unsolvable(
-            f"no branch can be followed across a rotational drag of {limit:.0e} gamma2 L^2, at which the "
-            "solver changes its unknowns"
+            f"the solver changes its unknowns at a rotational drag of {limit:.0e} gamma2 L^2, which lies "
+            "between the two cycles"
         )
 
 
