@@ -199,5 +199,7 @@ def _oscillation_sentences(found: ThresholdsOverDrags, load: LoadFormatter) -> l
     return (
         []
         if onset is None
-        else [f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."]
+        else [
+            f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."
+        ]
     )
