@@ -68,7 +68,12 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real("tip_x_min", "L", "smallest x of the tip"),
         real("tip_x_max", "L", "largest x of the tip"),
         real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
-        real("least_stretch", "1", "smallest h1 on the cycle; the model holds while it is positive"),
+        real(
+            "least_stretch",
+            "1",
+            "smallest h1 at the nodes and times of the solution; between them 1 - h1 is larger by "
+            "up to 0.2 % in tests; the model holds while h1 is positive",
+        ),
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",
