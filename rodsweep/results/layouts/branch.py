@@ -71,8 +71,8 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real(
             "least_stretch",
             "1",
-            "smallest h1 at the nodes and times of the solution; between them 1 - h1 is larger by "
-            "up to 0.2 % in tests; the model holds while h1 is positive",
+            "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 "
+            "or less also between them; the model holds while it is positive",
         ),
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(

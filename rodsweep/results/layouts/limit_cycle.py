@@ -76,8 +76,8 @@ CYCLE_VARIABLES = (
     real(
         "least_stretch",
         "1",
-        "smallest stretch h1 over a period at the nodes and times of the solution; between them 1 - h1 is "
-        "larger by up to 0.2 % in tests",
+        "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
+        "less also between them; the model holds while it is positive",
     ),
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,
