@@ -214,7 +214,7 @@ def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str,
 
 
 def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
+    """Values of an arm's quantities by name; on grids over quantities, (points,), or () for one value."""
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.arm_axes)
