@@ -18,10 +18,17 @@ from ..arrays import Array
 from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
+SAMPLE_COUNT = 64
+"""Number of samples of K = kappa^2, with equal ratios of successive samples. A ratio of 1.15 suffices for an
+estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
 """Maximum number of arms, and of builds, in the caches of this module."""
+MIN_K_FRACTION = 1e-4
+"""Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
+K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
+"""Ratios K/(F g) of all samples of K = kappa^2, increasing, (SAMPLE_COUNT,)."""
 
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
@@ -93,27 +100,37 @@ def expected_unstable_count(rod: Rod) -> float:
 
 
 def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
-    """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; both are 0 if top is
-    0, or if there is no largest growth rate.
+    """Returns (growth rate, wave number) of the most amplified wave for k3 = gamma2 = 1; the rate is 0 if
+    every wave decays.
 
     top: F g >= 0. relaxation: g nu, negative only for a pulled rod (F < 0). c2, gamma3: shear compliance and
     rotational drag. All arguments are numbers or arrays of one shape; the results have this shape.
     """
+    if not np.min(relaxation) > 0:
+        return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (top, relaxation, c2, gamma3)))
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
     # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w.
     total = c2 + gamma3
     product = c2 * gamma3
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = np.sqrt(product * top**2 + total * relaxation * top + relaxation**2)
-        rate = top**2 / (total * top + 2 * relaxation + 2 * root)
-        wave_number = np.sqrt(np.sqrt(rate * (product * rate + relaxation)))
-        if np.min(relaxation) > 0:
-            return rate, wave_number
-        # Without a maximum at K > 0, the longest wave grows fastest: on the rod, a quarter of a wave.
-        inside = (relaxation > 0) | (product * top + total * relaxation > 0)
-        K = np.minimum((np.pi / 2) ** 2, top)
-        linear = total * K + relaxation
-        spread = np.sqrt(linear**2 + 4 * product * K * (top - K))
-        longest = np.where((product > 0) & (linear < 0), (spread - linear) / (2 * product), 0.0)
-    rate = np.where(inside, rate, longest)
-    return rate, np.where(rate > 0, np.where(inside, wave_number, np.sqrt(K)), 0.0)
+    root = np.sqrt(product * top**2 + total * relaxation * top + relaxation**2)
+    rate = top**2 / (total * top + 2 * relaxation + 2 * root)
+    return rate, np.sqrt(np.sqrt(rate * (product * rate + relaxation)))
+
+
+def _largest_sampled_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
+    """`_largest_growth` by comparison of SAMPLE_COUNT wave numbers. On a pulled rod with g < 0 the growth
+    rate may have a maximum at K = 0 only, or no maximum; arguments: (..., 1)."""
+    product = c2 * gamma3
+    K = top * K_FRACTIONS
+    with np.errstate(all="ignore"):
+        drive = K * (top - K)
+        linear = (c2 + gamma3) * K + relaxation
+        spread = np.sqrt(linear**2 + 4 * product * drive)
+        # The positive root r of product r^2 + linear r = drive. Each of the two formulas is free of
+        # cancellation for one sign of `linear`.
+        slow = np.where(product > 0, (spread - linear) / (2 * product), 0.0)
+        rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
+    rates = np.where(rates > 0, rates, 0.0)
+    largest = rates.max(axis=-1)
+    fractions = K_FRACTIONS[rates.argmax(axis=-1)]
+    return largest, np.where(largest > 0, np.sqrt(top[..., 0] * fractions), 0.0)
