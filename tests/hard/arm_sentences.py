@@ -648,7 +648,7 @@ class ArmTruth:
         told(rf"would flutter at {value}{name}(?:\.| and)", loads)
         told(rf"begins? to beat at {value}", own["hertz"])
         told(rf"straight arm is stable again above {value}", self._loads(own["restabilization"]))
-        told(rf"^From {value} on a disturbance", self._loads(own["onset"]))
+        told(rf"^From {value} on, a disturbed arm", self._loads(own["onset"]))
         told(rf"(?:crushed at|up to) {value}", [self._loads(own["end"])])
         if self.other:
             unit = self._other_unit()

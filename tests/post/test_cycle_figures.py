@@ -277,7 +277,7 @@ GRID7 = (SWEEP[0], *SWEEP[1:4], list(np.arange(1, 8.0)))
         (make_view(SWEEP, SWEPT), {"points": (3, 4, 5, 7)}, "at most 3 points"),
         (make_view(SWEEP, SWEPT), {"points": (3,), "what": "amplitude"}, "--point is given, but"),
         (make_view(TWO, [1, 4]), {}, "no cycle that could be drawn"),
-        (make_view(SWEEP, [-1] * 8), {"what": "amplitude"}, "no amplitude that could be drawn"),
+        (make_view(SWEEP, [-1] * 8), {"what": "amplitude"}, r"no point of fake\.h5 is computed yet"),
         (make_view((*TWO[:4], [1.0]), [0]), {"what": "amplitude"}, "holds one point"),
         (make_view(GRID7, [0] * 28, **FEW), {"what": "amplitude"}, "gives 7 lines .* choose lines with --at"),
         ([two_cycles(), two_cycles()], {"what": "cycle"}, "only amplitudes of several files"),

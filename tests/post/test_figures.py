@@ -414,7 +414,7 @@ def test_a_bar_is_not_stored_beyond_a_full_list_of_crossings(command, monkeypatc
     colours = [to_hex(bar.get_facecolor()).upper() for bar in figure.axes[0].patches]
     assert colours == [CLASS_COLOURS[word] for word in ("monotone", "not stored")]
     entries = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
-    assert entries[:2] == ["monotone", "not stored"]
+    assert entries[:2] == ["monotone decay", "not stored"]
 
 
 def test_list_of_rods_has_a_bar_for_each_in_its_order(command, monkeypatch):

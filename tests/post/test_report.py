@@ -165,7 +165,9 @@ def test_a_page_without_a_computed_point_says_so(command):
     write_report([replace(view, variables=variables)], command.directory / "p.html")
     page = read_page(command.directory / "p.html")
     assert page.texts("p", class_="lead") == ["no rod is computed yet"]
-    assert any(text.startswith("No figure: thresholds.h5 holds no") for text in page.texts("p"))
+    assert any(
+        text.startswith("No figure: no point of thresholds.h5 is computed yet") for text in page.texts("p")
+    )
 
 
 def test_points_that_failed_are_counted_with_their_reason_and_place(command):
