@@ -12,7 +12,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.post.rod_portrait.picture import portrait_figure
-from rodsweep.results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY
+from rodsweep.results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_VARIABLES
 from rodsweep.tasks import rod_portrait
 from rodsweep.tasks.rod_portrait import cycle_forces
 
@@ -90,7 +90,7 @@ def test_the_paragraph_of_an_arm_judges_each_cycle_at_its_own_load(of_arm):
     """The model may apply at flutter and not at a cycle far above flutter."""
     effect = NEGLECTED_EFFECTS.index("Reynolds_number")
     verdicts = [(0, -1, 0.05), (1, effect, 0.4), (2, effect, 1.4)]
-    names = [variable.name for variable in VALIDITY]
+    names = [variable.name for variable in VALIDITY_VARIABLES]
 
     def judged(view, verdict):
         one = {

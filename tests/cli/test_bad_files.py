@@ -18,7 +18,7 @@ from faults import small
 from faults.damages import (
     ADDITIONS,
     BYTES,
-    JOURNAL_GLOB,
+    JOURNALS,
     MISFITS,
     ODD_NUMBERS,
     OF_CHAINS,
@@ -184,10 +184,10 @@ def test_damaged_journal_is_used_as_far_as_it_is_whole(results, tmp_path, name):
 @pytest.mark.parametrize("name", few(["limit_cycle", "list"], 1), indirect=True)
 def test_odd_things_among_the_journals_do_no_harm(results, tmp_path, name):
     complaints = []
-    for oddity in OF_CHAINS if name == "limit_cycle" else list(JOURNAL_GLOB)[:: 1 if MORE > 1 else 2]:
+    for oddity in OF_CHAINS if name == "limit_cycle" else list(JOURNALS)[:: 1 if MORE > 1 else 2]:
         path = results.copied(name, "half", tmp_path / "a")
         journal = Path(f"{path}.journal")
-        JOURNAL_GLOB[oddity](journal)
+        JOURNALS[oddity](journal)
         shown = results.run(path.parent, "show", "c.h5")
         ended = results.run(path.parent, "run", "c.yaml", seconds=LONG)
         why = shown.fault or ended.fault
