@@ -41,13 +41,13 @@ BROKEN_SPECTRUM = f"""
 def break_it():
     import rodsweep.solve.spectrum.search as search
 
-    class Broken(search.Search):
+    class Broken(search.SpectrumSearch):
         def outcome(self):
             if self.problem.rod.F == 20:
                 raise StopIteration("a bug")
             return super().outcome()
 
-    search.Search = Broken
+    search.SpectrumSearch = Broken
 """
 BROKEN_CYCLE = f"""
 {WHEN_SOLVERS_ARE_LOADED}
@@ -163,13 +163,13 @@ def test_bug_outside_of_points_has_a_status_of_its_own(command):
 def test_in_python_a_sweep_warns_and_a_rod_raises(monkeypatch):
     from rodsweep.solve.spectrum import search
 
-    class Broken(search.Search):
+    class Broken(search.SpectrumSearch):
         def outcome(self):
             raise KeyError("a bug")
 
     asked = {"F": [10, 20], "k1": 1e4, "k2": 1e4, "gamma3": 1e-4}
     rs.sweep("spectrum", **asked)  # loads what is loaded at first use
-    monkeypatch.setattr(search, "Search", Broken)
+    monkeypatch.setattr(search, "SpectrumSearch", Broken)
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         data = rs.sweep("spectrum", **asked)
