@@ -83,7 +83,7 @@ def test_figure_3(command):
 
 
 def test_the_onset_of_a_soft_rod_does_not_rise_with_inverse_drag(command):
-    """Beside the paper's Fig. 3: for k2 below about 25 the onset has a minimum over gamma3."""
+    """Beside the paper's Fig. 3: for k2 below about 34 the onset has a minimum over gamma3."""
     axes = "parameters.k2=5", "parameters.gamma3=[0.01, 0.5, 10]"
     with run(command, "fig3", *axes) as file:
         small, middle, large = file["F_onset"][0, 0]

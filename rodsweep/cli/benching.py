@@ -27,9 +27,9 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     """Runs benchmarks; writes `output` (Markdown) and, in the same folder, one file .h5 with the numbers of
     all studies, and a figure _STUDY.png for each study that can be drawn.
 
-    what: name of the study, None for all studies. quick: whether fewer rounds are run. directory: folder of
-    the peers, None for the folder `benchmarks` of the running checkout. Raises EnvironmentIncomplete if a
-    package of the benchmark is missing.
+    what: name of the study, None for all studies. quick: whether fewer rounds are run, on fewer rods,
+    sizes or settings. directory: folder of the peers, None for the folder `benchmarks` of the running
+    checkout. Raises EnvironmentIncomplete if a package of the benchmark is missing.
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study

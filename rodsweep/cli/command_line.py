@@ -137,7 +137,7 @@ def schema() -> None:
 
 @commands.command()
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
-@click.option("--quick", is_flag=True, help="Fewer rounds, for a first impression.")
+@click.option("--quick", is_flag=True, help="Fewer rounds, rods and settings, for a first impression.")
 @click.option(
     "-o",
     "--output",

@@ -4,6 +4,7 @@ Times are for a single core like the core described in docs/performance.md.
 """
 
 import math
+import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -130,9 +131,10 @@ def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) 
     if of_arms or not indices.size:
         return lines
     values = points.values_of(indices)
-    exchanges = np.minimum(F_max, values["k1"]) ** 2 / np.asarray(values["k2"])
-    more = points.count * 1e-3 * SOFT_SEARCH_MS * float(np.mean(exchanges))
-    return replace(lines, seconds=lines.seconds + more)
+    with np.errstate(over="ignore"):
+        exchanges = np.minimum(F_max, values["k1"]) ** 2 / np.asarray(values["k2"])
+        more = points.count * 1e-3 * SOFT_SEARCH_MS * float(np.mean(exchanges))
+    return replace(lines, seconds=min(lines.seconds + more, sys.float_info.max))
 
 
 def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:

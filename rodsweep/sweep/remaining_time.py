@@ -33,10 +33,10 @@ class RemainingTimeEstimator:
         """(time of the last report, remaining time reported then)."""
 
     def remaining_seconds(self, done: int, now: float, begun: float = 0.0) -> float | None:
-        """Remaining time, in s, when `done` points are finished at the time `now`.
+        """Remaining time, in s, when `done` points are finished at the time `now`, smoothed over the calls;
+        None if too little work is done for an estimate.
 
-        begun: sum of the fractions done of unfinished points. None if too little work is done for an
-        estimate.
+        now: in s since the start of the sweep. begun: sum of the fractions done of unfinished points.
         """
         if done == self.total:
             return 0.0

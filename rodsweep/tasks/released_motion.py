@@ -65,10 +65,10 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
 
 @exclusive_solve
 def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None:
-    """Motion of the only rod of a job of the task limit_cycle after the release of its tip.
+    """Motion of the only rod of a job of the task limit_cycle after the release of its tip; None if
+    the integration fails before its first step.
 
-    tip: position (x, y) of the tip before the release, in L. None if the integration fails before its first
-    step.
+    tip: position (x, y) of the tip before the release, in L.
     """
     from ..solve.cycle.limit_cycle import solve_cycle
 

@@ -44,8 +44,8 @@ SolveJob = Callable[[Job], View]
 class PortraitRequest:
     """Request for a portrait.
 
-    rod: the rod. F_max: largest force. accuracy: relative accuracy; None for BRANCH_ACCURACY on branches, and
-    for the default of every other task.
+    rod: the rod. F_max: largest force. accuracy: relative accuracy of all tasks; if None, branches have the
+    accuracy BRANCH_ACCURACY and every other task has its default.
     """
 
     rod: DescribedRod

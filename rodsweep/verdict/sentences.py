@@ -196,8 +196,6 @@ def _oscillation_sentences(found: ThresholdsOverDrags, load: LoadFormatter) -> l
     found.
     """
     onset = found.first_forces(ChangeKind.onset)
-    return (
-        []
-        if onset is None
-        else [f"From {load.range_of_forces_text(onset)} on a disturbance swings as it dies away."]
-    )
+    if onset is None:
+        return []
+    return [f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."]

@@ -447,9 +447,9 @@ def _flutter_answer(view, page, told, start, chosen, scales):
     in_newton = []
     if view.task == "thresholds" and force_unit(view) == "pressure_scale":
         forces = loads * scales["force_scale"] / scales["pressure_scale"]
-        words = "flutter as a force at the tip: "
-        told(rf"{words}{value}(?:$|, )", 0, forces[chosen])
-        in_newton = _extremes(view, page, rf"{start}{words}.*, smallest", forces, chosen)
+        told(rf"flutter{some} as a force at the tip: {value}(?:$|, )", 0, forces[chosen])
+        before = rf"{start}flutter as a force at the tip: .*, smallest"
+        in_newton = _extremes(view, page, before, forces, chosen)
     numbers = {"flutter": loads, "its frequency": hertz}
     found = in_newton + _drag_sentences(view, page, start, chosen, numbers)
     return found + _extremes(view, page, rf"{start}smallest flutter load", loads, chosen)

@@ -62,7 +62,7 @@ MANY = 30
 """Modes among which that of a curve is, though others grow there."""
 ROUNDING = 1e-11
 """Relative error of an eigenvalue that is solved alone."""
-BETWEEN_NODES = 1e-3
+BETWEEN_NODES = 4e-3
 """Error of the least stretch, taken at nodes, in units of its distance from 1. It adds to that of extrema."""
 FOLD_BESIDE, FOLD_WIDTH = 1e-5, 0.05
 """Relative distances from a fold of a curve at which, and within which, changes are counted."""

@@ -330,5 +330,5 @@ def test_check_of_a_relative_load_and_of_a_tube_starts_no_petsc(tmp_path):
 
 
 def test_the_range_of_drag_is_no_drag_of_one_arm():
-    with pytest.raises(rs.InputError, match="drag = 'range' is an axis of sweeps"):
+    with pytest.raises(rs.InputError, match="drag = 'range' is for sweeps over all estimates"):
         rs.Arm(**SILICONE, drag="range").k1  # noqa: B018

@@ -187,8 +187,8 @@ def plot(
 ) -> Picture:
     """Draws and returns the figure for the task of `data`: a Dataset, an Answer or a result file. Several
     results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write. roots,
-    what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError if
-    there is nothing to draw.
+    what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError for
+    invalid options and if there is nothing to draw.
     """
     _require_allowed_look(look)
     _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))

@@ -76,8 +76,8 @@ class SettlingMethod:
 
 def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
-    methods. at: reference cycle at F = 50. every: contenders of the race WAITING_RACE. rounds: number of
-    timed rounds.
+    methods with its explanation. at: reference cycle at F = 50. every: contenders of the race WAITING_RACE.
+    rounds: number of timed rounds.
     """
     waiting = {
         method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()
@@ -95,7 +95,8 @@ def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int
 
 
 def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
-    """Table of the methods `waits`, with returns, times and errors. raced: times of each method."""
+    """Table in Markdown, after a paragraph that explains it: returns, time and error of each method in
+    `waits`. raced: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "

@@ -107,8 +107,8 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 
 
 def time_at_error_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the race FOLLOWING_RACE at equal error: time of every method, interpolated at the error
-    TARGET_ERROR."""
+    """Table of the race FOLLOWING_RACE at equal error, after a sentence that explains it: time of every
+    method, interpolated at the error TARGET_ERROR."""
     at = {}
     for (method,), own in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in own]

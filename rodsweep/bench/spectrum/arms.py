@@ -94,7 +94,7 @@ def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measure
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR. rounds: number of timed rounds.
+    TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds.
     """
     rows = [
         {

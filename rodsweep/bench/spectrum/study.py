@@ -160,8 +160,8 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
 
 
 def hard_rod_table(measurements: Sequence[Measurement]) -> str:
-    """Table of hard rods: the smallest error of every method, and the time of the method for at most ten
-    times this error."""
+    """Table of hard rods, after a sentence that explains it: the smallest error of every method, and the time
+    of the method for at most ten times this error."""
     rows = [
         {
             "method": method,

@@ -99,8 +99,8 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measu
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the sweeps, with one line per pair of grids. measurements: as returned by
-    `measure_followed_sweeps`."""
+    """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it. measurements:
+    as returned by `measure_followed_sweeps`."""
     rows = []
     for one, other in zip(measurements[::2], measurements[1::2], strict=True):
         gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]

@@ -188,7 +188,7 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
 
 
 def instant_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the sweeps with the instant solver: complete, killed and resumed."""
+    """Explained table of the sweeps with the instant solver: complete, killed and resumed."""
     return (
         "The command with an instant solver that returns random eigenvalues: all time is scheduling and "
         "storing. Next, a sweep killed at the last point on one rank, and resumed:\n\n"
@@ -203,7 +203,7 @@ def instant_table(measurements: Sequence[Measurement]) -> str:
 
 
 def growth_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the time, memory and file size of an additional point, between successive sizes of sweeps."""
+    """Explained table of the time, memory and file size of a further point, between sizes of sweeps."""
     rows = []
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:

@@ -52,7 +52,8 @@ def build_of(arm: "ArmSection") -> Build:
     """Constitutive law of all arms, with the profile of the first arm to which the rod model applies; without
     a profile if there is no such arm.
 
-    Raises ValueError if the arms of a grid of parameters have different profiles.
+    Raises ValueError if the law does not allow the section, or if the arms of a grid of parameters have
+    different profiles.
     """
     try:
         alike = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)

@@ -29,7 +29,7 @@ MAX_DEPTH = 20
 
 
 def read_config_text(path: Path) -> str:
-    """Text of a UTF-8 file of at most MAX_CONFIG_BYTES bytes; InputError if the file cannot be read."""
+    """Text of a UTF-8 file of at most MAX_CONFIG_BYTES bytes; InputError for any other file."""
     where = printable_name(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):

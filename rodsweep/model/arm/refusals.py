@@ -47,8 +47,8 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
         raise InputError(f"poisson = {text:.60} is not a number above -1 and up to 0.5")
     if arm.drag == DRAG_RANGE_NAME:
         raise InputError(
-            f"drag = {arm.drag!r} is an axis of sweeps; for one arm choose one of {', '.join(DRAG_NAMES)}; "
-            "the report states the range"
+            f"drag = {arm.drag!r} is for sweeps over all estimates; for one arm choose one of "
+            f"{', '.join(DRAG_NAMES)}; the report states the results for all estimates"
         )
     if arm.drag not in DRAG_NAMES:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")

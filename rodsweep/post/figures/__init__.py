@@ -98,8 +98,9 @@ def draw(
     figure.
 
     look: appearance. shapes: function that computes the shapes of cycles if the file has no shapes. keep:
-    callback for the finished figure; if given, no file is written. choices: content. Raises InputError if the
-    files contain no result that can be drawn.
+    callback for the finished figure; if given, no file is written. choices: content. Raises InputError for
+    options that do not fit the files and for files without a result that can be drawn, EnvironmentIncomplete
+    if `output` cannot be written or a program of the style, such as LaTeX, fails.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":

@@ -66,7 +66,8 @@ def draw_thresholds(request: FigureRequest) -> str:
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
-    sentence. Raises InputError if the files do not vary in one common parameter only.
+    sentence. Raises InputError for too many files, for unsuitable options, and unless the files have one task
+    and vary in one common parameter only.
     """
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()

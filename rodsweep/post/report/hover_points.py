@@ -58,7 +58,8 @@ class HoverSeries:
 
 
 def hover_points(figure: Figure) -> list[HoverPoint]:
-    """Texts for the values in a figure, in the order of drawing. The layout of the figure must be final."""
+    """Texts for the values in a figure, in the order of drawing; series of more than MAX_UNTHINNED_POINTS
+    values are thinned, to about MAX_POINTS values together. The layout of the figure must be final."""
     words = _legend_words(figure)
     found = [series for axes in figure.axes for series in _panel_series(axes, words)]
     long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)

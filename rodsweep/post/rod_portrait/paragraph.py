@@ -7,17 +7,15 @@ from math import isfinite
 
 import numpy as np
 
-from ...model.arm.neglected import Validity
-from ...results.layouts.arm import VALIDITY_VARIABLES
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
-from ..summary.arm.validity_sentences import plane_lines, validity_caveat, validity_sentence
 from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.ranges import rounded_text
 from ..summary.thresholds import ENDED_EARLY
+from .arm_sentences import arm_sentences, cycle_caveat
 from .results import RodResults
 from .units import PortraitUnits
 
@@ -71,26 +69,7 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
         )
     yield f"The {kind} with {results.rod.description} {searched}."
     if results.rod.arm:
-        yield from _arm_sentence(results)
-
-
-def _arm_sentence(results: RodResults) -> Iterator[str]:
-    """Yields sentences on the units of an arm, the validity of the model at flutter and on the branches of
-    cycles, and the plane of motion."""
-    view = results.views["thresholds"]
-    quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
-    yield (
-        f"F = 1 stands for {quantities['force_scale']:.6g} N, or a pressure of "
-        f"{quantities['pressure_scale']:.6g} Pa on the face of its tip, and tau2 for "
-        f"{quantities['tau2']:.6g} s."
-    )
-    validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
-    when = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
-    branch = results.views.get("branch")
-    caveat = validity_caveat(branch.variables) if branch else ""
-    on_branches = [f"somewhere on its branches of cycles {caveat}"] if caveat else []
-    sentences = [validity_sentence(validity, when), *on_branches, *plane_lines(view.quantities)]
-    yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
+        yield from arm_sentences(results)
 
 
 def _threshold_sentences(results: RodResults) -> Iterator[str]:
@@ -238,11 +217,9 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
             )
         )
         unstable = ", unstable," if word == "unstable" else ""
-        is_outside = v.get("model_applies") == Validity.does_not_apply
-        caveat = validity_caveat(view.variables) if is_outside else ""
         clauses.append(
             f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"
-            f"{f' ({caveat})' if caveat else ''}"
+            f"{cycle_caveat(view)}"
         )
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."

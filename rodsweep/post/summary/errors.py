@@ -40,7 +40,7 @@ COMPLEX_VARIABLES = ("landau", "growth_slope")
 """Complex variables, stored as real and imaginary part. The stored error is relative to the modulus."""
 EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose stored error is the absolute error divided by tip_y_max."""
-MAX_DIP_BETWEEN_NODES = 1e-3
+MAX_DIP_BETWEEN_NODES = 4e-3
 """Upper bound of (smallest nodal h1 - smallest h1 between nodes)/|1 - h1|."""
 CYCLE_POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy

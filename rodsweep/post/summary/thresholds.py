@@ -112,8 +112,9 @@ def unknown_beyond_clause(view: View, F: float) -> str:
 
 
 def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
-    """Absolute errors of one crossing per point, (points,), from the list of crossings. F: force of the
-    crossing, (points,). at: variable with the forces of the list.
+    """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
+    not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
+    at: variable with the forces of the list.
     """
     table, errors = map(view.by_point, (at, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)

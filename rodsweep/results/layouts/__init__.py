@@ -39,7 +39,7 @@ together, by task."""
 
 
 def layout_of(config: dict[str, Any]) -> Layout:
-    """Layout of the result file for a resolved config of any task."""
+    """Layout of the result file for a resolved config of any task; raises KeyError for an unknown task."""
     task = config["task"]
     if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")

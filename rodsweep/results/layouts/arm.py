@@ -85,7 +85,7 @@ NEGLECTED_EFFECTS = (
 )
 """Effects that the model neglects, named as in `rodsweep.model.arm.neglected` with underscores for blanks."""
 VALIDITY_NOT_KNOWN = -1
-"""Value of the variable model_applies where the solver may have missed an unstable mode or a cycle."""
+"""Value of model_applies where the solver may have missed an unstable mode or a cycle."""
 VALIDITY_VARIABLES = (
     word(
         "model_applies",
@@ -164,12 +164,10 @@ def si_variable(
     variable: Variable, values: Array, quantities: Mapping[str, Array], as_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the quantities of the arm by name, () or (n,) each. as_force: whether the arm's load is a
-    force.
-    """
+    quantities: of the arm by name, () or (n,) each. as_force: whether the arm's load is a force."""
     si = si_unit_of(variable, as_force)
-    si_variable = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
-    return si_variable, values * si.scale(quantities)
+    made = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
+    return made, values * si.scale(quantities)
 
 
 def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
@@ -216,7 +214,7 @@ def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str,
 
 
 def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -> dict[str, NDArray[Any]]:
-    """Values of an arm's quantities by name; for a grid over quantities, at every point, (points,)."""
+    """Values of an arm's quantities by name; on grids over quantities, (points,), or () for one value."""
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.arm_axes)

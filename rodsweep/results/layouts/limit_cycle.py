@@ -73,7 +73,12 @@ CYCLE_VARIABLES = (
         real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
         real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
     ),
-    real("least_stretch", "1", "smallest stretch h1 along the rod over a period"),
+    real(
+        "least_stretch",
+        "1",
+        "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
+        "less also between them; the model holds while it is positive",
+    ),
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,
     SECONDS,

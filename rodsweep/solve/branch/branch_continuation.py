@@ -20,7 +20,6 @@ from .computing_time import fraction_done
 from .mirror_image_end import end_at_mirror_image, reaches_mirror_image
 from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
 from .special.detection import special_points_between
-from .special.least_stretch import least_stretch_of_cycle
 from .special.locating import special_point_between
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
@@ -146,7 +145,7 @@ def _append_next_cycle(
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
         # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
-        if least_stretch_of_cycle(end) <= 0:
+        if end.cycle.measures.least_stretch <= 0:
             return BranchEnd(
                 special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
             )

@@ -123,9 +123,9 @@ def solve_on_sufficient_mesh(
     point: BranchCycle, accuracy: float, condition: BorderCondition | None = None
 ) -> BranchCycle:
     """The cycle `point` with measured errors within the relative accuracy, on a mesh chosen for this
-    accuracy; raises Unsolvable if no allowed mesh suffices. A sufficient mesh is replaced only by a much
-    cheaper mesh. condition: equation that defines the same cycle on every mesh; by default the condition that
-    its arc length is unchanged."""
+    accuracy; raises Unsolvable if no allowed mesh suffices, or if no cycle is found on a mesh. A sufficient
+    mesh is replaced only by a much cheaper mesh. condition: equation that defines the same cycle on every
+    mesh; by default the condition that its arc length is unchanged."""
     condition = condition or point.arc_length_condition(0.0)
     finest = False
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):

@@ -180,8 +180,8 @@ def orbit_near_prediction(
     predicted: Orbit, tolerance: float, workspace: NewtonWorkspace, name: str
 ) -> ConvergedOrbit:
     """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to a
-    relative tolerance; raises Unsolvable if the orbit is farther from `predicted` than
-    CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
+    relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
+    `predicted` than CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
     found = newton(predicted, tolerance, workspace, name)
     if _prediction_error(predicted, found) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its prediction")

@@ -40,10 +40,10 @@ from .transient.returns import (
     RETURN_SETTINGS,
     not_settled_text,
     repetition,
+    return_limit,
     run_failure,
     section_crossings,
     tip_angle_row,
-    until_returns,
 )
 
 
@@ -127,7 +127,7 @@ class _MarchedMotion:
                 * MARCHING_SETTINGS.returns_per_test
                 * self.clock.time_per_return,
                 step,
-                until_returns(row, z, MARCHING_SETTINGS.returns_per_test),
+                return_limit(row, z, MARCHING_SETTINGS.returns_per_test),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
@@ -182,7 +182,7 @@ class _MarchedMotion:
     def _measured_path(self, settled: SettledMotion) -> CyclePath:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.returns_per_period + 2
-        limit = until_returns(tip_angle_row(self.beam), settled.state, returns)
+        limit = return_limit(tip_angle_row(self.beam), settled.state, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
         duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)

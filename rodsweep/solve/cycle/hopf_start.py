@@ -163,8 +163,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     """Approximate orbit of the rod in `form`, on the branch from the Hopf point `hopf` below the rod's force,
     on a mesh that is chosen here.
 
-    workspace: memory of Newton's matrices. Raises Unsolvable if the branch starts towards smaller forces or
-    cannot be followed.
+    workspace: memory of Newton's matrices. Raises Unsolvable if no normal form is found, or if the branch
+    starts towards smaller forces or cannot be followed.
     """
     rod = form.rod
     at = replace(rod, F=hopf.F)
@@ -187,9 +187,9 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """Approximate orbit, by the normal form, to which a motion from the leading mode converges near a Hopf
     point.
 
-    w: leading eigenvalue of the straight rod. amplitude: tip's y at the start, in L. Raises Unsolvable if the
-    normal form is not valid: no Hopf point is near, the start is too large, a second mode may grow, or the
-    Hopf point is subcritical.
+    w: leading eigenvalue of the straight rod. amplitude: tip's y at the start, in L. Raises Unsolvable if w
+    is not a growing eigenvalue of a pair, if no normal form is found, or if the normal form is not valid: no
+    Hopf point is near, the start is too large, a second pair may grow, or the Hopf point is subcritical.
     """
     if not (w.real > 0 and w.imag > 0):
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")

@@ -150,7 +150,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
 
-    Raises Unsolvable if the mesh has no eigenvalue equal to w, or too many nodes, as in `normal_form_on`.
+    Raises Unsolvable for the reasons of `normal_form_on`.
     """
     return normal_form_on(elements_for_landau_coefficient(rod, w, accuracy), rod, w, accuracy)
 
@@ -188,7 +188,8 @@ def normal_form_on(elements: Elements, rod: Rod, w: complex, accuracy: float) ->
     """Normal form of the eigenvalue w of `rod` on the mesh `elements`.
 
     Raises Unsolvable if the mesh has no eigenvalue equal to w within the larger of the relative accuracies
-    `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, or if the mesh has too many nodes.
+    `accuracy` and `NORMAL_FORM_SETTINGS.converged_distance`, if the mesh has too many nodes, or for the
+    reasons of `normal_form`.
     """
     nodes = elements.node_count
     limit = (

@@ -52,9 +52,8 @@ def converged_modes(
     rod: Rod, eigenvalues: Complex, points: Array, wave: float, accuracy: float
 ) -> ModeVectors | None:
     """Modes of `eigenvalues`, (modes,), at `points` in [0, 1], (n,), from the mesh with the smallest error
-    estimate. wave: wave number that the mesh must resolve. accuracy: requested relative accuracy, at which
-    the refinement ends. None if even the second mesh has more than `ModeMeshSettings.max_unknowns`
-    unknowns."""
+    estimate; None if even the second mesh has more than `ModeMeshSettings.max_unknowns` unknowns. wave: wave
+    number that the mesh must resolve. accuracy: requested relative accuracy, at which the refinement ends."""
     mesh = mesh_for(rod, wave, mesh_accuracy_for_modes(accuracy))
     gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
     coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)

@@ -120,8 +120,9 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 @compiled_for_vectors
 def power_means_and_least_stretch(stages: Array, weights: Array, p: SemidiscreteEquations) -> OrbitMeans:
-    """Means and rms deviations of the powers over a period, and the smallest h1. stages: states at the
-    stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of the orbit."""
+    """Means and rms deviations of the powers over a period, and the smallest h1 at the nodes and stages.
+    stages: states at the stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of
+    the orbit."""
     K, s, n = stages.shape
     flat = stages.reshape(K * s, n)
     nodes = len(p.node_matrices.weights) - 1

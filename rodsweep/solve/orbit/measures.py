@@ -29,6 +29,7 @@ from .compiled_measures import (
     tip_path,
     write_powers,
 )
+from .least_stretch import least_stretch_between_nodes
 from .orbit import Orbit
 
 
@@ -40,7 +41,8 @@ class Measures:
     |theta|, in rad, which is equal for a cycle and its mirror image.
     harmonic_amplitude: amplitudes of the harmonics of the tip's y from the first, (harmonics,), in L.
     injection_..., dissipation_...: mean of the power, and rms of its fluctuation, in k3/(L tau2).
-    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes.
+    energy_imbalance: mean injection/mean dissipation - 1. least_stretch: smallest h1 at the nodes, and
+    where it is small also between the nodes (`least_stretch_between_nodes`).
     """
 
     period: float = nan
@@ -190,5 +192,10 @@ def measures_of(path: CyclePath) -> Measures:
         tip_y_min=path.tip_y_min,
         harmonic_amplitude=np.abs(y[1:]),
         energy_imbalance=mean.injection_mean / mean.dissipation_mean - 1,
-        **mean._asdict(),
+        **(mean._asdict() | {"least_stretch": least_stretch_between_nodes(path, mean.least_stretch)}),
     )
+
+
+def least_stretch_of_orbit(orbit: Orbit) -> float:
+    """Smallest h1 of an orbit over rod and period, also between the nodes where it is small."""
+    return least_stretch_between_nodes(CyclePath(orbit), orbit.form.least_stretch(orbit.all_states))

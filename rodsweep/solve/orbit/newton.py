@@ -149,9 +149,9 @@ def multipliers_and_trivial_error(found: ConvergedOrbit) -> tuple[Complex, float
 
 
 def largest_multiplier_difference(multipliers: Complex, others: Complex) -> float:
-    """Error of the largest multiplier, from the multipliers on two meshes: the distance of `multipliers[0]`
-    from the nearest of `others`, or the difference of the two largest moduli, whichever is larger; 0 if a
-    list is empty.
+    """Absolute error of the largest multiplier, from the multipliers on two meshes: the distance of
+    `multipliers[0]` from the nearest of `others`, or the difference of the two largest moduli, whichever is
+    larger; 0 if a list is empty.
 
     multipliers, others: by descending modulus, (m,) and (l,). Multipliers with the same index are not
     compared, because two multipliers may be in a different order on another mesh. The moduli alone may agree

@@ -72,8 +72,8 @@ class Orbit:
 
     @property
     def equidistant_states(self) -> Array:
-        """States at the starts of all intervals except the last, which are equidistant in time, (K - 1,
-        n)."""
+        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the solved
+        duration into K - 1 equal parts."""
         return self.states_at_interval_starts[:-1]
 
     @property

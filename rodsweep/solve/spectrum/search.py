@@ -206,16 +206,15 @@ class SpectrumSearch:
         if self.best is not None:
             return _best_spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
-            lost = self.disagreement
-            number, found = lost.count.number, lost.found_count
-            counted = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
-            return failed_spectrum(SpectrumStatus.modes_missing, self.request, counted)
+            number, found = self.disagreement.count.number, self.disagreement.found_count
+            why = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
+            return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         if self.is_leader_unresolved:
             why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
         most = RESOLUTION_SETTINGS.max_unknowns
-        unresolved = f"no mesh of at most {most} unknowns resolves the requested modes"
-        return failed_spectrum(SpectrumStatus.failed, self.request, self.last_failure or unresolved)
+        why = self.last_failure or f"no mesh of at most {most} unknowns resolves the requested modes"
+        return failed_spectrum(SpectrumStatus.failed, self.request, why)
 
 
 def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:

@@ -164,7 +164,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     line: parameter that varies along the row.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
-    own = {f"cycle_special_{line}": "at", "cycle_special_tip_y_max_error": "size_error"}
+    own = {f"cycle_special_{line}": "at"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=own)
         for point in result.special_points

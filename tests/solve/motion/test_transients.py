@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from known_cycles import make_view
 from rods import rod_of
+from rodsweep.solve.cycle.transient.trace import interpolated_between_steps
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from surveyed import survey_only
@@ -89,6 +90,32 @@ def test_a_stored_motion_is_that_on_a_finer_mesh(rod, amplitude, error, monkeypa
     finer = solve_cycle(rod, request).transient
     time = stored[0][stored[0] <= finer[0][-1]]
     assert np.abs(stored[2][: len(time)] - CubicSpline(finer[0], finer[2])(time)).max() < error
+
+
+def test_a_stored_decay_has_the_rate_of_the_leading_mode_between_time_steps_too():
+    """Cubic interpolation between the growing steps of the decay is wrong by 1e-3."""
+    c = followed(10.0)
+    assert c.linear_frequency == 0
+    time, _, y, _ = c.transient
+    late = (time > 2 / abs(c.linear_growth_rate)) & (np.abs(y) > 1e-8)
+    assert late.sum() > 100
+    amplitude = y[late] * np.exp(-c.linear_growth_rate * time[late])
+    assert amplitude.max() < amplitude.min() * (1 + 5e-4)
+
+
+@pytest.mark.parametrize(("count", "degree"), [(2, 3), (3, 5), (9, 5)])
+def test_polynomials_are_interpolated_exactly(count, degree):
+    rng = np.random.default_rng(count)
+    steps = np.concatenate(([0.0], np.cumsum(rng.uniform(0.1, 1.0, count - 1))))
+    motions = [np.polynomial.Polynomial(rng.normal(size=degree + 1)) for _ in range(3)]
+    times = np.linspace(0.0, steps[-1], 50)
+    values, rates = (
+        np.array([f(steps) for f in motions]),
+        np.array([f.deriv()(steps) for f in motions]),
+    )
+    expected = np.array([f(times) for f in motions])
+    found = interpolated_between_steps(steps, values, rates, times)
+    assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max()
 
 
 def test_a_stored_motion_has_no_jumps():

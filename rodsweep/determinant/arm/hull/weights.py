@@ -36,8 +36,8 @@ def least_squared_norm(alphas: Array, local: Array, push: float) -> float:
 
 @compiled
 def trial_constant_weights(local: Array) -> Array:
-    """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): from the smallest to the
-    largest |g/nu| along the arms, and 1.
+    """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): a geometric
+    progression from the smallest to the largest |g/nu| along the arms, none below `min_weight`, and 1.
 
     local: coefficients, (6, n, pieces, points).
     """

@@ -40,7 +40,7 @@ def varied_parameters(view: View) -> list[str]:
 
 def point_map(view: View) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
-    do not form a grid over two parameters.
+    do not form a grid over two parameters with at least two finite values each.
     """
     varied = varied_parameters(view)
     if len(varied) != 2:

@@ -12,14 +12,13 @@ from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
-from .arm import errors_in_si, load_kind, range_in_unit, region_of_arms
+from .arm import errors_in_si, load_kind, range_in_unit
 from .drag_range import arms_of_drags, drag_lines
+from .extreme_loads import ANSWER_DIGITS, extreme_arms_text, flutter_force_line
 from .validity_sentences import plane_lines, validity_sentence
 
 Lines = list[str]
 """Lines of text."""
-ANSWER_DIGITS = 3
-"""Largest number of significant digits in an answer; a number with a large error has fewer digits."""
 FAILED_STATUS = "failed"
 """Status of a point whose solve failed."""
 NO_CYCLE_WORDS = {
@@ -93,7 +92,7 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     load = load_kind(view)
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
-    lines = [*_extreme_arm_lines(view, rods, hopf), *_flutter_force_line(view, rods)]
+    lines = [*_extreme_arm_lines(view, rods, hopf), *flutter_force_line(view, rods)]
     onset = v[f"{load}_onset"][rods]
     back = v[f"{load}_restabilization"][rods]
     if len(hopf) > 1 and np.isfinite(onset).any():
@@ -104,37 +103,12 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, hopf, end, rate), lines
 
 
-def _flutter_force_line(view: View, rods: np.ndarray) -> Lines:
-    """Line with the range of the flutter forces at the tip, and with their extreme arms; empty if the load is
-    a force, and if no arm flutters. rods: mask of the points with a result.
-
-    Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
-    """
-    forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
-    if load_kind(view) == "force" or not np.isfinite(forces).any():
-        return []
-    extremes = _extreme_arms_text(view, rods, forces)
-    text = range_text(view, forces, "N")
-    return [f"flutter as a force at the tip: {text}{f', {extremes}' if extremes else ''}"]
-
-
-def _extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray) -> str:
-    """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
-    loads of the points in the mask `rods`, (n,)."""
-    if np.isfinite(loads).sum() < 2:
-        return ""
-    places = np.flatnonzero(rods)
-    ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
-    least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
-    return "" if least == most else f"smallest at {least}; largest at {most}"
-
-
 def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
     """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
     fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return []
-    extremes = _extreme_arms_text(view, rods, loads)
+    extremes = extreme_arms_text(view, rods, loads)
     lines = [extremes.replace("smallest", "smallest flutter load", 1)] if extremes else []
     places = np.flatnonzero(rods)
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}

@@ -11,6 +11,7 @@ from ....solve_progress import SolvePosition, report
 from ....wording import counted
 from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.measures import least_stretch_of_orbit
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -18,7 +19,6 @@ from ..bordered.matrix import BorderedMatrix
 from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from .curve_start import first_point_of_curve
 from .cycle_family import CycleFamily
-from .least_stretch import least_stretch_of_orbit
 from .solved_curve_point import (
     ALONG_BRANCH,
     SolvedPoint,

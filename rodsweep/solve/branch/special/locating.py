@@ -13,6 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ...continuation.follower import zero_along_step
+from ...orbit.least_stretch import least_stretch
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
@@ -23,7 +24,6 @@ from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
-from .least_stretch import least_stretch
 from .segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .special_point_meshes import first_mesh, next_mesh

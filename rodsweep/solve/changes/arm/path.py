@@ -44,8 +44,8 @@ class ArmPathSettings:
     """Number of modes computed in addition to the requested modes, if more than `followed_modes` modes are
     requested."""
     max_growing_modes: float = 16.0
-    """No modes are followed where more unstable modes than this number are expected, because at most 13 modes
-    can be followed."""
+    """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
+    modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
     W_reserve_factor: float = 4.0
     """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""

@@ -88,8 +88,8 @@ class _StabilityBoundaries:
         return trace_boundary(one.eigenvalue_sign, self.plane, (x, y), one.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
-        """Distance of the threshold with index `seed` from `curve` along the first axis; inf if the curve has
-        no point near the threshold."""
+        """Distance of the threshold with index `seed` from `curve` along the first axis, in the scaled
+        coordinate of this axis; inf if no point near the threshold has nearly its eigenvalue."""
         return _distance_from_curve(self.plane, curve, self.seeds[seed])
 
     def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
@@ -113,7 +113,8 @@ def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> TracedCurves[Bou
 
 def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
-    axis; inf if the curve has another `eigenvalue_sign` or no point near the threshold."""
+    axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
+    point there with nearly the eigenvalue of the threshold."""
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))

@@ -48,8 +48,8 @@ class RefinedCycle:
 
     @property
     def largest_modulus_error(self) -> float:
-        """Error of `largest_multiplier`; the stability is undecided if this modulus differs from 1 by this
-        error or less."""
+        """Absolute error of `largest_multiplier`; the stability is undecided if this modulus differs from 1
+        by this error or less."""
         return max(self.trivial_multiplier_error, self.errors.multiplier_error)
 
     @property

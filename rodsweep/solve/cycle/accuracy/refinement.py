@@ -116,9 +116,9 @@ def _predicted_cycle(
     """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. near: an
     orbit near the cycle.
 
-    The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if a
-    coarser mesh has no cycle near `near`, if the errors do not decrease, or if the cycle is far from its
-    prediction.
+    The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if
+    there is no cycle near `near` on a coarser or on the last mesh, if the errors do not decrease, or if the
+    cycle is far from its prediction.
     """
     coarser = CoarserMeshes(mesh, near, accuracy, workspace)
     last = inf

@@ -49,7 +49,7 @@ def tip_angle_row(beam: Beam) -> Array:
     return beam.layout.state_with_stresses({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
 
 
-def until_returns(row: Array, z: Array, returns: int) -> RunLimit:
+def return_limit(row: Array, z: Array, returns: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
     RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
     count = 0

@@ -124,11 +124,10 @@ def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
 
 
 def modulation_of(returns: Array, angle: float) -> Modulation | None:
-    """Modulation of a motion whose returns advance on a closed curve by about `angle` rad per return.
-    returns: states at successive returns, (k, n).
+    """Modulation of a motion whose returns advance on a closed curve by about `angle` rad per return; None if
+    the returns do not fill a closed curve. returns: states at successive returns, (k, n).
 
-    The Fourier series is fitted to the first half of the returns, and predicts the second half. None if the
-    returns do not fill a closed curve.
+    The Fourier series is fitted to the first half of the returns, and predicts the second half.
     """
     half = len(returns) // 2
     numbers = np.arange(len(returns))

@@ -30,7 +30,7 @@ from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
-from .returns import RETURN_SETTINGS, repetition, run_failure, section_crossings, tip_angle_row, until_returns
+from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
 from .tip_trace import TipTrace
@@ -192,7 +192,7 @@ class Transient:
         the `first` run, of at most `max_run_duration_ratio` times the expected time of these returns."""
         returns = TRANSIENT_SETTINGS.returns_in_first_run if first else TRANSIENT_SETTINGS.returns_per_run
         scheme = self.first_scheme if first else self.scheme
-        limit = until_returns(self.tip_angle_row, z, returns)
+        limit = return_limit(self.tip_angle_row, z, returns)
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)

@@ -46,7 +46,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
 
 def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
     """Nonzero eigenvalues, (rank,), of the map S^-1 P over the solved part of the period, S: symmetry.
-    propagator: P, (n, n)."""
+    propagator: P, (n, n). Raises LinAlgError as `nonzero_eigenvalues`."""
     return nonzero_eigenvalues(orbit.symmetry.apply_inverse_to_flow(propagator, orbit.form.layout))
 
 

@@ -180,10 +180,10 @@ def _follow_with_further_modes(
 
 
 def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[ArmFamily, PathHulls] | None:
-    """(family of the arms at all p, (n,); hulls that contain the spectra of these arms), or None.
+    """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
+    equal, if the arms are not smooth in p, or if no elements resolve an arm.
 
-    first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes. None
-    if all p are equal, if the arms are not smooth in p, or if no elements resolve an arm.
+    first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes.
     """
     low = float(p.min())
     high = float(p.max())

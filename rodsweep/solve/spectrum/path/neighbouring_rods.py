@@ -82,8 +82,8 @@ class FollowedSpectra:
 
 
 def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> FollowedSpectra:
-    """The leading `request.modes` eigenvalues, with certificates, of the rods to which eigenvalues are
-    followed and proved complete.
+    """The leading `request.modes` eigenvalues of all rods, as far as eigenvalues can be followed from rod to
+    rod and proved complete; `is_solved` is False for every other rod.
     """
     began = time.perf_counter()
     n = len(rods)

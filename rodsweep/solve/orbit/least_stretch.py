@@ -2,15 +2,16 @@
 
 from dataclasses import dataclass
 from math import inf
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ....arrays import Array, Complex
-from ....discretization.element_strains import index_before_jump
-from ....discretization.elements.periodic import series_maxima, series_samples
-from ...orbit.measures import CyclePath
-from ...orbit.orbit import Orbit
-from ..arc_length_step import BranchCycle
+from ...arrays import Array, Complex
+from ...discretization.element_strains import index_before_jump
+from ...discretization.elements.periodic import series_maxima, series_samples
+
+if TYPE_CHECKING:
+    from .measures import CyclePath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,29 +36,17 @@ class LeastStretchSettings:
 LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
-def least_stretch_of_cycle(point: BranchCycle) -> float:
-    """Smallest h1 of a cycle of a branch over rod and period: the smallest nodal value if it exceeds
+def least_stretch_between_nodes(path: "CyclePath", at_nodes: float) -> float:
+    """Smallest h1 of a cycle over rod and period: the smallest nodal value `at_nodes` if it exceeds
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
-    rough = point.cycle.measures.least_stretch
-    if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
-        return rough
-    return least_stretch(point.cycle.path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch)
+    if not at_nodes <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
+        return at_nodes
+    return min(at_nodes, least_stretch(path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
 
 
-def least_stretch_of_orbit(orbit: Orbit) -> float:
-    """Smallest h1 of an orbit over rod and period: the smallest nodal value if it exceeds
-    `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
-    minimum found by a search around the position of the smallest sampled value.
-    """
-    rough = orbit.form.least_stretch(orbit.all_states)
-    if rough > LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
-        return rough
-    return least_stretch(CyclePath(orbit), LEAST_STRETCH_SETTINGS.safe_sampled_stretch)
-
-
-def least_stretch(path: CyclePath, enough: float = inf) -> float:
+def least_stretch(path: "CyclePath", enough: float = inf) -> float:
     """Smallest h1 of a cycle over the whole rod and the whole period. enough: a smallest sampled value above
     `enough` is returned without a search between the sampled positions."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs

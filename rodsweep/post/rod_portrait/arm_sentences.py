@@ -1,0 +1,39 @@
+"""Sentences in the portrait of an arm: its units, and whether the model applies to it."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from ...model.arm.neglected import Validity
+from ...results.file.view import View
+from ...results.layouts.arm import VALIDITY_VARIABLES
+from ..summary.arm.validity_sentences import plane_lines, validity_caveat, validity_sentence
+from .results import RodResults
+
+
+def arm_sentences(results: RodResults) -> Iterator[str]:
+    """Yields sentences on the units of an arm, the validity of the model at flutter and on the branches of
+    cycles, and the plane of motion."""
+    view = results.views["thresholds"]
+    quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
+    yield (
+        f"F = 1 stands for {quantities['force_scale']:.6g} N, or a pressure of "
+        f"{quantities['pressure_scale']:.6g} Pa on the face of its tip, and tau2 for "
+        f"{quantities['tau2']:.6g} s."
+    )
+    validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
+    when = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
+    branch = results.views.get("branch")
+    caveat = validity_caveat(branch.variables) if branch else ""
+    on_branches = [f"somewhere on its branches of cycles {caveat}"] if caveat else []
+    sentences = [validity_sentence(validity, when), *on_branches, *plane_lines(view.quantities)]
+    yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
+
+
+def cycle_caveat(view: View) -> str:
+    """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
+    empty text. view: result with one limit cycle."""
+    applies = view.variables.get("model_applies")
+    if applies is None or (applies != Validity.does_not_apply).any():
+        return ""
+    return f" ({validity_caveat(view.variables)})"
