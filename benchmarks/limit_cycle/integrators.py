@@ -8,7 +8,7 @@ import numpy as np
 import scipy.integrate
 
 from rodsweep.arrays import Array
-from rodsweep.bench.limit_cycle.integrators import (
+from rodsweep.bench.limit_cycle.default_integrator import (
     WAITING_TOLERANCES,
     IntegrationTask,
     IntegratorFamily,

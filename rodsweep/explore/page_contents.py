@@ -11,11 +11,11 @@ from bokeh.models import Button
 
 from .controls import ChangeCallback, Controls
 from .page_style import colour_script, style_sheet, template_text
-from .pictures.beating import BeatingPicture
 from .pictures.branches import BranchPicture
 from .pictures.card import Card
 from .pictures.diagram import DiagramPicture
 from .pictures.growth import GrowthPicture
+from .pictures.moving_arm import MovingArmPicture
 from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
 from .sharing import Sharing
@@ -42,7 +42,7 @@ class PageContents:
         self.spectrum = SpectrumPicture()
         self.mode = ModePicture()
         self.growth = GrowthPicture()
-        self.beating = BeatingPicture()
+        self.beating = MovingArmPicture()
         self.branches = BranchPicture()
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()

@@ -26,7 +26,7 @@ from rodsweep.post.tables.alignment import (
     rows_with_prose,
     table_blocks,
 )
-from rodsweep.post.tables.columns import Column
+from rodsweep.post.tables.column import Column
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS
 from rodsweep.tasks.running.job import job_of_file

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from surveyed import survey_only
 
-from rodsweep.bench.limit_cycle.integrators import DEFAULT_INTEGRATOR, IntegrationTask
+from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.settling import SettlingMethod, settling_table
 from rodsweep.bench.limit_cycle.study import (
     FOLLOWING_RACE,

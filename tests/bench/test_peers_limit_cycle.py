@@ -24,7 +24,7 @@ from benchmarks.limit_cycle.continuation import (
     ratio_table,
 )
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
-from rodsweep.bench.limit_cycle.integrators import DEFAULT_INTEGRATOR, IntegrationTask
+from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
 from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, AccurateCycle
 from rodsweep.bench.limit_cycle.tracking import (

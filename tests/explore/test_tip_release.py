@@ -9,13 +9,13 @@ from PIL import Image
 
 import rodsweep as rs
 from rodsweep.explore.page import Page
-from rodsweep.explore.pictures.beating import PERIOD_SECONDS
 from rodsweep.explore.pictures.card import NO_TITLE
+from rodsweep.explore.pictures.moving_arm import PERIOD_SECONDS
 from rodsweep.explore.solving.question_inputs import INSTANT_KINDS
 from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, answer_to
 from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
-from rodsweep.post.figures.cycle.motion_film import motion_film
+from rodsweep.post.figures.cycle.released_motion_film import motion_film
 from rodsweep.post.figures.cycle.tip_path import PATH_SEGMENT_COUNT, smooth_tip_path
 
 KINDS = (*INSTANT_KINDS, "bent", "motion", "film")

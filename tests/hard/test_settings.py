@@ -54,7 +54,7 @@ from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, sol
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
-from rodsweep.solve.hopf.generalised import curve_criticality
+from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes

@@ -12,7 +12,7 @@ import pytest
 from numba.core import event
 from surveyed import few
 
-from rodsweep.model.compiled import compilation
+from rodsweep.model.compiled import cache, compilation
 from rodsweep.model.rod import Rod
 
 SOLVED_BEFORE = """
@@ -195,7 +195,7 @@ def test_numba_looks_for_caches_where_ours_is():
     """numba calls what its class `_Cache` promises; `_cache` is where it looks."""
     kernel = compilation.compiled(lambda x: x)
     assert isinstance(kernel._cache, numba.core.caching._Cache)
-    assert kernel.stats.cache_path == str(compilation.cache_directories()[0])
+    assert kernel.stats.cache_path == str(cache.cache_directories()[0])
 
 
 @pytest.mark.parametrize(
@@ -252,12 +252,12 @@ def test_places_of_the_cache(monkeypatch):
     for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("HOME", "/home/me")
-    package = compilation.PACKAGE_DIRECTORY / "__pycache__" / "compiled"
-    assert compilation.cache_directories() == [package, Path("/home/me/.cache/rodsweep/compiled")]
+    package = cache.PACKAGE_DIRECTORY / "__pycache__" / "compiled"
+    assert cache.cache_directories() == [package, Path("/home/me/.cache/rodsweep/compiled")]
     monkeypatch.setenv("XDG_CACHE_HOME", "/scratch")
-    assert compilation.cache_directories() == [package, Path("/scratch/rodsweep/compiled")]
+    assert cache.cache_directories() == [package, Path("/scratch/rodsweep/compiled")]
     monkeypatch.setenv("NUMBA_CACHE_DIR", "/elsewhere")
-    assert compilation.cache_directories() == [Path("/elsewhere/rodsweep")]
+    assert cache.cache_directories() == [Path("/elsewhere/rodsweep")]
 
 
 SETTINGS = """

@@ -12,7 +12,7 @@ import xarray as xr
 from ...config.document.call_arguments import refusing_wrong_arguments
 from ...post.headline.one_rod import OneRod
 from ...post.headline.sentences import HEADLINES
-from ...post.tables.columns import Column, column_of
+from ...post.tables.column import Column, column_of
 from ...post.tables.table_names import POINTS
 from ...post.tables.tables import Tables
 from ...results.layouts import layout_of

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ...post.tables.columns import Column
+from ...post.tables.column import Column
 
 
 def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFrame:

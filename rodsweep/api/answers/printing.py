@@ -21,7 +21,7 @@ from ...post.tables.alignment import (
     table_blocks,
     wrap_cell_text,
 )
-from ...post.tables.columns import Column
+from ...post.tables.column import Column
 from ...wording import counted
 
 MAX_BRIEF_LINES = 11

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
 from ..study import Contender, TimedRuns, by_method, markdown_table, time_runs
-from .integrators import IntegrationTask
+from .default_integrator import IntegrationTask
 from .tracking import (
     CYCLE_FORCE,
     FOLLOWED_PERIODS,

@@ -18,7 +18,7 @@ from ..study import (
     grouped_by_fields,
     markdown_table,
 )
-from .integrators import DEFAULT_INTEGRATOR
+from .default_integrator import DEFAULT_INTEGRATOR
 from .settling import compare_settling
 from .sweeping import QUICK_RODS, RODS, measure_sweep_points, sweep_introduction, sweep_table
 from .tracking import (

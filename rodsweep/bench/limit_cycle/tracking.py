@@ -29,7 +29,7 @@ from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import Contender, Measurement, measure_case
-from .integrators import IntegrationTask
+from .default_integrator import IntegrationTask
 
 FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 """The rod of the paper's Fig. 5, at F = 0."""

@@ -13,6 +13,7 @@ import pickle
 import sys
 import warnings
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
@@ -36,11 +37,27 @@ from .slice_assignment import use_fixed_shape_message
 COMPILER_VERSIONS = (sys.implementation.cache_tag, numba.__version__, llvmlite.__version__, np.__version__)
 """Versions of Python, numba, llvmlite and NumPy. They are part of the name of a cache file, because compiled
 code is valid for one combination of versions only."""
+PACKAGE_DIRECTORY = Path(__file__).parents[2]
+"""Directory of the package rodsweep."""
 DIGEST_BYTES = 32
 """Length, in bytes, of the SHA-256 checksum at the start of a cache file. The checksum reveals a truncated
 file."""
 _texts_at_first_use: dict[FunctionType, FunctionText] = {}
 """Text of each function at its first use in this process, which is the code that numba compiled."""
+
+
+def cache_directories() -> list[Path]:
+    """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
+    set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
+    if folder := os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(folder) / "rodsweep"]
+    caches = [PACKAGE_DIRECTORY / "__pycache__"]
+    if folder := os.environ.get("XDG_CACHE_HOME"):
+        caches.append(Path(folder) / "rodsweep")
+    else:
+        with suppress(RuntimeError):  # the user has no home directory
+            caches.append(Path.home() / ".cache" / "rodsweep")
+    return [parent / "compiled" for parent in caches]
 
 
 class KernelCache(_Cache):

@@ -4,36 +4,16 @@ Adaptive loops evaluate the formulas for one argument at a time, for which the o
 dominate. Arguments of compiled functions are floats, complex numbers, arrays and NamedTuples.
 """
 
-import os
 from collections.abc import Callable
-from contextlib import suppress
-from pathlib import Path
 from typing import Any, ParamSpec, TypeVar
 
 import numba
 from numba.core.ccallback import CFunc
 
-from .cache import KernelCache
+from .cache import KernelCache, cache_directories
 
 P = ParamSpec("P")
 R = TypeVar("R")
-
-PACKAGE_DIRECTORY = Path(__file__).parents[2]
-"""Directory of the package rodsweep."""
-
-
-def cache_directories() -> list[Path]:
-    """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
-    set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
-    if folder := os.environ.get("NUMBA_CACHE_DIR"):
-        return [Path(folder) / "rodsweep"]
-    caches = [PACKAGE_DIRECTORY / "__pycache__"]
-    if folder := os.environ.get("XDG_CACHE_HOME"):
-        caches.append(Path(folder) / "rodsweep")
-    else:
-        with suppress(RuntimeError):  # the user has no home directory
-            caches.append(Path.home() / ".cache" / "rodsweep")
-    return [cache / "compiled" for cache in caches]
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...results.file.view import View
-from ..tables.columns import Column
+from ..tables.column import Column
 from ..tables.table_names import DEFAULT_TABLE, POINTS
 from ..tables.tables import Table, Tables
 

@@ -11,8 +11,8 @@ from ...model.arm.quantities import LOADS
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
-from .columns import Column
-from .rows import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
+from .column import Column
+from .rows_and_columns import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
 from .table_names import (
     BRANCHES,
     GRID,

@@ -11,16 +11,17 @@ from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd
+from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_end_settings import BRANCH_END_SETTINGS
-from .branch_ends import end_at_mirror_image, reaches_mirror_image
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import is_measurement_due
-from .branch_record import BranchRecord, branch_end_point, reason_of_failure
+from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
+from .mirror_image_end import end_at_mirror_image, reaches_mirror_image
 from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
 from .special.detection import special_points_between
 from .special.locating import special_point_between
-from .special.special_point import BranchEndReason, SpecialKind, SpecialPoint
+from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
 from .start.first_cycle import first_cycle
 from .start.hopf_point import hopf_as_special_point

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..orbit.matrix.workspace import NewtonWorkspace
-from .special.special_point import BranchEndReason
+from .branch_end_reason import BranchEndReason
 from .start.hopf_point import HopfBranchStart
 from .symmetry_breaking import SymmetryBreaking
 

@@ -6,12 +6,13 @@ from math import nan
 
 import numpy as np
 
-from ..unsolvable import Unsolvable, WorkLimitReached
+from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition
 from .branch_curve import BranchCurve, BranchEnd, BranchPoint
+from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_mesh_choice import with_errors_within_accuracy
-from .special.special_point import BranchEndReason, SpecialKind, SpecialPoint
+from .special.special_point import SpecialKind, SpecialPoint
 
 
 def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str = "") -> SpecialPoint:
@@ -28,12 +29,6 @@ def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str =
         reason=reason,
         message=message,
     )
-
-
-def reason_of_failure(why: Unsolvable) -> BranchEndReason:
-    """Reason for the end of a branch at which no further cycle could be solved because of the error `why`."""
-    is_limit = isinstance(why, WorkLimitReached) or isinstance(why.__cause__, WorkLimitReached)
-    return BranchEndReason.list_full if is_limit else BranchEndReason.no_cycle_found
 
 
 class BranchRecord:

@@ -17,10 +17,11 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .branch_continuation import follow_asymmetric_branch, follow_branch
 from .branch_curve import BranchCurve
+from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .computing_time import fractions_before_branches
-from .special.special_point import SPECIAL_POINT_SETTINGS, BranchEndReason
+from .special.special_point import SPECIAL_POINT_SETTINGS
 from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in

@@ -18,9 +18,10 @@ from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, solve_row
 from ..changes.status import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
+from .branch_end_reason import BranchEndReason
 from .branch_request import BranchRequest
 from .branches import BRANCH_SETTINGS, BranchesOfRod, solve_branches
-from .special.special_point import BranchEndReason, SpecialPoint
+from .special.special_point import SpecialPoint
 from .status import BranchStatus, CoexistenceStatus
 
 

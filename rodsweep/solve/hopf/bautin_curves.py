@@ -20,8 +20,8 @@ from ...solve_progress import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
+from .bautin_points import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
-from .generalised import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
 
 
 class BautinEnd(IntEnum):

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_curves import BautinCurve
-    from ...solve.hopf.generalised import CurveCriticality
+    from ...solve.hopf.bautin_points import CurveCriticality
 
 
 def boundary_curve_values(

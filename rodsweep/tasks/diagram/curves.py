@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.curve_search import TracedCurves
-    from ...solve.hopf.generalised import CurveCriticality
+    from ...solve.hopf.bautin_points import CurveCriticality
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
 
@@ -193,7 +193,7 @@ class DiagramCurves:
 
     def _criticality(self, plane: "Plane", found: "TracedCurves[BoundaryCurve]") -> "list[CurveCriticality]":
         """Criticality along each curve; NaN along curves that are not Hopf curves."""
-        from ...solve.hopf.generalised import CurveCriticality, curve_criticality
+        from ...solve.hopf.bautin_points import CurveCriticality, curve_criticality
 
         accuracy = self.task.config.accuracy
         return [

@@ -17,13 +17,14 @@ from rodsweep.solve.branch import branch_continuation, branches
 from rodsweep.solve.branch.bordered import matrix
 from rodsweep.solve.branch.bordered.matrix import BorderedMatrix
 from rodsweep.solve.branch.branch_continuation import follow_branch
+from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_curves import CurveEndReason
-from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start

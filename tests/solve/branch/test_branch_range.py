@@ -6,10 +6,11 @@ from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch
+from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings

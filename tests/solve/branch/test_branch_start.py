@@ -7,10 +7,11 @@ import pytest
 from rodsweep.determinant.parameter_path import Path
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_asymmetric_branch, follow_branch
+from rodsweep.solve.branch.branch_end_reason import BranchEndReason
 from rodsweep.solve.branch.branch_limits import BranchLimits
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
-from rodsweep.solve.branch.special.special_point import BranchEndReason, SpecialKind
+from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry_breaking import symmetry_breakings_in

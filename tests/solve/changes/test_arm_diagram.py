@@ -16,7 +16,7 @@ from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
-from rodsweep.solve.hopf.generalised import curve_criticality
+from rodsweep.solve.hopf.bautin_points import curve_criticality
 
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 SWELLING = Build("neo_hookean", "swelling")

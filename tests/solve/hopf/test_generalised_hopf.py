@@ -16,7 +16,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
-from rodsweep.solve.hopf import bautin_curves, generalised
+from rodsweep.solve.hopf import bautin_curves, bautin_points
 from rodsweep.solve.hopf.bautin_curves import (
     BautinCurvePoint,
     BautinEnd,
@@ -24,7 +24,7 @@ from rodsweep.solve.hopf.bautin_curves import (
     bautin_curve,
     lies_on_curve,
 )
-from rodsweep.solve.hopf.generalised import curve_criticality
+from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.unsolvable import Unsolvable
 from rodsweep.tasks.running.job import job_of_file
 
@@ -131,14 +131,14 @@ def test_axial_drag_moves_it_along_the_hopf_curve(found):
 def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(found, monkeypatch):
     plane, curve, told = found
     F = curve.values[3, 0]
-    real = generalised.hopf_coefficients
+    real = bautin_points.hopf_coefficients
 
     def fails_at_one(rod, *more):
         if abs(rod.F - F) < 1e-9 * F:
             raise Unsolvable("no normal form")
         return real(rod, *more)
 
-    monkeypatch.setattr(generalised, "hopf_coefficients", fails_at_one)
+    monkeypatch.setattr(bautin_points, "hopf_coefficients", fails_at_one)
     again = curve_criticality(plane, curve, 1e-10)
     assert np.flatnonzero(np.isnan(again.criticality)).tolist() == [3]
     assert np.array_equal(np.delete(again.criticality, 3), np.delete(told.criticality, 3))
@@ -147,14 +147,14 @@ def test_where_the_normal_form_fails_the_side_is_not_known_and_no_other_is_lost(
 
 def test_a_change_that_cannot_be_located_is_counted(found, monkeypatch):
     plane, curve, told = found
-    real = generalised.hopf_coefficients
+    real = bautin_points.hopf_coefficients
 
     def jumps(*asked):
         """Re c/|c| changes its sign without vanishing."""
         c = real(*asked)
         return replace(c, landau=complex(np.sign(c.landau.real), 1.0))
 
-    monkeypatch.setattr(generalised, "hopf_coefficients", jumps)
+    monkeypatch.setattr(bautin_points, "hopf_coefficients", jumps)
     again = curve_criticality(plane, curve, 1e-10)
     assert (again.points, again.unlocated_count) == ((), 1)
     assert np.array_equal(again.criticality, told.criticality)

@@ -24,6 +24,7 @@ from rodsweep.post.figures.request import FigureRequest
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, solve_cycle
 from rodsweep.solve.cycle.transient.amplitude_equation import AMPLITUDE_EQUATION_SETTINGS
 from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh
+from rodsweep.solve.cycle.transient.tip_trace import interpolated_between_steps
 from rodsweep.solve.motion.integrator import INTEGRATOR_SETTINGS
 from rodsweep.solve.motion.leading_mode import leading_mode
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
-from ...tables.rows import quantities_at_points
+from ...tables.rows_and_columns import quantities_at_points
 from ..arm.quantities import NO_BREAK
 
 LENGTH_VARIABLES = ("shape_x", "shape_y", "tip_x", "tip_y", "transient_x", "transient_y")

@@ -18,7 +18,7 @@ from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...hopf_points import LocatedThreshold
-from ...tables.rows import quantities_at_points
+from ...tables.rows_and_columns import quantities_at_points
 from ..errors import absolute_errors, is_known
 from ..ranges import RANGE_DIGITS, rounded_text, span_text
 

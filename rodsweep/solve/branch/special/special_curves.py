@@ -9,7 +9,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
-from ...hopf.generalised import GeneralisedHopfPoint
+from ...hopf.bautin_points import GeneralisedHopfPoint
 from ...orbit.normalised import polynomial_weights
 from .solved_curve_point import SolvedPoint
 from .special_point import SpecialKind

@@ -5,6 +5,7 @@ from enum import IntEnum
 from math import nan
 
 from ...orbit.orbit import Orbit
+from ..branch_end_reason import BranchEndReason
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,17 +99,6 @@ class SpecialKind(IntEnum):
     left_the_model = 5
     end = 6
     period_doubling = 7
-
-
-class BranchEndReason(IntEnum):
-    """Reason for the end of a branch at a special point of kind `end`. range_end (end of the parameter range)
-    and crushed (the force nearly crushes the rod) are true ends; no_cycle_found and list_full (maximum number
-    of cycles, or limit of the work on the rod) are failures."""
-
-    range_end = 1
-    crushed = 2
-    no_cycle_found = 3
-    list_full = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

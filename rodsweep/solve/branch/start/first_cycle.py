@@ -19,7 +19,8 @@ from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_mesh_choice import first_measured_cycle
-from .hopf_point import BRANCH_START_SETTINGS, HopfBranchStart
+from .branch_start_settings import BRANCH_START_SETTINGS
+from .hopf_point import HopfBranchStart
 
 ALONG_DEFLECTION = np.array([1.0, 0.0, 0.0])
 """Unit vector along the deflection, (3,), in components (deflection, log period, parameter)."""

@@ -13,46 +13,7 @@ from ...cycle.hopf_start import HOPF_START_SETTINGS
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..special.special_point import SpecialKind, SpecialPoint
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BranchStartSettings:
-    """Settings for the first cycle of a branch near its Hopf point."""
-
-    first_amplitudes: tuple[float, ...] = (0.02, 0.008, 0.003)
-    """Amplitudes (largest tip y, in L) of the first cycle, tried in this order."""
-    max_amplitude_ratio: float = 0.05
-    """Upper limit of the amplitude of the first cycle, divided by
-    |`HopfBranchStart.amplitude_coefficient`|. At larger amplitudes the third-order normal form is too
-    inaccurate."""
-    min_deflection_amplitude: float = 0.1
-    """The unit of deflection of an `ArcLengthScale` is at least the deflection that a cycle of this amplitude
-    (largest tip y, in L) has by linear theory."""
-    allowed_amplitude_ratios: tuple[float, float] = 0.5, 2.0
-    """Smallest and largest allowed ratio of the solved amplitude of the first cycle to the amplitude
-    predicted by the normal form."""
-    min_amplitude_before_fold: float = 5e-4
-    """If the branch has a fold between its Hopf point and its first cycle, the first cycle is moved towards
-    the Hopf point, down to this amplitude (largest tip y, in L); likewise the last cycle of a branch that
-    ends at a Hopf point."""
-    max_amplitude_coefficient: float = 3.0
-    """Largest amplitude coefficient |a| of a Hopf point, in L, that does not affect the accuracy of the
-    cycles. A larger |a| means that a generalised Hopf point is close; a coarse mesh then displaces folds, or
-    has folds that the rod does not have."""
-    max_accuracy_if_degenerate: float = 5e-7
-    """Largest relative accuracy of the cycles of a rod with a Hopf point of |a| =
-    `max_amplitude_coefficient`. For larger |a| the largest accuracy is proportional to 1/a^2, like the
-    distance of the fold from the Hopf point."""
-    min_accuracy_if_degenerate: float = 1e-8
-    """Lower limit of the accuracy that is required because of a large |a|. With this limit, for ten rods at
-    distances of 1e-7 to 1e-3 from a generalised Hopf point, no false fold was found, and all folds farther
-    than 1e-11 F from the Hopf point were found."""
-    frequency_rounding: float = 1e-14
-    """Relative rounding error of the frequency at a Hopf point, which is computed as a root of the
-    determinant D."""
-
-
-BRANCH_START_SETTINGS = BranchStartSettings()
+from .branch_start_settings import BRANCH_START_SETTINGS
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TransientSettings:
-    """Settings for integrating a motion until Newton's method finds its cycle."""
+    """Settings for integrating a motion until Newton's method finds its cycle. The maximum number of returns
+    is the config key `most_periods`, see `rodsweep.config.task.limit_cycle`."""
 
     returns_per_run: int = 5
     """Number of returns of the tip in one run, after which the motion is classified."""

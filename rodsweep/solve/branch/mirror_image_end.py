@@ -10,11 +10,12 @@ from ..unsolvable import Unsolvable
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between
 from .bordered.scale import deflection_of
 from .branch_curve import BranchEnd
+from .branch_end_reason import BranchEndReason
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
-from .special.special_point import BranchEndReason
-from .start.hopf_point import BRANCH_START_SETTINGS, HopfBranchStart, hopf_as_special_point
+from .start.branch_start_settings import BRANCH_START_SETTINGS
+from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
 
 

@@ -1,7 +1,8 @@
-"""Time integrators of the limit-cycle benchmark: their task, their tolerances, and the schemes of PETSc.
+"""The default time integrator in the limit-cycle benchmark; the task and the tolerances of all integrators.
 
-All integrators use the same compiled function for dz/dt and the same exact Jacobian. A tolerance is the
-allowed error of each component of the state z, divided by the largest value of this component.
+Integrators that rodsweep does not use are in `benchmarks/limit_cycle/integrators.py`. All integrators use the
+same compiled function for dz/dt and the same exact Jacobian. A tolerance is the allowed error of each
+component of the state z, divided by the largest value of this component.
 """
 
 from collections.abc import Callable

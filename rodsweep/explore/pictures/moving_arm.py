@@ -36,7 +36,7 @@ SHAPE_COLUMNS = ("x", "y", "number")
 number of nodes per shape."""
 
 
-class BeatingPicture:
+class MovingArmPicture:
     """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`. The
     attributes `..._source` are Bokeh data sources: `shapes` of the cycle, `motion` after a release, `reached`
     shapes of the cycle that the motion approaches, the drawn `arm`, the `bent` arm that the user drags, the

@@ -14,7 +14,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import View
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
-from .columns import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
+from .column import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
 
 Rows = tuple[NDArray[np.int64], ...]
 """Indices of the items of a list, (rows,) each: index of the point, then index along each dimension of the
