@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from known_cycles import make_view
 from rods import rod_of
-from rodsweep.solve.cycle.transient.tip_trace import interpolated_between_steps
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from surveyed import survey_only
