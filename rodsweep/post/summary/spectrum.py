@@ -92,7 +92,7 @@ def unstable_count_line(view: View) -> str:
     unstable = int(v["unstable_count"].max())
     proof = PROOF_WORDS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
-        proof = "proved by D or counted by its winding number, estimated in part"
+        proof = "proved by D or counted by its winding number, with some bounds estimated"
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
