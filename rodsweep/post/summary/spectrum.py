@@ -129,9 +129,9 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 def stability_line(view: View, done: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
-    the number of unstable modes is proved or, for rods that vary along their length, counted by an estimate;
-    the number of points at which it is unknown. done: mask of the computed points, of the shape of the
-    points.
+    the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
+    estimate; the number of points at which it is unknown. done: mask of the computed points, of the
+    shape of the points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())
