@@ -158,7 +158,7 @@ def _sweep_wide_variables(solver: SweepWideSolver, view: View, shown: Display) -
     while items is not None and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
         with solve_part(name), reporting_to(display_listener(shown, name)):
-            results[chosen[0]] = solver.solve(items, chosen[0])
+            results[chosen[0]] = solver.solve_item(items, chosen[0])
     return solver.variables(view, items, results)
 
 

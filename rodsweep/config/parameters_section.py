@@ -133,7 +133,7 @@ class Axes(LinearAxes):
 
     def require_points(self, names: tuple[str, ...], or_points: bool = True) -> None:
         """Raises ValueError unless the section defines points in exactly one way: by axes of all `names`, by
-        an arm, or by a file of points.
+        an arm, or by a file of points. Also raises ValueError for an invalid arm or a grid that is too large.
 
         or_points: whether the message suggests a file of points.
         """

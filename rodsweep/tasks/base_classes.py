@@ -74,9 +74,9 @@ class CertifiedTask(Task):
             return False, f"{task}.certify: false; {self.uncertified_risk}"
         proof = "winding number of D"
         if self.count_location == "line" and not self.config.is_uniform_and_linear:
-            proof += " at some rods, estimated in part; between them slopes of the eigenvalues"
+            proof += " at some rods, with some bounds estimated; between them slopes of the eigenvalues"
         if self.count_location == "point" and self._has_varying_arm:
-            proof += ", estimated in part"
+            proof += ", with some bounds estimated"
         return True, proof
 
     @property

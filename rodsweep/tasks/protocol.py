@@ -53,7 +53,7 @@ class SweepWideSolver(Protocol):
         `initial_data`.
         """
 
-    def solve(self, items: Any, item: int) -> NamedArrays:
+    def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""
 
     def empty_result(self) -> NamedArrays:

@@ -148,7 +148,7 @@ def test_rod_of_python_repeats_its_material():
 
 @pytest.mark.long
 def test_show_and_files_say_what_rests_on_an_estimate(command):
-    """The winding number of a cone is estimated in part; that of uniform rods of any law is not."""
+    """The winding number of a cone rests on estimated bounds; that of uniform rods of any law does not."""
     said = {}
     for name, taper, law in (
         ("cone", "0.5", "linear"),
@@ -164,7 +164,7 @@ def test_show_and_files_say_what_rests_on_an_estimate(command):
                 meaning = file["certified"].attrs["long_name"]
             said[name, task] = command("show", f"{name}.h5").stdout + meaning
     assert (
-        "largest number of unstable modes: 2; the number is counted by an estimate at 2 of 2 points"
+        "largest number of unstable modes: 2; the number is confirmed by an estimate at 2 of 2 points"
         in said["cone", "spectrum"]
     )
     assert "known only to lie between two forces of the file" in said["cone", "spectrum"]

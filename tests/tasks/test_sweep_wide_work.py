@@ -131,7 +131,7 @@ def test_two_ranks_share_the_halves_of_one_curve(whole):
 import os, pathlib, time
 from rodsweep.tasks.diagram.curves import DiagramCurves
 
-solve, rank = DiagramCurves.solve, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
+solve, rank = DiagramCurves.solve_item, os.environ.get("OMPI_COMM_WORLD_RANK", os.environ.get("PMI_RANK"))
 
 def solve_beside_another(self, items, item):
     pathlib.Path(f"follows-{{rank}}-{{item}}").touch()
@@ -140,7 +140,7 @@ def solve_beside_another(self, items, item):
         time.sleep(0.01)
     return solve(self, items, item)
 
-DiagramCurves.solve = solve_beside_another
+DiagramCurves.solve_item = solve_beside_another
 """
     run = whole("run", "c.yaml", "-o", "shared.h5", ranks=2, patch=patch)
     assert run.returncode == 0, run.stderr
@@ -158,7 +158,7 @@ from rodsweep.tasks.diagram.curves import DiagramCurves
 def broken(self, items, item):
     raise IndexError("a bug")
 
-DiagramCurves.solve = broken
+DiagramCurves.solve_item = broken
 """
     run = whole("run", "c.yaml", "-o", "broken.h5", patch=patch)
     assert run.returncode == 0, run.stderr

@@ -133,8 +133,8 @@ def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
 
 
 def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """Solves the timed points of a sweep along `axis`, each from its neighbour, to `accuracy`; returns the
-    last cycle."""
+    """The last cycle of the timed points of a sweep along `axis`, each solved from its neighbour; raises
+    ArithmeticError if a point has no stable cycle. accuracy: relative."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
         there = earlier_rod(rod.rod, axis, k)
@@ -144,10 +144,10 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
 
 
 def solve_without_neighbour(start: str, accuracy: float, rod: SweptRod) -> Cycle:
-    """The cycle of a rod to the relative accuracy `accuracy`, without a neighbour. start: option `start`."""
-    return require_cycle(
-        solve_cycle(rod.rod, replace(cycle_request(accuracy), start=start), workspace=rod.workspace)
-    )
+    """The cycle of a rod to a relative accuracy, without a neighbour; raises ArithmeticError if no stable
+    cycle is found. start: option `start`."""
+    request = replace(cycle_request(accuracy), start=start)
+    return require_cycle(solve_cycle(rod.rod, request, workspace=rod.workspace))
 
 
 def require_cycle(cycle: Cycle) -> Cycle:

@@ -17,7 +17,7 @@ from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
-from .exact import error_field
+from .exact import relative_error_by_name
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -87,7 +87,7 @@ def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measure
     peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
     for name, rod in ARM_RODS.items():
-        judge = partial(error_field, exact_arm_spectrum(rod))
+        judge = partial(relative_error_by_name, exact_arm_spectrum(rod))
         measurements += measure_case(name, UncachedArms(rod), [*contenders(), *peers], rounds, judge)
     return measurements
 

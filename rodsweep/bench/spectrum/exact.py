@@ -78,7 +78,7 @@ def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
         return max(float(min(abs(value - root) for value in computed) / abs(root)) for root in exact)
 
 
-def error_field(exact: list[Any], w: Complex) -> dict[str, float]:
-    """Field `error` of `Measurement`: relative error of computed eigenvalues w, (modes,). exact: exact
+def relative_error_by_name(exact: list[Any], w: Complex) -> dict[str, float]:
+    """{"error": relative error of computed eigenvalues w, (modes,)}, a field of `Measurement`. exact: exact
     eigenvalues."""
     return {"error": relative_error(w, exact)}

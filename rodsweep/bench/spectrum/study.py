@@ -32,7 +32,7 @@ from ..study import (
     time_runs,
 )
 from .arms import ARM_RACE, arm_table, measure_arm_spectra
-from .exact import error_field, exact_spectrum, relative_error
+from .exact import exact_spectrum, relative_error, relative_error_by_name
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
     KRYLOV_SCHUR,
@@ -154,7 +154,7 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
     """Measurements of the contenders `every` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
-        judge = partial(error_field, exact_spectrum(rod, MODE_COUNT))
+        judge = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
         measurements += measure_case(case, rod, every, rounds, judge)
     return measurements
 
@@ -177,7 +177,9 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
 
 
 def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
-    """Cell of `hard_rod_table` for one method on one rod. measurements: at all sizes."""
+    """Cell of `hard_rod_table` for one method on one rod: the smallest error at any size, and the shortest
+    time of a size with at most ten times this error; "failed" if all sizes failed. measurements: at all
+    sizes."""
     least = min(m.error for m in measurements)
     near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
     return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"

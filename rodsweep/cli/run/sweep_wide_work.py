@@ -106,7 +106,7 @@ class SweepWideWork:
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:
-            yield item, self.solver.solve(items, item)
+            yield item, self.solver.solve_item(items, item)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:

@@ -65,7 +65,8 @@ class _DoubleEigenvalueStep(NamedTuple):
         return max(self.rounding_error_of_x, abs(self.in_x)), max(self.rounding_error_of_p, abs(self.in_p))
 
     def is_converged(self, last: float) -> bool:
-        """Whether the step is of the size of rounding errors. last: |change of x| in the previous step."""
+        """Whether Newton's method has converged: the step in p is of the size of rounding errors, and the
+        step in x too, or more than half as long as `last`, the |change of x| in the previous step."""
         converged = ROOT_NEWTON_SETTINGS.converged_step
         return abs(self.in_p) <= converged * self.rounding_error_of_p and (
             abs(self.in_x) <= converged * self.rounding_error_of_x

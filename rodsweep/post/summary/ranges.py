@@ -82,7 +82,8 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
     """Returns (number, error with one digit) as text. The last printed digit of the number has the decimal
     place of the error.
 
-    If the error is not finite, its text is empty and the number has six digits. 0 and inf have no error.
+    The text of the error is empty for a value of 0, inf or NaN, for an error of 0 (the number then has 15
+    digits), and for an error that is not finite (six digits).
     """
     if value == 0 or not isfinite(value):
         return f"{value + 0.0:g}", ""

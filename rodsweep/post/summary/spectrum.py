@@ -92,7 +92,7 @@ def unstable_count_line(view: View) -> str:
     unstable = int(v["unstable_count"].max())
     proof = PROOF_WORDS[bool(v["certified"].all())]
     if v["certified"].all() and estimates_counts(view.config):
-        proof = "proved by D or counted by its winding number, estimated in part"
+        proof = "proved by D or counted by its winding number, with some bounds estimated"
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
@@ -129,9 +129,9 @@ def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
 
 def stability_line(view: View, done: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
-    the number of unstable modes is proved or, for rods that vary along their length, counted by an estimate;
-    the number of points at which it is unknown. done: mask of the computed points, of the shape of the
-    points.
+    the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
+    estimate; the number of points at which it is unknown. done: mask of the computed points, of the
+    shape of the points.
     """
     unstable = view.variables["unstable_count"][done]
     points = int(done.sum())

@@ -88,7 +88,8 @@ def joined_failure_reasons(*several: str) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, joined from several values of this attribute; empty
     if there are no reasons.
 
-    Only the first line with each reason is included.
+    Only the first line with each reason is included, at most MAX_FAILURE_REASONS lines; the text is cut to
+    MAX_ATTRIBUTE_LENGTH characters.
     """
     lines: dict[str, str] = {}
     for line in "\n".join(several).splitlines():

@@ -83,7 +83,8 @@ class FileReplacement:
         os.close(directory)
 
     def close(self) -> None:
-        """Releases the lock and removes the journal directory if it is empty."""
+        """Deletes an unfinished new file, releases the lock, and removes the journal directory if it is
+        empty."""
         with suppress(OSError):
             self.copy_path.unlink()
         self.lock.release()

@@ -130,7 +130,8 @@ def header_of(path: Path, file: h5py.File, check_content: bool = True) -> Result
 
 
 def escape_control_characters(value: Any) -> Any:
-    """Value of an attribute; control characters of a text are escaped, because a terminal would obey them."""
+    """Value of an attribute, bytes decoded as UTF-8; control characters of a text are escaped, because a
+    terminal would obey them."""
     if isinstance(value, bytes):
         value = value.decode(errors="replace")
     return printable(value) if isinstance(value, str) else value

@@ -109,7 +109,7 @@ class BranchCalibration:
 
     def parameter_error(self, accuracy: float) -> float:
         """Relative error of the parameter at equal deflection, with a safety factor, at least a fraction of
-        the relative accuracy."""
+        the relative accuracy and at least the rounding error."""
         return max(
             CALIBRATION_SETTINGS.safety_factor * float(self.parameter_errors.sum()),
             CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy,

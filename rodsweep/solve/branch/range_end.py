@@ -22,8 +22,8 @@ from .special.segment import BranchSegment
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:
-    """The condition that the parameter coordinate of a cycle equals `limit`, in the units of the cycle
-    `start`."""
+    """The condition that the parameter coordinate of a cycle equals the parameter coordinate `limit`, scaled
+    with the units of the cycle `start`."""
     return BorderCondition(start.scale, ALONG_PARAMETER, limit / start.scale.coordinate_unit)
 
 

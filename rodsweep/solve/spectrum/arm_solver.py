@@ -44,7 +44,7 @@ class ArmSolver(ShiftInvertSolver):
 
     def displacements(self, vectors: Complex, rod: Rod) -> tuple[Complex, Complex]:
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the arm that was
-        solved last, (unknowns, k)."""
+        solved last, (unknowns, k). rod: not needed, because the matrices are those of this arm."""
         return fields_of_vectors(vectors, self.matrices.displacement_factors)
 
 

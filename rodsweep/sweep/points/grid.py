@@ -38,7 +38,8 @@ def grid_size(config: Config) -> int:
 
 
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
-    """Points of the sweep that a config describes; raises InputError for a parameter value outside the model.
+    """Points of the sweep that a config describes; raises InputError for a parameter value outside the model,
+    and for an invalid file of points.
 
     directory: folder of relative file names. flutter: flutter forces of all rods of
     `rods_for_flutter_forces`; if None, the forces are computed here.

@@ -89,7 +89,7 @@ class DiagramCurves:
         special = special_points_of_rows(view, plane.axes[0].name, self.task.points.columns_by_name[row])
         return SpecialCurveTracer(*plane.axes, special)
 
-    def solve(self, items: "SpecialCurveTracer", item: int) -> dict[str, np.ndarray]:
+    def solve_item(self, items: "SpecialCurveTracer", item: int) -> dict[str, np.ndarray]:
         """Result of the half curve number `item`, as arrays with the shapes of `TracedHalfCurve`."""
         return items.solve(item, self._special_points, self.workspace)
 

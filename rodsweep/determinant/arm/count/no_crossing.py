@@ -56,9 +56,9 @@ class ArmsOfInterval(NamedTuple):
 class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm.
 
-    D: times exp(-S). L: D'/D, with the eigenvalues divided out. divided_indices: indices of the known
-    eigenvalues that are divided out, (k,). exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant
-    wave, else (0, 0)."""
+    w: w0. D: D(w0) exp(-S). S: exponent of the scale of D. L: D'/D, with the eigenvalues divided out.
+    divided_indices: indices of the known eigenvalues that are divided out, (k,). exponent_and_slope: (Phi,
+    dPhi/dw) if h contains the dominant wave, else (0, 0)."""
 
     w: complex
     D: complex

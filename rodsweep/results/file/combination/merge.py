@@ -115,5 +115,8 @@ def _has_same_fingerprint(first: ResultHeader, other: ResultHeader) -> bool:
     if first.fingerprint != other.fingerprint:
         return False
     if (first.layout.record_dtype, first.points) != (other.layout.record_dtype, other.points):
-        raise InputError(f"{other.path} was written by another version of rodsweep than {first.path}")
+        raise InputError(
+            f"{other.path} was written by another version of rodsweep than {first.path}; repeat the run of "
+            "one file with the version of the other"
+        )
     return True

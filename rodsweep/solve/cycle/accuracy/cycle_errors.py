@@ -68,8 +68,9 @@ def largest_weighted_error(period: Array | float, amplitude: Array | float, extr
 
 
 def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Array:
-    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each, with
-    safety factors and lower limits. accuracy: requested relative accuracy, for a lower limit."""
+    """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each:
+    those of `path_differences`, then of the multiplier. Safety factors and lower limits are applied.
+    accuracy: requested relative accuracy, for a lower limit."""
     whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
     apart = space[PATH_INDEX] + time[PATH_INDEX]
     in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]

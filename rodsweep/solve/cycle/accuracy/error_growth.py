@@ -10,7 +10,7 @@ from .error_indicators import LAST_HARMONICS_INDEX
 
 
 def tails_and_size(orbit: Orbit) -> Array:
-    """Tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
+    """Relative tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
 
 
