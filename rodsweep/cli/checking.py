@@ -1,6 +1,7 @@
 """Output of `rodsweep check`: points, modelled and neglected effects, expected cost."""
 
 from dataclasses import replace
+from math import isinf
 
 import numpy as np
 from rich.console import Console
@@ -68,8 +69,12 @@ def _arm_lines(job: Job) -> list[str]:
     }
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
-    given = "F" in job.points.names
-    load_clause = "" if given else ", and compression, by the load that it finds"
+    load_clause = ", and compression, by the load that it finds"
+    if job.config.task == "phase_diagram":
+        load_clause = ", and says above which load compression exceeds its limit"
+    # The load is known before the run, or the law of rubber includes large compression.
+    if "F" in job.points.names or isinf(job.config.build.constitutive_law.crushing_load):
+        load_clause = ""
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),

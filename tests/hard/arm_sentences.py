@@ -450,9 +450,23 @@ def _flutter_answer(view, page, told, start, chosen, scales):
         told(rf"flutter{some} as a force at the tip: {value}(?:$|, )", 0, forces[chosen])
         before = rf"{start}flutter as a force at the tip: .*, smallest"
         in_newton = _extremes(view, page, before, forces, chosen)
+    if view.task == "phase_diagram":
+        in_newton = _compression(view, page, scales)
     numbers = {"flutter": loads, "its frequency": hertz}
     found = in_newton + _drag_sentences(view, page, start, chosen, numbers)
     return found + _extremes(view, page, rf"{start}smallest flutter load", loads, chosen)
+
+
+def _compression(view, page, scales):
+    """The check of the loads above which a row is compressed by more than a tenth of its weakest section."""
+    limits = np.array([0.1 * rod.crushing_force for rod in _rods_without_load(view)])
+    if not limits.min() < max(_tops(view)):
+        return [(line, "no load is as large") for line in page if "compression exceeds" in line]
+    pattern = rf"^above RANGE ({UNIT}) compression exceeds its limit, and the model does not apply$"
+    lines = list(read(page, pattern))
+    loads = (limits * scales[force_unit(view)])[np.isfinite(limits)]
+    found = [(line, range_as_stated(match[1], loads / UNITS[match[2]])) for line, match in lines]
+    return found or [("", "it is not said above which load compression exceeds its limit")]
 
 
 def _extremes(view, page, start, loads, chosen):

@@ -282,6 +282,30 @@ def test_show_of_a_diagram_without_flutter_says_up_to_which_load(command):
     assert "does not flutter up to 1 kPa\n" in command("show", "a.h5").stdout
 
 
+@pytest.mark.parametrize(
+    ("stop", "more", "said"),
+    [
+        ("15 kPa", "", "above 10 kPa compression exceeds its limit, and the model does not apply"),
+        ("15 kPa", ", tip_radius: 4 mm", "above 10 kPa compression"),  # the load on the tip's face
+        ("9 kPa", "", ""),
+        ("15 kPa", ", law: neo_hookean, section: swelling", ""),  # the law includes large compression
+    ],
+    ids=["cylinder", "cone", "small loads", "rubber"],
+)
+def test_show_of_a_diagram_says_above_which_load_an_arm_is_compressed_too_much(command, stop, more, said):
+    """A pressure p on the face of the tip compresses the tip, the weakest section, by p/E: 0.1 at 10 kPa."""
+    quantities = f"length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 40 Pa s{more}"
+    loads = f"pressure: {{start: 0 kPa, stop: {stop}, num: 3}}"
+    rows = "gamma3: [1.0e-3, 2.0e-3]"
+    command.write("a.yaml", f"task: phase_diagram\nparameters: {{arm: {{{quantities}, {loads}}}, {rows}}}\n")
+    checked = " ".join(command("check", "a.yaml").stdout.split())
+    assert ("and says above which load compression exceeds its limit" in checked) == ("law" not in more)
+    command.solved("a.yaml")
+    found = [line for line in command("show", "a.h5").stdout.splitlines() if "compression exceeds" in line]
+    assert len(found) == bool(said)
+    assert all(line.startswith(said) for line in found)
+
+
 def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):
     command.write("a.yaml", MAP)
     command.solved("a.yaml")

@@ -13,6 +13,7 @@ from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit
+from .compression import compression_lines
 from .drag_range import arms_of_drags, drag_lines
 from .extreme_loads import ANSWER_DIGITS, extreme_arms_text, flutter_force_line
 from .validity_sentences import plane_lines, validity_sentence
@@ -34,19 +35,19 @@ NO_CYCLE_WORDS = {
 
 def arm_answer(view: View, done: np.ndarray) -> Lines:
     """Lines with the answer about the arms at the points in the mask `done`, (...,); empty for a rod."""
-    return [*plane_lines(view.quantities), *_validity_lines(view, done)] if view.quantities else []
-
-
-def _validity_lines(view: View, done: np.ndarray) -> Lines:
-    """Line on the validity of the model, and lines with the answer for the points in `done` to which the
-    model applies; for all these points if the model applies to none."""
+    if not view.quantities:
+        return []
     rods = done & (view.variables["status"] < NOT_SLENDER)
+    lines = _validity_lines(view, done, rods)
+    return [*plane_lines(view.quantities), *lines, *compression_lines(view, rods)]
+
+
+def _validity_lines(view: View, done: np.ndarray, rods: np.ndarray) -> Lines:
+    """Line on the validity of the model, and lines with the answer for the points in `rods` to which it
+    applies; for all these points if it applies to none. done, rods: masks of computed points and rods."""
     if not rods.any():
-        return (
-            ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
-            if done.any()
-            else []
-        )
+        nothing = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
+        return nothing if done.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
