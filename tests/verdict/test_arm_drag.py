@@ -211,7 +211,7 @@ def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(com
     data = rs.open(command.directory / "a.h5")
     assert not re.search(r"\bF\b|\bk1\b|gamma3|tau2|mHz", answer)
     assert re.search(r"beats at 8 \(length 10 to 14 cm, pressure [\d.]+ to [\d.]+ kPa, 1.1 to 1.3 of", answer)
-    assert "of 6 combinations of arm and load: beats with every drag at 4, with no drag at 2" in answer
+    assert "of 6 combinations of arm and load: beats for every drag at 4, for no drag at 2" in answer
     frequency = data.frequency_hz.where(np.isfinite(data.period))
     spread = (frequency.max("drag") / frequency.min("drag")).max().item()
     assert 1 < spread < 2  # in percent, then

@@ -71,6 +71,7 @@ class _MarchedMotion:
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
         self.clock = ReturnClock(self.leading_mode.period)
+        self.intervals_per_return = MARCHING_SETTINGS.measurement_intervals_per_return
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
@@ -102,12 +103,14 @@ class _MarchedMotion:
         return self._with_measures(straight, path, errors)
 
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
-        """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again."""
+        """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again, to
+        be measured at more times."""
         before = self.beam
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
         self.scheme = replace(
             self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
+        self.intervals_per_return *= MARCHING_SETTINGS.measurement_interval_ratio
         self.beam = Beam(self.rod, self.mesh)
         z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
@@ -196,11 +199,7 @@ class _MarchedMotion:
         spline = CubicSpline(run.times, run.states)
         stages = MARCHING_SETTINGS.measurement_stages
         states = spline(
-            times[0]
-            + period
-            * node_times(
-                MARCHING_SETTINGS.measurement_intervals_per_return * settled.returns_per_period, stages
-            )
+            times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
         )
         form = StressForm(self.rod, self.beam.mesh)
         return CyclePath(

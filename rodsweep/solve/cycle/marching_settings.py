@@ -49,7 +49,11 @@ class MarchingSettings:
     measurement_stages: int = 3
     """Number of collocation stages per interval of the orbit from which the cycle is measured."""
     measurement_intervals_per_return: int = 48
-    """Number of time intervals, per return of the tip, of the orbit from which the cycle is measured."""
+    """Number of time intervals, per return of the tip, of the orbit from which the first cycle is
+    measured."""
+    measurement_interval_ratio: int = 2
+    """Factor by which this number grows from a cycle to the next, finer one, so that the difference of the
+    two contains the error of the measurement."""
 
 
 MARCHING_SETTINGS = MarchingSettings()
