@@ -26,6 +26,7 @@ from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment i
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import prints_messages  # noqa: E402 - after the environment is set
 from .page_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
+from .usage_errors import usage_error_text  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]
 
@@ -59,7 +60,7 @@ def main() -> None:
         message = "interrupted"
     except click.UsageError as error:
         code = 2
-        message = error.format_message()
+        message = usage_error_text(error)
     except click.ClickException as error:
         code = 3
         message = error.format_message()

@@ -33,7 +33,9 @@ def print_arm_report(given: dict[str, str | None], poisson: float, segments: tup
 
 QUANTITY_NAMES = "|".join((*UNITS, "segments"))
 """Regular expression of all names of quantities."""
-QUANTITY_IN_SENTENCE = re.compile(rf"^({QUANTITY_NAMES})|(?<= and )({QUANTITY_NAMES})(?= = | are )")
+QUANTITY_IN_SENTENCE = re.compile(
+    rf"^({QUANTITY_NAMES})|(?:(?<= and )|(?<=, with ))({QUANTITY_NAMES})(?= = | are )"
+)
 """Regular expression of a quantity's name at the beginning of a sentence or before " = " and " are "."""
 
 

@@ -11,13 +11,16 @@ from ..wording import counted
 from .arm_options import arm_options
 from .file_names import FILE_TYPE, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
+from .usage_errors import CommandGroup
 
 overrides_option = click.option(
     "--set", "overrides", multiple=True, metavar="KEY=VALUE", help="Override a key, e.g. parameters.F.num=50."
 )
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True)
+@click.group(
+    cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"]}, invoke_without_command=True
+)
 @click.version_option(__version__, prog_name="rodsweep")
 @click.pass_context
 def commands(context: click.Context) -> None:

@@ -42,7 +42,7 @@ def rod_of_options(
     for name, value in own.items():
         allowed = PARAMETERS[name].allowed
         if not allowed.contains(value):
-            raise InputError(f"--{name} = {value:g} is not {allowed.description}")
+            raise InputError(f"--{name} = {value:g} is not {allowed.description_for(value)}")
     words = _options_that_are_set(material)
     of_arm = _options_that_are_set(quantities)
     if of_arm:

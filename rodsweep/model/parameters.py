@@ -23,6 +23,13 @@ class Range:
     schema_bounds: Mapping[str, float] = field(default_factory=dict)
     """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every finite number is
     allowed."""
+    remark: str = ""
+    """Why some finite numbers above 0 lie outside the range, in parentheses, for messages."""
+
+    def description_for(self, value: float) -> str:
+        """The description of the range, for a message on `value` outside of it; with the remark if value is a
+        finite number above 0."""
+        return f"{self.description} {self.remark}" if self.remark and 0 < value < inf else self.description
 
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first number in `values` that lies outside the range; None if the range contains all values."""
@@ -99,7 +106,7 @@ class Parameter:
     def require_in_range(self, value: float) -> None:
         """Raises ValueError for a value outside the range of the parameter. `Rod` checks F < k1."""
         if not self.allowed.contains(value):
-            raise ValueError(f"{self.name} = {value} is not {self.allowed.description}")
+            raise ValueError(f"{self.name} = {value} is not {self.allowed.description_for(value)}")
 
 
 SMALLEST_TAPER = 0.01
@@ -123,6 +130,7 @@ def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Par
             lambda value: value > 0 and 1 / value < inf,
             f"a number above 0, or inf for an {rigid} rod",
             {"exclusiveMinimum": 0},
+            f"(1/{name} overflows)",
         ),
         rigid_adjective=rigid,
     )

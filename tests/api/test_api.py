@@ -383,6 +383,16 @@ def test_bad_input_is_refused_in_the_words_of_the_command(text, command, monkeyp
         (lambda: rs.Rod(**ROD).replace(3), "the argument 3 has no name; write it as in rod.replace(F=40)"),
         (lambda: rs.Arm("10 cm"), "the argument '10 cm' has no name; write it as in rs.Arm(length="),
         (lambda: rs.Arm(**LOADED, presure="1 kPa"), "unknown key presure; did you mean pressure?"),
+        (lambda: rs.Arm(**SILICONE, diameter="1 cm"), "unknown key diameter; give radius, half of it"),
+        (lambda: rs.Arm(**SILICONE, outer_diameter=1), "unknown key outer_diameter; give radius, half of it"),
+        (
+            lambda: rs.sweep("thresholds", arm=SILICONE | {"diameter": "1 cm"}),
+            "unknown key parameters.arm.diameter; give radius, half of it",
+        ),
+        (
+            lambda: rs.sweep("thresholds", **ROD, diameter=1),
+            "unknown key diameter; known keys are",
+        ),
         (rs.Arm, "viscosity is missing; write it as in rs.Arm("),
         (lambda: rs.Arm(viscosity="1 Pa s"), "length is missing; write it as in '10 cm'"),
         (lambda: rs.Arm(**LOADED | {"length": ["10 cm"]}), "length = ['10 cm'] is not one quantity; write a"),

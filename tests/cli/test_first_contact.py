@@ -29,6 +29,36 @@ def test_the_shell_completes_commands_and_options(command, typed, offered):
     assert f"plain,{offered}" in done.stdout.splitlines()
 
 
+def test_an_unknown_command_is_answered_with_the_closest_or_with_all(command):
+    misspelt, foreign = command("shwo"), command("open")
+    assert (misspelt.returncode, foreign.returncode) == (2, 2)
+    assert misspelt.stderr == "rodsweep: unknown command shwo; did you mean show?\n"
+    names = ", ".join(sorted(commands.commands))
+    assert foreign.stderr == f"rodsweep: unknown command open; the commands are {names}\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "radius"),
+    [
+        (("arm", "--diameter", "1 cm"), "--radius"),
+        (("arm", "--inner-diameter=1 cm"), "--inner-radius"),
+        (("portrait", "--tip_diameter", "1 cm"), "--tip-radius"),
+    ],
+)
+def test_the_option_of_a_diameter_is_answered_with_that_of_the_radius(command, words, radius):
+    refused = command(*words)
+    option = words[1].partition("=")[0]
+    expected = f"rodsweep: unknown option {option}; give {radius}, half of it\n"
+    assert (refused.returncode, refused.stderr) == (2, expected)
+    assert command("arm", "--colour", "red").stderr.startswith("rodsweep: No such option")
+
+
+def test_options_are_named_where_an_arm_is_too_short(command):
+    quantities = ("--young", "1 MPa", "--viscosity", "1 Pa s")
+    refused = command("arm", "--length", "1 cm", "--radius", "5 m", *quantities)
+    assert "--length = '1 cm' is 0.002 radii, with --radius = '5 m'; the drag" in refused.stderr
+
+
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
 def test_each_shell_gets_its_script(command, shell):
     done = command.afresh(_RODSWEEP_COMPLETE=f"{shell}_source")

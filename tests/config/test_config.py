@@ -182,6 +182,10 @@ REFUSED_BY_TASK = [
     ),
     (thresholds() + "thresholds:", "thresholds = None is not allowed; it should be a mapping"),
     (thresholds(options="Fmax: 3"), "unknown key thresholds.Fmax; did you mean F_max?"),
+    (
+        config("branch", "F: 9, k2: 9, gamma3: 0", "along: k1, start: 1.0e-320, stop: 9"),
+        "along k1; it should be a finite number above 0 (1/k1 overflows)",
+    ),
     (thresholds(options="F_max: 0"), "F_max = 0 is not allowed; it should be a finite number above 0"),
     (thresholds(options="F_max: -3"), "F_max = -3 is not allowed; it should be a finite number above 0"),
     (thresholds(options="F_max: .inf"), "F_max = inf is not allowed; it should be a finite number above 0"),

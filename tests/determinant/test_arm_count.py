@@ -103,7 +103,7 @@ def test_without_a_bound_no_count_is_given():
     assert hull_of(pulled).a == np.inf
     refused = count_right_of(-1.0, ArmDeterminant(pulled), hull_of(pulled))
     assert refused.number is None
-    assert refused.failure_reason == "no a-priori bound on the eigenvalues applies to this rod"
+    assert refused.failure_reason == "no a-priori bound on the eigenvalues applies to this rod at F = -3"
 
 
 @pytest.mark.parametrize("gamma3", [0.0, 1e-5, 1e-2])

@@ -214,7 +214,7 @@ SEGMENTS = {"radius": None, "length": None}
             {"radius": None, "width": "5 mm", "height": "5 mm", "tip_radius": "3 mm"},
             "tip_radius = '3 mm' needs a radius",
         ),
-        ({"tip_radius": "20 mm"}, "length = '10 cm' is 5 radii; .* at least 10"),
+        ({"tip_radius": "20 mm"}, "length = '10 cm' is 5 radii, with tip_radius = '20 mm'; .* at least 10"),
         (
             {"tip_radius": "1 mm", "pressure": "100 kPa"},
             "pressure = '100 kPa' crushes the weakest section of the arm; the load on a linear material",
@@ -278,7 +278,22 @@ SEGMENTS = {"radius": None, "length": None}
         ),
         (
             SEGMENTS | {"segments": ["1 cm: radius 5 mm"]},
-            "segments: their length is 2 radii; the drag of a slender arm needs at least 10",
+            "segments: their length is 2 radii, with a largest radius of 0.005 m; the drag of a slender arm "
+            "needs at least 10",
+        ),
+        ({"radius": 5}, "length = '10 cm' is 0.02 radii, with radius = 5 m; the drag of a slender arm"),
+        ({"radius": 5, "tip_radius": "2 m"}, "length = '10 cm' is 0.02 radii, with radius = 5 m;"),
+        (
+            {"radius": None, "width": 5, "height": "3 m"},
+            "length = '10 cm' is 0.05 radii, with an equivalent radius of 2 m;",
+        ),
+        (
+            SEGMENTS | {"segments": ["9 cm: diameter 6 mm"]},
+            "segments, number 1: unknown key diameter; give radius, half of it",
+        ),
+        (
+            SEGMENTS | {"segments": [{"length": "9 cm", "outer_diameter": "6 mm"}]},
+            "segments, number 1: unknown key outer_diameter; give radius, half of it",
         ),
         # A logarithm of the drag of this arm is 0.
         ({"length": "5 cm", "radius": "9 mm"}, "length = '5 cm' is 5.56 radii"),

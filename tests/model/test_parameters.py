@@ -54,6 +54,18 @@ def test_ranges(name, good, bad):
             PARAMETERS[name].require_in_range(value)
 
 
+@pytest.mark.parametrize("name", ["k1", "k2"])
+def test_a_tiny_stiffness_is_refused_because_its_inverse_overflows(name):
+    why = f", or inf for an .* rod \\(1/{name} overflows\\)$"
+    with pytest.raises(ValueError, match=f"{name} = 1e-320 is not a number above 0{why}"):
+        PARAMETERS[name].require_in_range(1e-320)
+    with pytest.raises(rodsweep.InputError, match=f"{name} = .*e-321 is not allowed; .* above 0{why}"):
+        rodsweep.Rod(**{"k1": 1e4, "k2": 1e4, "gamma3": 0.0} | {name: 1e-320})
+    for value in (0.0, -1.0, nan):
+        with pytest.raises(ValueError, match=r"is not a number above 0, or inf for an \w+ rod$"):
+            PARAMETERS[name].require_in_range(value)
+
+
 def test_the_sequence_of_parameters_stands_once():
     package = Path(rodsweep.__file__).parent
     written = [path for path in package.rglob("*.py") if '"F", "k1"' in path.read_text()]

@@ -119,7 +119,7 @@ def test_other_units_ask_for_the_same():
         ("spectrum", {"radius": ["6 mm", "5 mm"]}, {}, "parameters.arm.radius: .* is not sorted"),
         ("spectrum", {"radius": True}, {}, "parameters.arm.radius: True is not a number"),
         ("spectrum", {"radius": "-5 mm"}, {}, "parameters.arm.radius = -0.005 m is not above 0"),
-        ("spectrum", {"radius": "2 cm"}, {}, "parameters.arm.length = 0.1 m is 5 radii"),
+        ("spectrum", {"radius": "2 cm"}, {}, "parameters.arm.length = 0.1 m is 5 radii, with radius = 0"),
         ("spectrum", {"width": "1 cm"}, {}, "parameters.arm.radius: give either a radius, or width and"),
         ("spectrum", {"poisson": 0.6}, {}, "parameters.arm.poisson = 0.6 is not a number above -1"),
         ("spectrum", {"youn": "1 kPa"}, {}, "unknown key parameters.arm.youn; did you mean young?"),

@@ -285,14 +285,17 @@ def test_a_load_that_crushes_the_arm_at_some_points_only_is_no_refusal(command):
 
 
 def test_check_says_which_units_it_took_and_warns_of_thin_walls(command):
-    def told(length, bore):
+    def told(length, bore, density="0"):
         arm = f"length: {length}, radius: 5 mm, inner_radius: {bore}, young: 100 kPa, viscosity: 20 Pa s"
+        arm += f", density_difference: {density}"
         command.write("a.yaml", f"task: thresholds\nparameters: {{arm: {{{arm}}}}}\n")
         return command("check", "a.yaml").stdout
 
     bare = told(15, "3 mm")
     assert "the arm: length 15 m, young 100 kPa, radius 5 mm" in bare
-    assert "(length without a unit: SI)" in bare
+    assert "density difference 0 kg/m^3 (length without a unit: SI)" in bare
+    span = told(15, "3 mm", "{start: 0, stop: 20 kg/m^3, num: 2}")
+    assert "density difference 0 to 20 kg/m^3 (length without a unit: SI)" in span
     assert "warning: Wall" not in bare
     thin = told("15 cm", "[3 mm, 4.8 mm]")
     assert "without a unit" not in thin

@@ -127,7 +127,7 @@ def typed_unit(name: str, axis: Axis) -> str:
 def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
     """Text with names, values and typed units of an arm's quantities, like "length 10 cm, radius 5 mm".
 
-    A remark at the end names the quantities that were given without a unit.
+    A remark at the end names the quantities that were given without a unit; 0 needs none.
     """
     words = []
     bare = []
@@ -140,7 +140,7 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
         words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
-        if unit and not all(isinstance(one, str) for one in _written_values(axis.written)):
+        if unit and not all(isinstance(one, str) or one == 0 for one in _written_values(axis.written)):
             bare.append(name)
     remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
     return f"{', '.join(words)}{remark}".replace("_", " ")

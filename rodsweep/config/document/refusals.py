@@ -9,6 +9,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from ...model.arm.quantities import radius_of_diameter
 from ...model.parameters import PARAMETERS
 from ...wording import enumeration
 from ..base_config import Config
@@ -54,8 +55,10 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
 
 def unknown_key_hint(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
-    there_are: beginning of the list.
+    there_are: beginning of the list. For a diameter, the hint is to give the radius.
     """
+    if radius := radius_of_diameter(key, known):
+        return f"give {radius}, half of it"
     close = similar_keys(key, known)
     return f"did you mean {enumeration(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
 

@@ -50,6 +50,7 @@ class BranchOptions(StrictSection):
                 described = allowed.description.partition(", or inf")[0]
                 if "finite" not in described:
                     described = described.replace("a number", "a finite number")
+                described += allowed.description_for(value).removeprefix(allowed.description)
                 raise ValueError(
                     f"{key} = {value:g} is not allowed along {self.along}; it should be {described}"
                 )

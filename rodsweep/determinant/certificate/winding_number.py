@@ -181,7 +181,8 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
-        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
+        where = f"at F = {rod.F:g}"
+        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {where}")
     if line >= real:
         return EigenvalueCount(0, 0)
     foot = 0.0

@@ -4,6 +4,7 @@ Configs, files, figures and the command line take units and meanings from this m
 no formula.
 """
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 from ...errors import InputError
@@ -95,3 +96,12 @@ def quoted_quantity(name: str, given: GivenQuantity) -> str:
     if isinstance(given, str):
         return f"{name} = '{given}'"
     return f"{name} = {quantity_in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"
+
+
+def radius_of_diameter(name: str, known: Collection[str]) -> str:
+    """The quantity in `known` that is half of the diameter `name`, such as inner_radius for inner_diameter;
+    "" if `name` is no diameter, or its radius is not known.
+    """
+    plain = name.lower().replace("-", "_").removeprefix("outer_")
+    radius = plain.replace("diameter", "radius")
+    return radius if radius != plain and radius in known else ""

@@ -180,9 +180,18 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         )
     if slenderness < LEAST_SLENDERNESS:
         raise NotSlender(
-            f"{length} is {slenderness:.3g} radii; the drag of a slender arm needs at least "
-            f"{LEAST_SLENDERNESS:g}, so give a longer or thinner arm"
+            f"{length} is {slenderness:.3g} radii, with {_radius_text(arm)}; the drag of a slender arm needs "
+            f"at least {LEAST_SLENDERNESS:g}, so give a longer or thinner arm"
         )
+
+
+def _radius_text(arm: "SlenderArm") -> str:
+    """The largest radius of the arm for messages: as given by the user, or else as a number in m."""
+    if arm.radius is None:
+        name = "largest" if arm.segments else "equivalent"
+        return f"{'a' if arm.segments else 'an'} {name} radius of {arm.shape.largest_drag_radius:.3g} m"
+    is_wider_at_tip = arm.tip_radius is not None and arm.si.tip_radius > arm.si.radius
+    return arm.text_of("tip_radius" if is_wider_at_tip else "radius")
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from ...errors import InputError
 from ..units import GivenQuantity
-from .quantities import arm_quantity_in_si, quoted_quantity
+from .quantities import arm_quantity_in_si, quoted_quantity, radius_of_diameter
 from .section import BoreTooWide, Circle, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
@@ -81,7 +81,9 @@ def written_segment(number: int, given: Any) -> WrittenSegment:
     found = dict(_quantities_by_name(where, given))
     for name in found:
         if name not in SEGMENT_KEYS:
-            raise InputError(f"{where}: unknown key {name}; a segment has {', '.join(SEGMENT_KEYS)}")
+            radius = radius_of_diameter(name, SEGMENT_KEYS)
+            hint = f"give {radius}, half of it" if radius else f"a segment has {', '.join(SEGMENT_KEYS)}"
+            raise InputError(f"{where}: unknown key {name}; {hint}")
     for name in ("length", "radius"):
         if found.get(name) is None:
             raise InputError(f"{where}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")

@@ -200,7 +200,8 @@ def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings
     """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
-        raise Unsolvable("no a-priori bound on the eigenvalues applies to this rod")
+        ends = f"from {path.text_at(low)} to {path.text_at(high)}"
+        raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")
     zeros, left, examined = cover_with_boxes(boxes, path.origin, path.direction)
     within = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
     hopfs = [_hopf_crossing(path, zero) for zero in within]

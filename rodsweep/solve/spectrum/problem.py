@@ -23,6 +23,7 @@ from ...determinant.certificate.box import frequency_bound
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
 from ...determinant.roots.roots import Roots, refined_roots
 from ...discretization.elements.resolution import (
+    RESOLUTION_SETTINGS,
     Resolution,
     expected_wave_number,
     finer_resolution,
@@ -191,3 +192,11 @@ class ArmProblem(TransverseProblem):
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:
     """The transverse eigenvalue problem of a uniform rod or of an arm; to_prove: see `ArmProblem`."""
     return UniformProblem(rod) if rod.is_uniform_and_linear else ArmProblem(rod, to_prove)
+
+
+def meshes_text(number: int, next_mesh: AnyMesh) -> str:
+    """Subject of a message on meshes without a result: all meshes of a size that may be solved, or the first
+    `number` meshes, which are coarser than `next_mesh`."""
+    if next_mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
+        return f"no mesh of at most {RESOLUTION_SETTINGS.max_unknowns} unknowns"
+    return f"none of {number} meshes with fewer than {next_mesh.unknown_count} unknowns"

@@ -14,7 +14,7 @@ from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point_outcome import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
-from .problem import TransverseProblem, transverse_problem
+from .problem import TransverseProblem, meshes_text, transverse_problem
 from .search_settings import SEARCH_SETTINGS
 from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
@@ -212,8 +212,8 @@ class SpectrumSearch:
         if self.is_leader_unresolved:
             why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
             return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
-        most = RESOLUTION_SETTINGS.max_unknowns
-        why = self.last_failure or f"no mesh of at most {most} unknowns resolves the requested modes"
+        meshes = meshes_text(SEARCH_SETTINGS.max_meshes, self.mesh)
+        why = self.last_failure or f"{meshes} resolves the requested modes"
         return failed_spectrum(SpectrumStatus.failed, self.request, why)
 
 

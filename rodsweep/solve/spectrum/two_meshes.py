@@ -19,7 +19,7 @@ from ...model.rod import Rod
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
-from .problem import TransverseProblem, transverse_problem
+from .problem import TransverseProblem, meshes_text, transverse_problem
 from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, modes_at_lobatto_nodes
 from .status import SpectrumStatus
 
@@ -93,8 +93,8 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best = here if best is None else min(best, here, key=_largest_error)
         before = found
     if best is None:
-        most = RESOLUTION_SETTINGS.max_unknowns
-        raise Unsolvable(f"no mesh of at most {most} unknowns gives the requested number of eigenvalues")
+        meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
+        raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
     return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
 

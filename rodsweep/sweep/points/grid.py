@@ -103,9 +103,8 @@ def require_in_range(
     """
     bad = allowed.first_outside(values)
     if bad is not None:
-        raise InputError(
-            f"parameters.{name} = {bad:g} is not allowed{where}; it must be {allowed.description}{why}"
-        )
+        described = allowed.description_for(bad)
+        raise InputError(f"parameters.{name} = {bad:g} is not allowed{where}; it must be {described}{why}")
 
 
 def refuse_invalid_axes(

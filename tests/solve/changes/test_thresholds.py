@@ -184,6 +184,17 @@ def test_what_overflows_fails_with_a_reason():
     assert isnan(found.search_result.open_range[0])
 
 
+def test_a_search_up_to_a_force_without_a_bound_names_the_force():
+    found = solve_thresholds(
+        Rod(F=0.0, k1=inf, k2=1e4, gamma3=1e-4), ThresholdsRequest(1e300, 1e-10, True, 16)
+    )
+    assert found.status == ThresholdStatus.failed
+    assert found.message.startswith(
+        "no a-priori bound on the eigenvalues applies to all rods from F = 0 to F = "
+    )
+    assert found.message.endswith("F = 1e+300")
+
+
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
     found = find_thresholds(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)

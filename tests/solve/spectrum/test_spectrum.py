@@ -1,5 +1,8 @@
 """The leading eigenvalues of one rod against the reference, and how points end that cannot be ok."""
 
+import re
+from dataclasses import replace
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -12,6 +15,7 @@ from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.spectrum import problem as problem_module
+from rodsweep.solve.spectrum import search, two_meshes
 from rodsweep.solve.spectrum.krylov_schur import uniform_solver
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.shift_invert import KRYLOV_SETTINGS
@@ -264,7 +268,29 @@ def test_error_inside_slepc_is_not_the_reason_if_later_meshes_are_solved(monkeyp
     monkeypatch.setattr(problem_module, "uniform_solver", failing)
     result = solve_spectrum(rod, TIGHT)
     assert (result.status, len(failing.meshes) > 4) == (SpectrumStatus.failed, True)
-    assert result.message == "no mesh of at most 10000 unknowns resolves the requested modes"
+    told = re.fullmatch(r"none of 16 meshes with fewer than (\d+) unknowns resolves .*", result.message)
+    assert 0 < int(told[1]) < 10000
+
+
+def test_a_search_that_ends_at_the_largest_mesh_names_its_size(monkeypatch):
+    for module in (search, problem_module):
+        smaller = replace(module.RESOLUTION_SETTINGS, max_unknowns=1000)
+        monkeypatch.setattr(module, "RESOLUTION_SETTINGS", smaller)
+    result = solve_spectrum(Rod(F=-1e5, k1=1e8, k2=1e8, gamma3=1.0), TIGHT)
+    assert result.status == SpectrumStatus.failed
+    assert result.message == "no mesh of at most 1000 unknowns resolves the requested modes"
+
+
+def test_two_meshes_name_the_number_of_meshes_without_a_result(monkeypatch):
+    monkeypatch.setattr(
+        two_meshes, "TWO_MESH_SETTINGS", replace(two_meshes.TWO_MESH_SETTINGS, max_finer_meshes=0)
+    )
+    result = solve_on_two_meshes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), TIGHT)
+    assert result.status == SpectrumStatus.failed
+    assert re.fullmatch(
+        r"none of 1 meshes with fewer than \d+ unknowns gives the requested number of eigenvalues",
+        result.message,
+    )
 
 
 def test_overflowing_parameters_fail_with_a_reason_and_harm_no_later_point():

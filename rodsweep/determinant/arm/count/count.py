@@ -77,7 +77,8 @@ def count_right_of(
     raises no exception: `number` is then None and `failure_reason` the reason.
     """
     if not math.isfinite(hull.a):
-        return EigenvalueCount(None, 0, "no a-priori bound on the eigenvalues applies to this rod")
+        where = f"at F = {determinant.rod.F:g}"
+        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {where}")
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
     known = known[error < CONTOUR_SETTINGS.max_known_error * np.abs(known.real - line)]

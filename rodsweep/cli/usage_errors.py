@@ -1,0 +1,34 @@
+"""Error messages for unknown commands and options of the command line."""
+
+import click
+
+
+class CommandGroup(click.Group):
+    """A group of commands that refuses an unknown command with the most similar command, or a list of all
+    commands."""
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Name, command and arguments from the words `args` of the command line, as in click; raises
+        click.UsageError for an unknown command."""
+        name = args[0]
+        if ctx.resilient_parsing or name.startswith("-") or self.get_command(ctx, name) is not None:
+            return super().resolve_command(ctx, args)
+        from ..config.document.refusals import dotted_key, unknown_key_hint
+
+        hint = unknown_key_hint(name, self.list_commands(ctx), "the commands are")
+        raise click.UsageError(f"unknown command {dotted_key([name])}; {hint}", ctx)
+
+
+def usage_error_text(error: click.UsageError) -> str:
+    """Message of a click error; for an unknown option that is a diameter, with the option of the radius."""
+    if not isinstance(error, click.NoSuchOption) or error.ctx is None:
+        return error.format_message()
+    from ..model.arm.quantities import radius_of_diameter
+
+    options = [parameter.name or "" for parameter in error.ctx.command.params]
+    radius = radius_of_diameter(error.option_name.lstrip("-"), options)
+    if not radius:
+        return error.format_message()
+    return f"unknown option {error.option_name}; give --{radius.replace('_', '-')}, half of it"
