@@ -109,12 +109,16 @@ def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[An
     if not np.min(relaxation) > 0:
         return _largest_sampled_growth(*(np.asarray(x)[..., None] for x in (top, relaxation, c2, gamma3)))
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
-    # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w.
+    # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w. In units of `unit` no allowed
+    # force overflows.
     total = c2 + gamma3
-    product = c2 * gamma3
-    root = np.sqrt(product * top**2 + total * relaxation * top + relaxation**2)
-    rate = top**2 / (total * top + 2 * relaxation + 2 * root)
-    return rate, np.sqrt(np.sqrt(rate * (product * rate + relaxation)))
+    with np.errstate(over="ignore"):
+        unit = np.maximum(top, relaxation)
+        drive = top / unit
+        damping = relaxation / unit
+        damping = damping + np.sqrt(c2 * gamma3 * drive * drive + total * damping * drive + damping * damping)
+        denominator = total * drive + 2 * damping
+        return top * drive / denominator, np.sqrt(top * (damping / denominator))
 
 
 def _largest_sampled_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:

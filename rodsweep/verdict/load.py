@@ -15,7 +15,7 @@ four digits."""
 
 
 class LoadFormatter:
-    """LoadFormatter of an arm in the user's unit; a pressure if the user gave no load."""
+    """Texts of the load of an arm in the user's unit; of a pressure if the user gave no load."""
 
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"

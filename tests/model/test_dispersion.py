@@ -1,5 +1,7 @@
 """The most amplified wave of the dispersion relation, against a search over wave numbers."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -40,6 +42,15 @@ def test_growth_of_a_pulled_soft_rod_is_attained(gamma3: float) -> None:
 def test_rod_without_load_or_with_small_pull_has_no_growing_wave() -> None:
     for F in (0.0, -5.0):
         assert most_amplified_wave(Rod(F=F, k1=1e4, k2=1e4, gamma3=1e-4)) == (0.0, 0.0)
+
+
+def test_waves_at_extreme_forces_do_not_overflow() -> None:
+    """Without drag of rotation K = F g/2 exactly; c2 > 0 lowers the wave number, not its order."""
+    for F in (1e100, 1e160, 1e300):
+        assert most_amplified_wave(Rod(F=F, k1=math.inf, k2=math.inf, gamma3=0.0))[1] == pytest.approx(
+            math.sqrt(F / 2), rel=1e-12
+        )
+    assert math.isfinite(most_amplified_wave(Rod(F=1e140, k1=math.inf, k2=1e4, gamma3=1e-4))[1])
 
 
 def test_local_waves_of_a_slightly_tapered_arm_are_those_of_the_uniform_rod() -> None:

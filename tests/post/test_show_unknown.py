@@ -154,7 +154,7 @@ def test_a_row_that_is_undecided_is_no_row_without_flutter(tmp_path):
     classes = np.asarray(view.variables["class"]).copy()
     classes[..., 0, 0, 0, 1] = next(number for number, word in STABILITY_CLASSES if word == "undecided")
     shown = told(changed(view, **{"class": classes}))
-    assert "no flutter on" not in shown
+    assert "none on" not in shown
     assert "undecided: on 1 of 2 rows, F = 60, k1 = 100" in shown
 
 

@@ -118,6 +118,19 @@ def test_polynomials_are_interpolated_exactly(count, degree):
     assert np.abs(found - expected).max() < 1e-12 * np.abs(expected).max()
 
 
+@pytest.mark.parametrize("tiny", [0, -1])
+def test_a_tiny_first_or_last_step_spoils_no_interpolation_of_the_steps_beside_it(tiny):
+    """Second derivatives from steps of 0.1 and 1e-7 would be wrong by 1, from rounding alone."""
+    steps = np.linspace(0.0, 10.0, 101)
+    steps = np.insert(steps, 1 if tiny == 0 else 100, steps[tiny] + (1e-7 if tiny == 0 else -1e-7))
+    noise = 1e-11 * np.random.default_rng(0).normal(size=(2, 1, len(steps)))
+    times = np.linspace(0.0, 10.0, 1001)
+    found = interpolated_between_steps(
+        steps, np.cos(steps)[None] + noise[0], -np.sin(steps)[None] + noise[1], times
+    )
+    assert np.abs(found - np.cos(times)).max() < 1e-6
+
+
 def test_a_stored_motion_has_no_jumps():
     """It grows so slowly, by a few percent a period, that without being stored it would be scaled."""
     c = followed(27.6, amplitude=0.03, count=20_000)

@@ -11,6 +11,11 @@ from ....arrays import Array
 from ....discretization.beam import Beam
 from ...motion.integrator import Trajectory
 
+MAX_STEP_RATIO = 8.0
+"""A time step that is longer than another step at one of its ends by more than this factor is interpolated by
+the cubic polynomial: second derivatives from unequal steps multiply errors of the values by the squared
+factor. The integrator changes a step by a factor of at most 5, except a last step, which ends on time."""
+
 
 class TipTrace:
     """Record of the tip's path: position and velocity at all time steps of the successive runs of one
@@ -70,7 +75,8 @@ class TipTrace:
 
 def interpolated_between_steps(steps: Array, values: Array, rates: Array, times: Array) -> Array:
     """Values at `times`, (m, k), by the quintic polynomial of each time step, which has the values, rates and
-    second derivatives of its two ends; of a run with a single step, the cubic polynomial.
+    second derivatives of its two ends; by the cubic polynomial for a run with a single step, and for a step
+    that is more than MAX_STEP_RATIO times as long as one beside it.
 
     steps: times of the ends of the steps, increasing, (n,), n >= 2. values, rates: at these times, (m, n).
     times: from the first to the last of `steps`, (k,).
@@ -89,7 +95,10 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
     # The cubic polynomial lacks these parts of the second derivatives at the two ends.
     lacking_left = second[:, : len(times)] - (rise - 4 * ends[2] - 2 * ends[3])
     lacking_right = second[:, len(times) :] - (2 * ends[2] + 4 * ends[3] - rise)
-    return cubic + (x * (1 - x)) ** 2 / 2 * ((1 - x) * lacking_left + x * lacking_right)
+    quintic = cubic + (x * (1 - x)) ** 2 / 2 * ((1 - x) * lacking_left + x * lacking_right)
+    near = np.clip(np.stack((left, left + 1)), 1, len(steps) - 2)
+    shortest = np.minimum(steps[near] - steps[near - 1], steps[near + 1] - steps[near]).min(axis=0)
+    return np.where(h <= MAX_STEP_RATIO * shortest, quintic, cubic)
 
 
 def _second_derivatives(steps: Array, values: Array, rates: Array, used: Array) -> Array:
