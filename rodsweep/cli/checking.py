@@ -70,7 +70,7 @@ def _arm_lines(job: Job) -> list[str]:
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
     validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
     load_clause = ", and compression, by the load that it finds"
-    if job.config.task == "phase_diagram":
+    if "F" in job.task.coordinates():  # rows along F
         load_clause = ", and says above which load compression exceeds its limit"
     # The load is known before the run, or the law of rubber includes large compression.
     if "F" in job.points.names or isinf(job.config.build.constitutive_law.crushing_load):

@@ -18,8 +18,8 @@ def compression_lines(view: View, rods: np.ndarray) -> list[str]:
     compression, because its law includes large compression. Raises InputError if this version of rodsweep
     does not accept the config of the file.
     """
-    if view.task != "phase_diagram" or not rods.any():
-        return []
+    if "F" in view.parameters or "F" not in view.variables or not rods.any():
+        return []  # no rows along F
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
     largest = COMPRESSION_LIMIT * columns["k1"] * build_of_rods(view).relative_crushing_forces(tapers)
