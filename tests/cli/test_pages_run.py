@@ -29,6 +29,8 @@ REFUSED = re.compile("rodsweep: ")
 """Start of the line with which a page says that a command is refused."""
 FILE_NAME = re.compile(r"# (\S+\.(?:yaml|csv))\n")
 """First line of a block that is a file."""
+NAME_BEFORE = re.compile(r"[Tt]he file `(\S+\.(?:yaml|csv))`:\n\n$")
+"""End of the text before a block that is a file."""
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"-?\d+\.?\d*(?:e[+-]?\d+)?")
 
@@ -96,8 +98,12 @@ def output_of(command, line, status=0):
 def run_page(command, page):
     """Runs the blocks of a page from top to bottom; AssertionError for the first that does not hold."""
     names, printed = {}, None
-    for language, text in BLOCK.findall(page.read_text()):
-        if file := FILE_NAME.match(text):
+    whole = page.read_text()
+    for block in BLOCK.finditer(whole):
+        language, text = block.groups()
+        if named := NAME_BEFORE.search(whole[: block.start()]):
+            command.write(named[1], text)
+        elif file := FILE_NAME.match(text):
             command.write(file[1], text if language == "yaml" else text[file.end() :])
         elif language == "python":
             with redirect_stdout(StringIO()) as stream:
