@@ -71,7 +71,7 @@ def _arm_lines(job: Job) -> list[str]:
     validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
     load_clause = ", and compression, by the load that it finds"
     if "F" in job.task.coordinates():  # rows along F
-        load_clause = ", and says above which load compression exceeds its limit"
+        load_clause = ", and compression, by the loads of the rows"
     # The load is known before the run, or the law of rubber includes large compression.
     if "F" in job.points.names or isinf(job.config.build.constitutive_law.crushing_load):
         load_clause = ""

@@ -299,7 +299,7 @@ def test_show_of_a_diagram_says_above_which_load_an_arm_is_compressed_too_much(c
     rows = "gamma3: [1.0e-3, 2.0e-3]"
     command.write("a.yaml", f"task: phase_diagram\nparameters: {{arm: {{{quantities}, {loads}}}, {rows}}}\n")
     checked = " ".join(command("check", "a.yaml").stdout.split())
-    assert ("and says above which load compression exceeds its limit" in checked) == ("law" not in more)
+    assert ("and compression, by the loads of the rows" in checked) == ("law" not in more)
     command.solved("a.yaml")
     found = [line for line in command("show", "a.h5").stdout.splitlines() if "compression exceeds" in line]
     assert len(found) == bool(said)

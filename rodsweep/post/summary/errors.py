@@ -41,7 +41,8 @@ COMPLEX_VARIABLES = ("landau", "growth_slope")
 EXTREMA_VARIABLES = ("tip_x_min", "tip_x_max", "tip_y_min", "tip_theta_max", "least_stretch")
 """Variables of a cycle whose stored error is the absolute error divided by tip_y_max."""
 MAX_DIP_BETWEEN_NODES = 4e-3
-"""Upper bound of (smallest nodal h1 - smallest h1 between nodes)/|1 - h1|."""
+"""Assumed bound of (smallest nodal h1 - smallest h1 between nodes)/|1 - h1|; twice the largest ratio of tests
+with arms of segments and of rubber."""
 CYCLE_POWER_VARIABLES = ("injection_mean", "injection_rms", "dissipation_mean", "dissipation_rms")
 """Mean powers and rms fluctuations. Their errors follow from the errors of amplitude, period and energy
 balance."""

@@ -22,7 +22,7 @@ class BranchStatus(PointStatus):
     )
     list_full = (
         2,
-        "the file has no room for all cycles or special points; raise the options `cycles` or `special`",
+        "the lists have no room for all cycles or special points; raise the options `cycles` or `special`",
     )
     special_undecided = (
         3,
@@ -69,6 +69,6 @@ class CoexistenceStatus(PointStatus):
     )
     special_full = (
         8,
-        "the file has no room for all special points on the branches of the row; choose a smaller range of "
+        "the list has no room for all special points on the branches of the row; choose a smaller range of "
         "the parameter along the row",
     )

@@ -23,7 +23,7 @@ class ThresholdStatus(PointStatus):
         "the error estimate of a threshold exceeds the requested accuracy, for example where two thresholds "
         "nearly coincide; use a larger number for the accuracy",
     )
-    list_full = 4, "the file has no room for all thresholds; raise the option crossings"
+    list_full = 4, "the list has no room for all thresholds; raise the option crossings"
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,

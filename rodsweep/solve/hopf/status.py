@@ -23,7 +23,7 @@ class CriticalityStatus(PointStatus):
         "the error estimate of a Hopf point or of a coefficient exceeds the requested accuracy; use a larger "
         "number for the accuracy",
     )
-    list_full = 4, "the file has no room for all Hopf points; raise the option crossings"
+    list_full = 4, "the list has no room for all Hopf points; raise the option crossings"
     failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
     coefficients_failed = (
         6,

@@ -109,8 +109,8 @@ def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines
     fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return []
-    extremes = extreme_arms_text(view, rods, loads)
-    lines = [extremes.replace("smallest", "smallest flutter load", 1)] if extremes else []
+    extremes = extreme_arms_text(view, rods, loads, "smallest flutter load")
+    lines = [extremes] if extremes else []
     places = np.flatnonzero(rods)
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
     whole = {name: np.full(rods.size, np.nan) for name in numbers}

@@ -19,17 +19,17 @@ def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
     forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
     if load_kind(view) == "force" or not np.isfinite(forces).any():
         return []
-    extremes = extreme_arms_text(view, rods, forces)
+    extremes = extreme_arms_text(view, rods, forces, "smallest")
     text = range_in_unit(view, forces, "N", 0.0, ANSWER_DIGITS)
     return [f"flutter as a force at the tip: {text}{f', {extremes}' if extremes else ''}"]
 
 
-def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray) -> str:
+def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
-    loads of the points in the mask `rods`, (n,)."""
+    loads of the points in the mask `rods`, (n,). smallest: words for the smallest load."""
     if np.isfinite(loads).sum() < 2:
         return ""
     places = np.flatnonzero(rods)
     ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
     least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
-    return "" if least == most else f"smallest at {least}; largest at {most}"
+    return "" if least == most else f"{smallest} at {least}; largest at {most}"
