@@ -9,6 +9,8 @@ Arrays over the nodes of every element contain the elements one after the other,
 `Elements.element_nodes`.
 """
 
+import numpy as np
+
 from ..arrays import Array
 from ..model.compiled.compilation import compiled, compiled_for_vectors
 from ..model.material.jump import (
@@ -18,35 +20,35 @@ from ..model.material.jump import (
     unknowns_before_jump,
     unknowns_behind_jump,
 )
-from .nodal_rod import NodalRod
+from .nodal_rod import IntegerArray, NodalRod
 
 
 @compiled
-def index_before_jump(node: int, order: int) -> int:
+def index_before_jump(node: int, element_nodes: IntegerArray) -> int:
     """Index of the last node of the element before the jump at `node`, in arrays over the nodes of every
     element.
 
-    The first node of the element behind the jump has the next index. order: order of the elements.
+    The first node of the element behind the jump has the next index. element_nodes: as in `Elements`.
     """
-    return node + node // order - 1
+    return int(np.searchsorted(element_nodes, node))
 
 
 @compiled_for_vectors
-def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> None:
-    """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, elements (order + 1)).
+def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array) -> None:
+    """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, nodes + elements).
 
     S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the
-    strains of both sides are written. order: order of the elements.
+    strains of both sides are written. element_nodes: as in `Elements`.
     """
     for a in range(len(S)):
         for k in range(S.shape[1]):
             for i in range(out.shape[2]):
-                node = i - i // (order + 1)
+                node = element_nodes[i]
                 out[a, k, i] = rod.rest_strain[a, node] + rod.compliance[a, node] * S[a, k, node]
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.jump_sides[j]
-        before = index_before_jump(node, order)
+        before = index_before_jump(node, element_nodes)
         for k in range(S.shape[1]):
             q = LawUnknowns(S[0, k, node], S[2, k, node])
             first = unknowns_before_jump(rod.law, sides, q)
@@ -58,20 +60,22 @@ def write_element_strains(S: Array, rod: NodalRod, order: int, out: Array) -> No
 
 
 @compiled_for_vectors
-def write_element_strain_changes(S: Array, rates: Array, rod: NodalRod, order: int, out: Array) -> None:
-    """Writes changes of the strains at the nodes of every element into out, (3, m, elements (order + 1)).
+def write_element_strain_changes(
+    S: Array, rates: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array
+) -> None:
+    """Writes changes of the strains at the nodes of every element into out, (3, m, nodes + elements).
 
     S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the strains at all nodes, and
-    of the mean strain at jumps, (3, m, nodes + 1). order: order of the elements.
+    of the mean strain at jumps, (3, m, nodes + 1). element_nodes: as in `Elements`.
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):
             for i in range(out.shape[2]):
-                out[a, k, i] = rates[a, k, i - i // (order + 1)]
+                out[a, k, i] = rates[a, k, element_nodes[i]]
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.jump_sides[j]
-        before = index_before_jump(node, order)
+        before = index_before_jump(node, element_nodes)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]
         c3 = rod.compliance[2, node]

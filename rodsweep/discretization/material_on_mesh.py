@@ -31,9 +31,7 @@ def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
     """
     if rod.is_uniform_and_linear:
         return rod.material
-    compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.sections(grid.points_inside_elements.ravel()), grid
-    )
+    compliance, drag, rest = _mean_coefficients_at_nodes(rod.sections(grid.points_inside_elements), grid)
     return Material(compliance, drag, rod.F, rest)
 
 
@@ -44,7 +42,7 @@ def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
     if rod.is_uniform_and_linear and name != "taper":
         return rod.material_derivative(name)
     compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.section_derivatives(name, grid.points_inside_elements.ravel()), grid
+        rod.section_derivatives(name, grid.points_inside_elements), grid
     )
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
@@ -57,7 +55,7 @@ def relative_bending_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
     """
     if build.profile is None:
         return np.ones(grid.node_count + 1)
-    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements.ravel())[2:], grid)[0]
+    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements)[2:], grid)[0]
 
 
 def jumps_on_mesh(rod: Rod, grid: Mesh) -> Jumps:
@@ -67,7 +65,7 @@ def jumps_on_mesh(rod: Rod, grid: Mesh) -> Jumps:
     inside, at = _indices_beside_jumps(rod.build, grid)
     if not len(at):
         return NO_JUMPS
-    points = grid.points_inside_elements.ravel()[inside]
+    points = grid.points_inside_elements[inside]
     weights = _nodes_and_weights_of_points(grid)[1][inside]
     sections = rod.sections(points.ravel())
     c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
@@ -88,19 +86,20 @@ def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
     inside, at = _indices_beside_jumps(rod.build, grid)
     if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_JUMP_DERIVATIVE
-    changes = rod.section_derivatives(name, grid.points_inside_elements.ravel()[inside].ravel())
+    changes = rod.section_derivatives(name, grid.points_inside_elements[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
 def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
-    """Returns (points, nodes) of the k jumps. points: indices in the flat `points_inside_elements` of the
+    """Returns (points, nodes) of the k jumps. points: indices in the `points_inside_elements` of the
     points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
     jumps = build.jump_positions
     ends = np.array([e for e in range(1, grid.element_count) if grid.edges[e] in jumps], np.int64)
-    size = grid.order + 1
-    return np.stack([ends * size - 1, ends * size], axis=-1), ends * grid.order
+    nodes = np.array([grid.node_ranges[e].start for e in ends], np.int64)
+    behind = nodes + ends
+    return np.stack([behind - 1, behind], axis=-1), nodes
 
 
 def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
@@ -128,8 +127,9 @@ def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _nodes_and_weights_of_points(grid: Mesh) -> tuple[IntegerArray, Array]:
-    """Returns (nodes, weights) of all `points_inside_elements`, (elements (order + 1),) each: node of the
-    mesh, and quadrature weight within the element.
+    """Returns (nodes, weights) of all `points_inside_elements`, (nodes + elements,) each: node of the mesh,
+    and quadrature weight within the element.
     """
-    weights = grid.lengths[:, None] / 2 * gauss_lobatto_rule(grid.order)[1]
-    return grid.element_nodes.ravel(), weights.ravel()
+    parts = zip(grid.lengths, grid.orders, strict=True)
+    weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
+    return grid.element_nodes, weights

@@ -86,18 +86,18 @@ class RodOnMesh(ABC):
         return broadcast_to_field(c.rest_strain, S) + broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
-        """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., elements (order + 1)); at
+        """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., nodes + elements); at
         a jump, the strains of both sides.
         """
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strains(
-            _flatten_middle_axes(S), self.nodal_rod, self.mesh.order, _flatten_middle_axes(out)
+            _flatten_middle_axes(S), self.nodal_rod, self.mesh.element_nodes, _flatten_middle_axes(out)
         )
         return out
 
     def element_strain_changes(self, x: Array, change: Array) -> Array:
-        """Derivative of `element_strains` at states x along `change`, (3, ..., elements (order + 1)).
+        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements).
 
         x, change: (..., unknowns).
         """
@@ -109,7 +109,7 @@ class RodOnMesh(ABC):
             _flatten_middle_axes(S),
             _flatten_middle_axes(moved),
             self.nodal_rod,
-            self.mesh.order,
+            self.mesh.element_nodes,
             _flatten_middle_axes(out),
         )
         return out

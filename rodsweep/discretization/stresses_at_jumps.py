@@ -15,6 +15,7 @@ from ..model.compiled.compilation import compiled
 from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
+from .element_strains import index_before_jump
 from .elements.basis import lagrange_interpolation_matrix
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh, interpolation_matrix
@@ -68,19 +69,17 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
 
 
 def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
-    """S at the nodes of every element, (3, ..., elements, order + 1); the two elements at a jump have the
-    values of their own side.
+    """S at the nodes of every element, (3, ..., nodes + elements); the two elements at a jump have the values
+    of their own side.
 
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     fields: Array = S[..., grid.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
-        e = node // grid.order
-        for component, before, behind in zip(
-            (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX), sides[0], sides[1], strict=True
-        ):
-            fields[component, ..., e - 1, -1] = before
-            fields[component, ..., e, 0] = behind
+        before = index_before_jump(int(node), grid.element_nodes)
+        for side, values in enumerate(sides):
+            for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
+                fields[component, ..., before + side] = value
     return fields
 
 
@@ -122,7 +121,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     sides_of_jumps = stresses_beside_jumps(nodal, S)
     for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
         for side, of_side in enumerate(values):
-            rows = element == node // source.order - 1 + side
+            rows = element == _element_behind(source, node) - 1 + side
             for component, value in zip(JUMPING_COMPONENTS, of_side, strict=True):
                 out[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
     for node, sides, values in zip(there.nodes, there.jump_sides, sides_of_jumps, strict=True):
@@ -144,24 +143,30 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     # In elements with an end at a jump, E uses the mean at this end. Extrapolation from the other nodes
     # replaces this value.
     out = E.copy()
-    p = source.order
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
-    at_jumps = [int(node) // p for node in here]
+    at_jumps = [_element_behind(source, node) for node in here]
+
+    def row_of(side: int, *, to_first_node: bool) -> Array:
+        p = source.orders[side]
+        return _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node)
+
     for e, node in zip(at_jumps, here, strict=True):
         for side in (e - 1, e):
             rows = element == side
-            columns = slice(side * p, (side + 1) * p + 1)
-            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node=side == e)
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
-            out[rows, columns] += weights[:, None] * row
+            out[rows, source.node_ranges[side]] += weights[:, None] * row_of(side, to_first_node=side == e)
     for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
         # States contain the mean of both sides at the node of a jump.
         out[node] = 0.0
         for side, share in ((e - 1, before), (e, behind)):
-            row = _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node=side == e)
-            out[node, side * p : (side + 1) * p + 1] += share * row
+            out[node, source.node_ranges[side]] += share * row_of(side, to_first_node=side == e)
     return out
+
+
+def _element_behind(grid: Mesh, node: int) -> int:
+    """Index of the element that begins at the node `node` of a jump."""
+    return index_before_jump(int(node), grid.element_nodes) + 1 - int(node)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

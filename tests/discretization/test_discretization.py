@@ -1,10 +1,13 @@
 """Quadrature, basis and pencil: orders and exact answers."""
 
+import pickle
+
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 from rodsweep.discretization.elements.basis import differentiation_matrix, lagrange_interpolation_matrix
-from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
+from rodsweep.discretization.elements.mesh import mesh_with_edges, shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 from rodsweep.discretization.elements.resolution import (
     RESOLUTION_SETTINGS,
@@ -94,9 +97,40 @@ def test_resolution_grows_with_waves_and_digits():
         last = resolution.unknown_count
 
 
-@pytest.mark.parametrize(("elements", "order"), [(1, 15), (3, 6)])
-def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(elements, order):
-    grid, rng = uniform_mesh(elements, order), np.random.default_rng(5)
+UNEQUAL_ORDERS = mesh_with_edges((0.0, 0.3, 0.45, 1.0), 14, (0.5, 0.3125, 1.0))
+
+
+def test_elements_of_unequal_orders_are_exact_for_polynomials_of_these_orders():
+    """A polynomial of the order of each element: interpolation, derivative and integral."""
+    grid, u = UNEQUAL_ORDERS, np.linspace(0, 1, 29)
+    assert grid.orders == (7, 5, 14)
+    pieces = [Polynomial(np.random.default_rng(p).standard_normal(p + 1)) for p in grid.orders]
+    # Continuous at the edges, as fields on a mesh are.
+    for e in (1, 2):
+        pieces[e] -= pieces[e](grid.edges[e]) - pieces[e - 1](grid.edges[e])
+    values = np.empty(grid.node_count + 1)
+    for piece, nodes in zip(pieces, grid.node_ranges, strict=True):
+        values[nodes] = piece(grid.node_positions[nodes])
+    element = np.clip(np.searchsorted(grid.edges, u, side="right") - 1, 0, 2)
+    exact = np.array([pieces[e](at) for e, at in zip(element, u, strict=True)])
+    assert np.abs(grid.evaluation_matrix(u) @ values - exact).max() < 1e-12
+    both_sides = values[grid.element_nodes]
+    assert np.abs(grid.element_evaluation_matrix(u) @ both_sides - exact).max() < 1e-12
+    integral = sum(
+        p.integ()(b) - p.integ()(a) for p, a, b in zip(pieces, grid.edges[:-1], grid.edges[1:], strict=True)
+    )
+    # Lobatto's rule with p + 1 nodes is exact up to the order 2 p - 1.
+    assert grid.quadrature @ values == pytest.approx(integral, abs=1e-13)
+    slopes = grid.matrices.D @ values
+    for piece, nodes in zip(pieces, grid.node_ranges, strict=True):
+        inner = slice(nodes.start + 1, nodes.stop - 1)
+        assert np.abs(slopes[inner] - piece.deriv()(grid.node_positions[inner])).max() < 1e-10
+    assert pickle.loads(pickle.dumps(grid)) is grid
+
+
+@pytest.mark.parametrize("grid", [uniform_mesh(1, 15), uniform_mesh(3, 6), UNEQUAL_ORDERS])
+def test_the_compiled_motion_of_the_tip_is_that_of_the_whole_shape(grid):
+    rng = np.random.default_rng(5)
     strains, rates = rng.standard_normal((2, 3, 4, grid.element_nodes.size))
     tip, velocity = np.empty((2, 4, 3))
     write_tip_motion(strains, rates, tip_matrices(grid), tip, velocity)

@@ -64,7 +64,7 @@ def period_and_largest_y(orbit, phases):
     X, frequency = solved_cycle(form, guess_at(orbit, phases), 2 * np.pi / orbit.period)
     S, _ = form.stresses_and_velocities(X)
     E = np.empty((*S.shape[:-1], form.mesh.element_nodes.size))
-    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.order, E)
+    write_element_strains(np.ascontiguousarray(S), orbit.form.nodal_rod, form.mesh.element_nodes, E)
     y = shape_from_strains(form.mesh, E, np.zeros(3))[1, :, -1]
     whole = np.append(y, -y)[:, None]
     return 2 * np.pi / frequency, float(series_maxima(fourier_coefficients(whole), whole)[0])

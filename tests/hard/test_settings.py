@@ -428,6 +428,14 @@ def single_cycle(accuracy: float) -> Answer:
     return cycle_answer(solve_cycle(BEATING.with_values(F=60.0), request(accuracy)))
 
 
+def cycle_of_segments(accuracy: float) -> Answer:
+    """A cycle of an arm whose base is stiff, on elements of unequal orders."""
+    soft = (0.36, 0.36, 0.1296, 0.36, 0.36, 0.36)
+    profile = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + (soft,) * 2)
+    rod = Rod(F=14.0, k1=1e4, k2=1e4, gamma3=1e-3, build=Build(profile=profile))
+    return cycle_answer(solve_cycle(rod, request(accuracy), None, "F"))
+
+
 def cycles_of_a_chain(accuracy: float) -> Answer:
     """The last of three cycles, of which each predicts the next."""
     last = None
@@ -497,6 +505,7 @@ SMALL_DRAG = Case(small_drag, 1e-6, 1e-8)
 LONGITUDINAL = Case(longitudinal, 1.0, 1.0)
 HELD = Case(held_tip, 1.0, 1.0)
 CONES = Case(followed_cones, 1e-8, 1e-10)
+SEGMENT_CYCLE = Case(cycle_of_segments, 1e-6, 1e-9)
 SEGMENTS = Case(segments, 1e-8, 1e-10)
 BETWEEN = Case(changes_between, 1.0, 1.0)
 SLOW = (LOPSIDED, TORUS, UNSTABLE, SLENDER_CONE)
@@ -515,6 +524,7 @@ CASES = {
     "ARC_STEP_CONTROL": BRANCH,
     "ORBIT_NEWTON_SETTINGS": BRANCH,
     "ORBIT_MESH_SETTINGS": BRANCH,
+    "ORDER_RATIO_SETTINGS": SEGMENT_CYCLE,
     "WORKSPACE_SETTINGS": BRANCH,
     "FLOQUET_MULTIPLIER_SETTINGS": BRANCH,
     "CURVE_START_SETTINGS": CURVE,

@@ -1,8 +1,9 @@
 """Spectral elements on the rod, and interpolation from their Lobatto nodes to other points."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
+from math import ceil
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ class ElementSettings:
     """Distance of the first and last `Elements.points_inside_elements` from the ends of an element, in L: a
     few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
+    min_reduced_order: int = 4
+    """Smallest order of an element whose order is less than the order of the mesh."""
     max_cached_meshes: int = 64
     """Maximum number of cached meshes, and of cached matrices of each kind; a sweep needs about ten."""
     max_cached_pencils: int = 16
@@ -33,12 +36,15 @@ ELEMENT_SETTINGS = ElementSettings()
 
 @dataclass(frozen=True)
 class Elements:
-    """Elements of equal order on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and
-    edges[-1] is 1.
+    """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
+
+    order: largest order of an element. order_ratios: order of each element divided by `order`, rounded up to
+    an integer by `element_orders`; empty if all orders are equal.
     """
 
     edges: tuple[float, ...]
     order: int
+    order_ratios: tuple[float, ...] = field(default=(), kw_only=True)
 
     @property
     def element_count(self) -> int:
@@ -48,7 +54,18 @@ class Elements:
     @property
     def node_count(self) -> int:
         """Number of nodes, one end of the rod excluded. The equations determine which end is excluded."""
-        return self.element_count * self.order
+        return sum(self.orders)
+
+    @property
+    def orders(self) -> tuple[int, ...]:
+        """Order of each element."""
+        return element_orders(self.element_count, self.order, self.order_ratios)
+
+    @cached_property
+    def node_ranges(self) -> tuple[slice, ...]:
+        """Range of the nodes of each element, both ends included. Neighbours share a node."""
+        ends = np.cumsum(self.orders).tolist()
+        return tuple(slice(end - order, end + 1) for end, order in zip(ends, self.orders, strict=True))
 
     @cached_property
     def lengths(self) -> Array:
@@ -58,56 +75,63 @@ class Elements:
     @cached_property
     def node_positions(self) -> Array:
         """Material coordinate u of all nodes, both ends included, (nodes + 1,)."""
-        inner = (gauss_lobatto_rule(self.order)[0][1:] + 1) / 2
-        starts: Array = np.array(self.edges[:-1])
-        positions: Array = np.append(0.0, (starts[:, None] + self.lengths[:, None] * inner).ravel())
-        # Nodes at edges must equal the edges exactly, because jumps of the material are compared with these
-        # values.
-        positions[self.order :: self.order] = self.edges[1:]
+        positions = np.empty(self.node_count + 1)
+        for e, (nodes, order) in enumerate(zip(self.node_ranges, self.orders, strict=True)):
+            positions[nodes] = self.edges[e] + self.lengths[e] * (gauss_lobatto_rule(order)[0] + 1) / 2
+            # Nodes at edges must equal the edges exactly, because jumps of the material are compared with
+            # these values.
+            positions[nodes.start] = self.edges[e]
+        positions[-1] = self.edges[-1]
         return positions
 
     @cached_property
     def element_nodes(self) -> NDArray[np.int64]:
-        """Indices of the nodes of every element, (elements, order + 1). Neighbours share a node."""
-        return np.arange(self.element_count)[:, None] * self.order + np.arange(self.order + 1)
+        """Indices of the nodes of every element, one element after the other, (nodes + elements,). Neighbours
+        share a node."""
+        return np.concatenate([np.arange(nodes.start, nodes.stop) for nodes in self.node_ranges])
 
     @cached_property
     def points_inside_elements(self) -> Array:
-        """Coordinates u of the nodes of every element, (elements, order + 1), with the end nodes moved just
+        """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
         inside the element.
 
         At a jump between two elements, each element therefore evaluates a coefficient on its own side.
         """
-        edges: Array = np.array(self.edges)[:, None]
-        points = edges[:-1] + self.lengths[:, None] * (gauss_lobatto_rule(self.order)[0] + 1) / 2
-        return np.clip(
-            points, edges[:-1] + ELEMENT_SETTINGS.end_distance, edges[1:] - ELEMENT_SETTINGS.end_distance
+        distance = ELEMENT_SETTINGS.end_distance
+        return np.concatenate(
+            [
+                np.clip(
+                    start + (end - start) * (gauss_lobatto_rule(order)[0] + 1) / 2,
+                    start + distance,
+                    end - distance,
+                )
+                for start, end, order in zip(self.edges[:-1], self.edges[1:], self.orders, strict=True)
+            ]
         )
 
     def evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
-        nodes = gauss_lobatto_rule(self.order)[0]
         matrix = np.zeros((len(points), self.node_count + 1))
-        for first, inside, local in self.points_by_element(points):
-            matrix[inside, first : first + self.order + 1] = lagrange_interpolation_matrix(nodes, local)
+        for e, inside, local in self.points_by_element(points):
+            nodes = gauss_lobatto_rule(self.orders[e])[0]
+            matrix[inside, self.node_ranges[e]] = lagrange_interpolation_matrix(nodes, local)
         return matrix
 
     def element_evaluation_matrix(self, points: Array) -> Array:
-        """Matrix (n, elements (order + 1)) from values at the nodes of every element to values at `points`,
-        (n,), in [0, 1].
+        """Matrix (n, nodes + elements) from values at the nodes of every element to values at `points`, (n,),
+        in [0, 1].
 
         A node between two elements has one value for each of the two elements.
         """
-        nodes = gauss_lobatto_rule(self.order)[0]
         matrix = np.zeros((len(points), self.element_nodes.size))
-        for first, inside, local in self.points_by_element(points):
-            start = first + first // self.order
-            matrix[inside, start : start + self.order + 1] = lagrange_interpolation_matrix(nodes, local)
+        for e, inside, local in self.points_by_element(points):
+            nodes = gauss_lobatto_rule(self.orders[e])[0]
+            columns = slice(self.node_ranges[e].start + e, self.node_ranges[e].stop + e)
+            matrix[inside, columns] = lagrange_interpolation_matrix(nodes, local)
         return matrix
 
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
-        """Yields (first node, indices, coordinates) for each element that contains some of the `points`,
-        (n,).
+        """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
 
         indices: of the points in the element. coordinates: of these points, from -1 to 1 along the element. A
         point between two elements belongs to the right element.
@@ -115,7 +139,15 @@ class Elements:
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
             inside = np.nonzero(element == e)[0]
-            yield int(e) * self.order, inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
+            yield int(e), inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
+def element_orders(elements: int, order: int, ratios: tuple[float, ...]) -> tuple[int, ...]:
+    """Orders of `elements` elements: `order` times each of `ratios`, rounded up, between
+    `ELEMENT_SETTINGS.min_reduced_order` and `order`; `order` for all elements if `ratios` is empty."""
+    least = min(ELEMENT_SETTINGS.min_reduced_order, order)
+    return tuple(max(least, ceil(ratio * order)) for ratio in ratios) or (order,) * elements
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

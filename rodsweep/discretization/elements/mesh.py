@@ -21,7 +21,7 @@ class ReconstructionSettings:
     """Settings for the quadrature that computes the shape of a rod."""
 
     extra_points: int = 10
-    """Number of Gauss points of an element, minus the order of the element, for the integrals of the shape.
+    """Number of Gauss points of an element, minus the largest order, for the integrals of the shape.
     Ten suffice if theta changes by up to two radians within an element."""
 
 
@@ -45,14 +45,14 @@ class NodeMatrices(NamedTuple):
 class Mesh(Elements):
     """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip.
 
-    Meshes with equal edges and order compare equal, also in different processes.
+    Meshes with equal edges and orders compare equal, also in different processes.
     """
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
-    def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int]]:
-        """Pickles only edges and order; messages to other ranks are pickled too."""
-        return mesh_with_edges, (self.edges, self.order)
+    def __reduce__(self) -> tuple[Any, tuple[tuple[float, ...], int, tuple[float, ...]]]:
+        """Pickles only edges and orders; messages to other ranks are pickled too."""
+        return mesh_with_edges, (self.edges, self.order, self.order_ratios)
 
     @property
     def quadrature(self) -> Array:
@@ -66,24 +66,23 @@ def uniform_mesh(elements: int, order: int) -> Mesh:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def mesh_with_edges(edges: tuple[float, ...], order: int) -> Mesh:
-    """The mesh whose elements lie between neighbouring `edges` and have the order `order`; cached."""
-    x, w = gauss_lobatto_rule(order)
-    slopes = differentiation_matrix(x)
-    lengths = np.diff(edges)
-    nodes = len(lengths) * order
+def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[float, ...] = ()) -> Mesh:
+    """The mesh whose elements lie between neighbouring `edges`; cached. order, order_ratios: orders of the
+    elements, as in `Elements`."""
+    elements = Elements(edges, order, order_ratios=order_ratios)
+    nodes = elements.node_count
     weighted = np.zeros((nodes + 1, nodes + 1))
     total = np.zeros(nodes + 1)
-    for length, first in zip(lengths, range(0, nodes, order), strict=True):
-        element = slice(first, first + order + 1)
-        weighted[element, element] += w[:, None] * slopes  # the length of the element cancels
-        total[element] += length / 2 * w
+    for length, own, p in zip(elements.lengths, elements.node_ranges, elements.orders, strict=True):
+        x, w = gauss_lobatto_rule(p)
+        weighted[own, own] += w[:, None] * differentiation_matrix(x)  # the length of the element cancels
+        total[own] += length / 2 * w
     # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
     # D is the assembled matrix.
     D = weighted / total[:, None]
     # -D^T W: `weighted` is W D.
     parts = D, D.T, -weighted.T, total
-    return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)))
+    return Mesh(edges, order, NodeMatrices(*map(np.ascontiguousarray, parts)), order_ratios=order_ratios)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
@@ -98,16 +97,15 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
 def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains.
 
-    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta)
-    at u = 0, (3,).
+    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at
+    u = 0, (3,).
     """
-    values, angles, integrals, ends = shape_integration_matrices(grid.order)
-    p = grid.order
+    points = grid.order + RECONSTRUCTION_SETTINGS.extra_points
     state = np.empty((*strains.shape[:-1], grid.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
-    for e, length in enumerate(grid.lengths):
-        element = slice(e * p, (e + 1) * p + 1)
-        h1, h2, Pi = (strain[..., e * (p + 1) : (e + 1) * (p + 1)] for strain in strains)
+    for e, (element, length) in enumerate(zip(grid.node_ranges, grid.lengths, strict=True)):
+        values, angles, integrals, ends = shape_integration_matrices(grid.orders[e], points)
+        h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)
         sin = np.sin(theta)
@@ -136,10 +134,11 @@ class ShapeIntegrationMatrices(NamedTuple):
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def shape_integration_matrices(order: int) -> ShapeIntegrationMatrices:
-    """The `ShapeIntegrationMatrices` of elements of order `order`, cached."""
+def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegrationMatrices:
+    """The `ShapeIntegrationMatrices` of elements of order `order`, cached. gauss_points: number of Gauss
+    points; 0: `order` plus `RECONSTRUCTION_SETTINGS.extra_points`."""
     x = gauss_lobatto_rule(order)[0]
-    g = gauss_legendre_rule(order + RECONSTRUCTION_SETTINGS.extra_points)[0]
+    g = gauss_legendre_rule(gauss_points or order + RECONSTRUCTION_SETTINGS.extra_points)[0]
     return ShapeIntegrationMatrices(
         lagrange_interpolation_matrix(x, g).T,
         integration_matrix(x, g).T,

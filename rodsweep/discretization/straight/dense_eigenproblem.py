@@ -75,8 +75,7 @@ def _points_inside_elements(mesh: Elements, points: Array) -> Array:
     """The points, (n,), each moved just inside the element to which `Elements.points_by_element` assigns the
     point."""
     moved = np.array(points, dtype=float)
-    for first, inside, local in mesh.points_by_element(points):
-        e = first // mesh.order
+    for e, inside, local in mesh.points_by_element(points):
         position = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
         moved[inside] = np.clip(
             position,

@@ -228,9 +228,8 @@ def integral_to_tip(grid: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
     (nodes + 1,).
     """
-    ends = shape_integration_matrices(grid.order).angles_at_nodes
     total = np.zeros(grid.node_count + 1)
-    for e, length in enumerate(grid.lengths):
-        element = slice(e * grid.order, (e + 1) * grid.order + 1)
-        total[element] = total[element.start] + length * (values[element] @ ends)
+    for nodes, order, length in zip(grid.node_ranges, grid.orders, grid.lengths, strict=True):
+        ends = shape_integration_matrices(order).angles_at_nodes
+        total[nodes] = total[nodes.start] + length * (values[nodes] @ ends)
     return total[-1] - total

@@ -166,8 +166,9 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    for first, inside, local in mesh.points_by_element(points):
-        result[inside] = lagrange_interpolation_matrix(nodes, local) @ values[first : first + mesh.order]
+    for e, inside, local in mesh.points_by_element(points):
+        own = slice(e * mesh.order, (e + 1) * mesh.order)
+        result[inside] = lagrange_interpolation_matrix(nodes, local) @ values[own]
     return result
 
 
@@ -178,8 +179,8 @@ def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Comp
     nodes, _ = gauss_lobatto_rule(mesh.order)
     derivative = 2 * differentiation_matrix(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    for first, inside, local in mesh.points_by_element(points):
-        changes = derivative @ values[first : first + mesh.order + 1] / mesh.lengths[first // mesh.order]
+    for e, inside, local in mesh.points_by_element(points):
+        changes = derivative @ values[mesh.node_ranges[e]] / mesh.lengths[e]
         result[inside] = lagrange_interpolation_matrix(nodes, local) @ changes
     return result
 

@@ -12,36 +12,43 @@ import numpy as np
 from ...arrays import Array
 from ...model.compiled.compilation import compiled_for_vectors
 from ..elements.elements import ELEMENT_SETTINGS, Elements
-from ..elements.mesh import shape_integration_matrices
+from ..elements.mesh import RECONSTRUCTION_SETTINGS, shape_integration_matrices
+from ..nodal_rod import IntegerArray
 
 
 class TipMatrices(NamedTuple):
-    """Matrices that integrate strains to the position of the tip, on one element [0, 1] with p + 1 nodes.
+    """Matrices that integrate strains to the position of the tip, each element as [0, 1]. m: number of nodes
+    of all elements, one element after the other; g: number of Gauss points of every element.
 
-    values_at_gauss_points: interpolation from nodes to g Gauss points, (p + 1, g). angles_at_gauss_points:
-    integrals of nodal polynomials from 0 to the Gauss points, (p + 1, g). gauss_weights: Gauss weights, (g,).
-    element_integrals: integrals of nodal polynomials over the element, (p + 1,). element_lengths: lengths of
-    all elements, (elements,)."""
+    values_at_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
+    angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g). gauss_weights:
+    Gauss weights, (g,). element_integrals: integrals of nodal polynomials over the element, (m,).
+    element_lengths: lengths of all elements, (elements,). element_nodes: as in `Elements`, (m,).
+    element_starts: index in m of the first node of each element, then m, (elements + 1,)."""
 
     values_at_gauss_points: Array
     angles_at_gauss_points: Array
     gauss_weights: Array
     element_integrals: Array
     element_lengths: Array
+    element_nodes: IntegerArray
+    element_starts: IntegerArray
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def tip_matrices(grid: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
-    m = shape_integration_matrices(grid.order)
-    parts = (
-        m.values_at_gauss_points,
-        m.angles_at_gauss_points,
-        m.integrals_to_nodes[:, -1],
-        m.angles_at_nodes[:, -1],
-        grid.lengths,
+    points = grid.order + RECONSTRUCTION_SETTINGS.extra_points
+    each = [shape_integration_matrices(order, points) for order in grid.orders]
+    return TipMatrices(
+        values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in each]),
+        angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in each]),
+        gauss_weights=np.ascontiguousarray(each[0].integrals_to_nodes[:, -1]),
+        element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in each]),
+        element_lengths=np.ascontiguousarray(grid.lengths),
+        element_nodes=grid.element_nodes,
+        element_starts=np.append(0, np.cumsum([order + 1 for order in grid.orders])),
     )
-    return TipMatrices(*map(np.ascontiguousarray, parts))
 
 
 @compiled_for_vectors
@@ -49,11 +56,10 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
     velocity.
 
-    strains: (h1, h2, Pi) at the nodes of every element, (3, states, elements (p + 1)). rates: time
+    strains: (h1, h2, Pi) at the nodes of every element, (3, states, m). rates: time
     derivatives of the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the
     origin along e_x.
     """
-    size = len(m.element_integrals)
     points = len(m.gauss_weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
@@ -64,11 +70,9 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
         dy = 0.0
         turn = 0.0
         for e in range(len(m.element_lengths)):
-            first = e * size
             length = m.element_lengths[e]
-            here = slice(first, first + size)
-            _write_fields_at_gauss_points(strains[:, k, here], m, length, theta, fields[:3])
-            _write_fields_at_gauss_points(rates[:, k, here], m, length, turn, fields[3:])
+            _write_fields_at_gauss_points(strains[:, k], m, e, theta, fields[:3])
+            _write_fields_at_gauss_points(rates[:, k], m, e, turn, fields[3:])
             for g in range(points):
                 cos = np.cos(fields[2, g])
                 sin = np.sin(fields[2, g])
@@ -81,9 +85,9 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
                 # angular velocity dtheta/dt.
                 dx += w * (cos * fields[3, g] - sin * fields[4, g]) - v * fields[5, g]
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
-            for j in range(size):
-                theta += length * m.element_integrals[j] * strains[2, k, first + j]
-                turn += length * m.element_integrals[j] * rates[2, k, first + j]
+            for j in range(m.element_starts[e], m.element_starts[e + 1]):
+                theta += length * m.element_integrals[j] * strains[2, k, j]
+                turn += length * m.element_integrals[j] * rates[2, k, j]
         tip[k, 0] = x
         tip[k, 1] = y
         tip[k, 2] = theta
@@ -93,17 +97,15 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
 
 
 @compiled_for_vectors
-def _write_fields_at_gauss_points(
-    nodal: Array, m: TipMatrices, length: float, start: float, fields: Array
-) -> None:
-    """Writes h1, h2 and theta at the Gauss points of one element into fields, (3, g).
+def _write_fields_at_gauss_points(nodal: Array, m: TipMatrices, e: int, start: float, fields: Array) -> None:
+    """Writes h1, h2 and theta at the Gauss points of element e into fields, (3, g).
 
-    nodal: (h1, h2, Pi) at the nodes of the element, (3, p + 1). length: length of the element. start: theta
-    at the left end of the element.
+    nodal: (h1, h2, Pi) at the nodes of all elements, (3, m). start: theta at the left end of the element.
     """
     fields[:2] = 0.0
     fields[2] = start
-    for j in range(len(m.element_integrals)):
+    length = m.element_lengths[e]
+    for j in range(m.element_starts[e], m.element_starts[e + 1]):
         h1 = nodal[0, j]
         h2 = nodal[1, j]
         Pi = nodal[2, j]

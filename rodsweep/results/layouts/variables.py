@@ -137,7 +137,7 @@ SECONDS = Variable("seconds", "<f4", np.nan, "s", "time spent on the point")
 STATUS = Variable("status", "|i1", MISSING_STATUS, "1", "outcome of the point")
 MESH_VARIABLES = (
     Variable("elements", "<i2", 0, "1", "number of spectral elements"),
-    Variable("order", "<i2", 0, "1", "polynomial order of the elements"),
+    Variable("order", "<i2", 0, "1", "largest polynomial order of the elements"),
 )
 """Variables that describe the mesh of a point."""
 

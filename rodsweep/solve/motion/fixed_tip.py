@@ -87,7 +87,7 @@ class _BentRod:
         size = beam.mesh.node_count + 1
         self.length = float(self.h1 @ beam.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
-        unit[2] = np.eye(size)[:, self.mesh.element_nodes.ravel()]
+        unit[2] = np.eye(size)[:, self.mesh.element_nodes]
         self.angle_matrix = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
         """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
         is used."""

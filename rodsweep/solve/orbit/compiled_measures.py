@@ -44,7 +44,7 @@ class TipPath(NamedTuple):
     nodes.
 
     strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
-    respect to t/T, T: period, for the solved states, (2, 3, K, elements (order + 1)). tip_coefficients: the
+    respect to t/T, T: period, for the solved states, (2, 3, K, nodes + elements). tip_coefficients: the
     `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
     equidistant times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least_tip_values,
     largest_tip_values: smallest and largest (x, y, theta), (3,)."""
@@ -73,8 +73,7 @@ def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatri
     period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
     of `tip_matrices`."""
     size = len(p.node_matrices.weights)
-    order = len(m.element_integrals) - 1
-    strains = np.empty((2, 3, len(states), len(m.element_lengths) * (order + 1)))
+    strains = np.empty((2, 3, len(states), len(m.element_nodes)))
     tip = np.empty((len(states), 3))
     velocity = np.empty((len(states), 3))
     S = np.empty((3, len(states), size))
@@ -82,8 +81,8 @@ def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatri
     write_node_stresses(states, S)
     write_strain_rates(states, rates, p)
     rates *= period
-    write_element_strains(S, p.rod, order, strains[0])
-    write_element_strain_changes(S, rates, p.rod, order, strains[1])
+    write_element_strains(S, p.rod, m.element_nodes, strains[0])
+    write_element_strain_changes(S, rates, p.rod, m.element_nodes, strains[1])
     write_tip_motion(strains[0], strains[1], m, tip, velocity)
     # For an orbit without symmetry the signs are 0, because its values cover the whole period.
     c = hermite_coefficients_of_columns(tip, velocity, REFLECTION_SIGNS * (p.period_parts - 1))

@@ -62,7 +62,7 @@ def least_stretch(path: "CyclePath", enough: float = inf) -> float:
     def least(u: Array) -> Array:
         return least_of(c @ grid.element_evaluation_matrix(u).T)
 
-    before = [index_before_jump(int(node), grid.order) for node in form.nodal_rod.jumps]
+    before = [index_before_jump(int(node), grid.element_nodes) for node in form.nodal_rod.jumps]
     at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
     places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.node_positions))
     values = least(places)

@@ -76,8 +76,8 @@ class CyclePath:
 
     @cached_property
     def strain_coefficients(self) -> Complex:
-        """Fourier coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, elements (order +
-        1))."""
+        """Fourier coefficients of (h1, h2, Pi) at the nodes of every element, (count, 3, nodes +
+        elements)."""
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)

@@ -7,11 +7,12 @@ from math import ceil, log
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.elements.elements import halve_elements
+from ...discretization.elements.elements import element_orders, halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from .orbit import Orbit
+from .order_ratios import order_ratios
 from .tails import tails_of
 
 
@@ -69,18 +70,24 @@ ORBIT_MESH_SETTINGS = OrbitMeshSettings()
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: order of all elements.
-    interval_count: number of time intervals. stage_count: number of Radau stages of each interval."""
+    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order, order_ratios: orders of
+    the elements, as in `Elements`. interval_count: number of time intervals. stage_count: number of Radau
+    stages of each interval."""
 
     edges: tuple[float, ...]
     order: int
     interval_count: int
     stage_count: int
+    order_ratios: tuple[float, ...] = ()
 
     @property
     def element_count(self) -> int:
         """Number of elements."""
         return len(self.edges) - 1
+
+    def has_elements_of(self, other: "OrbitMesh") -> bool:
+        """Whether the elements of both meshes are equal but for their `order`."""
+        return (self.edges, self.order_ratios) == (other.edges, other.order_ratios)
 
     @property
     def full_intervals(self) -> int:
@@ -90,23 +97,28 @@ class OrbitMesh:
 
     @property
     def space_mesh(self) -> Mesh:
-        return mesh_with_edges(self.edges, self.order)
+        return mesh_with_edges(self.edges, self.order, self.order_ratios)
 
     @property
     def unknown_count(self) -> int:
         """Number of unknowns of a state."""
-        return plane_layout(self.element_count * self.order).unknown_count
+        orders = element_orders(self.element_count, self.order, self.order_ratios)
+        return plane_layout(sum(orders)).unknown_count
 
     @property
     def as_array(self) -> Array:
-        """The mesh as one array for storage, (elements + 4,): order, intervals, stages, edges."""
-        return np.array([self.order, self.interval_count, self.stage_count, *self.edges])
+        """The mesh as one array for storage, (2 elements + 4,): order, intervals, stages, edges, ratios of
+        the orders."""
+        ratios = self.order_ratios or (1.0,) * self.element_count
+        return np.array([self.order, self.interval_count, self.stage_count, *self.edges, *ratios])
 
     @classmethod
     def from_array(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh from the array that the property `as_array` returns, (elements + 4,)."""
+        """The mesh from the array that the property `as_array` returns, (2 elements + 4,)."""
         order, intervals, stages = map(int, numbers[:3])
-        return cls(tuple(numbers[3:].tolist()), order, intervals, stages)
+        elements = len(numbers) // 2 - 2
+        edges, ratios = (tuple(part.tolist()) for part in np.split(numbers[3:], [elements + 1]))
+        return cls(edges, order, intervals, stages, () if min(ratios) == 1 else ratios)
 
     @property
     def coarser(self) -> "OrbitMesh":
@@ -138,6 +150,7 @@ class OrbitMesh:
             self,
             edges=halve_elements(self.edges),
             order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
+            order_ratios=_ratios_of_halves(self.order_ratios),
         )
 
     @property
@@ -164,7 +177,12 @@ class OrbitMesh:
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
     grid = orbit.form.mesh
-    return OrbitMesh(grid.edges, grid.order, orbit.interval_count, orbit.stage_count)
+    return OrbitMesh(grid.edges, grid.order, orbit.interval_count, orbit.stage_count, grid.order_ratios)
+
+
+def _ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
+    """Ratios of the orders after all elements are halved."""
+    return tuple(ratio for ratio in ratios for _ in range(2))
 
 
 def cheapest_stage_count(accuracy: float) -> int:
@@ -187,14 +205,14 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
     aim_time = (ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.time_error_factor) ** 0.5
     # Below `min_tail` a tail is rounding error.
     order = present.order + ceil(
-        log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / aim_space)
-        / tails.space_decay
-        / present.element_count
+        log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / aim_space) / tails.space_decay
     )
     edges = present.edges
+    ratios = order_ratios(orbit, order, aim_space)
     while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
         edges = halve_elements(edges)
+        ratios = _ratios_of_halves(ratios)
     # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
     # number of intervals is about a power of the known tail.
     tail = max(tails.time, ORBIT_MESH_SETTINGS.min_tail) ** (stages / present.stage_count)
@@ -206,12 +224,12 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
         ORBIT_MESH_SETTINGS.max_interval_ratio * present.interval_count,
     )
-    return OrbitMesh(edges, order, intervals, stages)
+    return OrbitMesh(edges, order, intervals, stages, ratios)
 
 
 def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     """A mesh that is at least as fine as `target` and finer than the present mesh `mesh`."""
-    order = max(target.order, mesh.order) if target.edges == mesh.edges else target.order
+    order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
     intervals = max(target.interval_count, mesh.interval_count)
     stages = max(target.stage_count, mesh.stage_count)
     finer = replace(target, order=order, interval_count=intervals, stage_count=stages)

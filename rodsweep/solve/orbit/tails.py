@@ -55,10 +55,13 @@ class Tails:
 
 def tails_of(orbit: Orbit) -> Tails:
     """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
-    c = _space_coefficients(orbit)
+    each = coefficients_of_elements(orbit)
+    scales = np.max([c.max(axis=1) for c in each], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
-    last = np.hypot(c[:, -1], c[:, -2]) / np.maximum(c.max(axis=1), EXPONENT_SETTINGS.least_divisor)
-    return Tails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(c))
+    ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in each], axis=0)
+    last = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
+    finest = np.max([c for c in each if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
+    return Tails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(finest))
 
 
 @compiled_for_vectors
@@ -83,16 +86,14 @@ def _coefficient_decay(c: Array) -> float:
     )
 
 
-def _space_coefficients(orbit: Orbit) -> Array:
-    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
-    of all time intervals, (3, p + 1), p: order of the elements."""
-    grid = orbit.form.mesh
+def coefficients_of_elements(orbit: Orbit) -> list[Array]:
+    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3 of each element over the ends of
+    all time intervals, (3, p + 1) each, p: order of the element."""
     ends = np.ascontiguousarray(orbit.stage_states[:, -1])
-    if not orbit.form.has_continuous_stresses:
-        c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(grid.order))
-        largest: Array = c.max(axis=(1, 2))
-        return largest
-    return largest_coefficients(ends, grid.element_count, _analysis_matrix_on_element(grid.order))
+    return [
+        largest_coefficients(values, _analysis_matrix_on_element(values.shape[2] - 1))
+        for values in _stresses_of_elements(orbit, ends)
+    ]
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -103,26 +104,22 @@ def _analysis_matrix_on_element(order: int) -> Array:
 
 
 @compiled_for_vectors
-def largest_coefficients(states: Array, elements: int, analysis: Array) -> Array:
-    """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, (3, p + 1), p: order of the
-    elements, over all elements and all `states`, (m, n). elements: number of elements. analysis: as returned
-    by `_analysis_matrix_on_element`."""
-    size = len(analysis)
-    nodes = elements * (size - 1)
-    largest = np.zeros((PLANE_COMPONENT_COUNT, size))
-    c = np.empty(size)
-    for k in range(len(states)):
-        for a in range(PLANE_COMPONENT_COUNT):
-            for e in range(elements):
-                first = stress_index(a, e * (size - 1), nodes)
-                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
-                c[:] = 0.0
-                for j in range(known):
-                    stress = states[k, first + j]
-                    for i in range(size):
-                        c[i] += stress * analysis[j, i]
-                for i in range(size):
-                    largest[a, i] = max(largest[a, i], abs(c[i]))
+def largest_coefficients(values: Array, analysis: Array) -> Array:
+    """Largest moduli of the coefficients of each field in one element over all states, (3, c). values: fields
+    at the nodes of the element, (3, m, p + 1), for m states. analysis: matrix from values at the nodes to
+    coefficients, (p + 1, c)."""
+    components, states, size = values.shape
+    count = analysis.shape[1]
+    largest = np.zeros((components, count))
+    c = np.empty(count)
+    for a in range(components):
+        for k in range(states):
+            c[:] = 0.0
+            for j in range(size):
+                for i in range(count):
+                    c[i] += values[a, k, j] * analysis[j, i]
+            for i in range(count):
+                largest[a, i] = max(largest[a, i], abs(c[i]))
     return largest
 
 
@@ -130,24 +127,28 @@ def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
     smoothly along a branch, because the tail in space is the norm of
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
-    grid = orbit.form.mesh
-    if not orbit.form.has_continuous_stresses:
-        fields = _stresses_by_element(orbit, orbit.all_states)
-        ends = np.linalg.norm(fields @ _last_columns_of_analysis_matrix(grid.order), axis=-1).max(axis=(1, 2))
-        largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
-        in_space = float((ends / largest).max())
-    else:
-        in_space = largest_tail_in_space(
-            orbit.all_states, grid.element_count, _last_columns_of_analysis_matrix(grid.order)
-        )
-    return np.array([in_space, _tail_in_time(orbit)])
+    each = _stresses_of_elements(orbit, orbit.all_states)
+    largest = np.max([np.abs(values).max(axis=(1, 2)) for values in each], axis=0)
+    ends = np.max(
+        [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in each],
+        axis=0,
+    )
+    in_space = ends / np.maximum(largest, EXPONENT_SETTINGS.least_divisor)
+    return np.array([float(in_space.max()), _tail_in_time(orbit)])
 
 
-def _stresses_by_element(orbit: Orbit, states: Array) -> Array:
-    """n1, n2 and m3 at the nodes of each element, (3, m, elements, p + 1), p: order. states: states of
-    `orbit`, (m, n)."""
+def _stresses_of_elements(orbit: Orbit, states: Array) -> list[Array]:
+    """n1, n2 and m3 at the nodes of each element, (3, m, p + 1) each, p: order of the element. states: states
+    of `orbit`, (m, n)."""
     form = orbit.form
-    return stresses_by_element(form.nodal_rod, form.mesh, form.stresses(states))
+    S = form.stresses(states)
+    if form.has_continuous_stresses:
+        return [np.ascontiguousarray(S[..., nodes]) for nodes in form.mesh.node_ranges]
+    fields = stresses_by_element(form.nodal_rod, form.mesh, S)
+    return [
+        np.ascontiguousarray(fields[..., nodes.start + e : nodes.stop + e])
+        for e, nodes in enumerate(form.mesh.node_ranges)
+    ]
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -160,33 +161,20 @@ def _last_columns_of_analysis_matrix(order: int) -> Array:
 
 
 @compiled_for_vectors
-def largest_tail_in_space(points: Array, elements: int, analysis: Array) -> float:
-    """Largest relative tail in space of n1, n2 and m3: 2-norm of the last coefficients of a field in an
-    element, divided by the largest modulus of this field.
-
-    points: states, (m, n). elements: number of elements. analysis: matrix from values at the nodes of an
-    element to its last coefficients, (p + 1, count), p: order of the elements.
-    """
-    size, count = analysis.shape
-    nodes = elements * (size - 1)
-    c = np.empty(count)
-    worst = 0.0
-    for a in range(PLANE_COMPONENT_COUNT):
-        largest = 0.0
-        end = 0.0
-        for k in range(len(points)):
-            for e in range(elements):
-                first = stress_index(a, e * (size - 1), nodes)
-                known = size if e < elements - 1 else size - 1  # at the tip stresses vanish
-                c[:] = 0.0
-                for j in range(known):
-                    stress = points[k, first + j]
-                    largest = max(largest, abs(stress))
-                    for i in range(count):
-                        c[i] += stress * analysis[j, i]
-                end = max(end, (c * c).sum())
-        worst = max(worst, np.sqrt(end) / max(largest, EXPONENT_SETTINGS.least_divisor))
-    return worst
+def largest_norms(values: Array, analysis: Array) -> Array:
+    """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values,
+    analysis: as in `largest_coefficients`."""
+    components, states, size = values.shape
+    largest = np.zeros(components)
+    c = np.empty(analysis.shape[1])
+    for a in range(components):
+        for k in range(states):
+            c[:] = 0.0
+            for j in range(size):
+                for i in range(len(c)):
+                    c[i] += values[a, k, j] * analysis[j, i]
+            largest[a] = max(largest[a], (c * c).sum())
+    return np.sqrt(largest)
 
 
 def _tail_in_time(orbit: Orbit) -> float:

@@ -293,8 +293,11 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
     errors = []
     for order in (7, 13):
         source, target = (
-            StressForm(rod, mesh_with_edges(edges, each))
-            for edges, each in (((0.0, 0.4, 1.0), order), ((0.0, 0.2, 0.4, 0.7, 1.0), order - 2))
+            StressForm(rod, mesh_with_edges(edges, each, ratios))
+            for edges, each, ratios in (
+                ((0.0, 0.4, 1.0), order, (0.9, 1.0)),
+                ((0.0, 0.2, 0.4, 0.7, 1.0), order - 2, ()),
+            )
         )
         before, behind = (lambda u: np.cos(5 * u), lambda u: 2 + np.sin(4 * u))
         fields = []
@@ -314,8 +317,11 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
     """An extrapolation to the jump from the other nodes of the elements is less accurate."""
     rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, build=Build("neo_hookean", "swelling", STEP))
     source, target = (
-        StressForm(rod, mesh_with_edges(edges, order))
-        for edges, order in (((0.0, 0.4, 1.0), 8), ((0.0, 0.2, 0.4, 0.7, 1.0), 9))
+        StressForm(rod, mesh_with_edges(edges, order, ratios))
+        for edges, order, ratios in (
+            ((0.0, 0.4, 1.0), 8, (0.875, 1.0)),
+            ((0.0, 0.2, 0.4, 0.7, 1.0), 9, (1.0, 0.75, 0.5, 1.0)),
+        )
     )
     mean = np.zeros((3, source.mesh.node_count + 1))
     (node,) = source.nodal_rod.jumps

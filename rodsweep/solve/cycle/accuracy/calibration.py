@@ -151,7 +151,7 @@ def calibration_of(
     previous = before.mesh
     fall = before.space_decay
     power = before.time_order
-    if previous.order != mesh.order and previous.edges == mesh.edges:
+    if previous.order != mesh.order and previous.has_elements_of(mesh):
         fall = _measured_space_decay(before.space_errors, space, mesh.order - previous.order)
     if previous.interval_count != mesh.interval_count:
         power = _measured_time_order(before.time_errors, time, previous, mesh)

@@ -81,9 +81,10 @@ class CoarserMeshes:
             mesh.order <= self._max_predicted_order
             and self._interval_ratio(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
-        return near and (mesh.edges, mesh.stage_count) == (
-            self.coarse_mesh.edges,
-            self.coarse_mesh.stage_count,
+        return (
+            near
+            and mesh.has_elements_of(self.coarse_mesh)
+            and mesh.stage_count == self.coarse_mesh.stage_count
         )
 
     def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:

@@ -1,0 +1,59 @@
+"""Choice of the order of each element from the coefficients of a nearby orbit: a short or stiff segment of
+an arm needs a lower order than a long or soft one."""
+
+from dataclasses import dataclass
+from math import ceil
+from typing import ClassVar
+
+import numpy as np
+
+from ...arrays import Array
+from ...determinant.exponents import EXPONENT_SETTINGS
+from .orbit import Orbit
+from .tails import coefficients_of_elements
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OrderRatioSettings:
+    """Settings for the orders of the elements of a mesh relative to the largest order."""
+
+    added_order: int = 2
+    """Order of an element, minus the order at which its coefficients fall below their aim. With it the errors
+    of a mesh are those of the elements of the largest order."""
+    min_ratio: float = 0.5
+    """Smallest ratio. The errors of a mesh are measured on a mesh whose largest order is larger by 2: the
+    orders of all elements are then larger by 1 at least."""
+    steps: int = 16
+    """Ratios are rounded up to multiples of 1/steps, so that the orders of the elements change seldom along a
+    sweep."""
+    ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
+
+
+ORDER_RATIO_SETTINGS = OrderRatioSettings()
+
+
+def order_ratios(orbit: Orbit, order: int, aim: float) -> tuple[float, ...]:
+    """Ratios of the orders of all elements to the largest order, as in `Elements`; () if all are 1.
+
+    order: largest order, with which the Legendre coefficients in space are expected to fall to `aim` times
+    the largest coefficient.
+    """
+    each = coefficients_of_elements(orbit)
+    if len(each) == 1:
+        return ()
+    scales = np.max([c.max(axis=1) for c in each], axis=0)
+    scales = np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
+    needed = np.array([_needed_order((c / scales[:, None]).max(axis=0), aim, order) for c in each])
+    settings = ORDER_RATIO_SETTINGS
+    ratios = np.clip(needed / max(needed), settings.min_ratio, 1.0)
+    if (ratios == 1).all():
+        return ()
+    return tuple(ceil(settings.steps * ratio) / settings.steps for ratio in ratios.tolist())
+
+
+def _needed_order(c: Array, aim: float, order: int) -> int:
+    """Order of an element, at most `order`, beyond which two neighbouring coefficients fall below `aim`. c:
+    moduli of the coefficients of orders 0 to p, (p + 1,). Two coefficients, because one may vanish by
+    parity."""
+    small = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= aim)
+    return order if not len(small) else min(int(small[0]) + ORDER_RATIO_SETTINGS.added_order, order)

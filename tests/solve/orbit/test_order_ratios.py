@@ -1,0 +1,82 @@
+"""Elements of unequal orders: where the cycle of an arm of segments needs a low order, it gets one."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.elements.mesh import mesh_with_edges
+from rodsweep.discretization.stress.form import StressForm
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.rod import Rod
+from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
+from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
+from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.newton import newton
+from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
+from rodsweep.solve.orbit.order_ratios import ORDER_RATIO_SETTINGS, order_ratios
+from rodsweep.solve.orbit.tails import coefficients_of_elements
+
+ACCURACY = 1e-7
+RODS = {
+    "stiff base": (0.4, (0.36, 0.36, 0.13), {"F": 13.0}, ("linear", "fixed")),
+    "soft base": (0.75, (20.0, 20.0, 60.0), {"F": 60.0}, ("linear", "fixed")),
+    "rubber": (0.3, (0.5, 0.5, 0.2), {"F": 14.0}, ("neo_hookean", "swelling")),
+}
+"""Position of the jump, factors of k1, k2 and k3 behind it, force, and law: arms that beat."""
+
+
+def refined(name):
+    """(cycle, memory) of an arm of `RODS`."""
+    at, stiffness, values, names = RODS[name]
+    profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + ((*stiffness, 1, 1, 1),) * 2)
+    rod = Rod(**values, k1=1e4, k2=1e4, gamma3=1e-3, gamma1=0.7, build=Build(*names, profile))
+    memory = NewtonWorkspace()
+    form = StressForm(rod, coarse_mesh_along_branch(rod))
+    return refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), ACCURACY, memory), memory
+
+
+@pytest.mark.parametrize("name", RODS)
+def test_a_cycle_on_elements_of_unequal_orders_is_within_its_error(name):
+    found, memory = refined(name)
+    orbit = found.orbit
+    grid = orbit.form.mesh
+    assert min(grid.orders) <= 0.75 * grid.order
+    equal = mesh_with_edges(grid.edges, grid.order + 8)
+    exact = newton(orbit.on_mesh(equal, 2 * orbit.interval_count, orbit.stage_count + 1), 1e-12, memory).orbit
+    assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= 3 * ACCURACY
+    y = CyclePath(exact).extrema["tip_y_max"]
+    assert abs(found.measures.tip_y_max / y - 1) <= found.errors.amplitude_error
+
+
+def test_coefficients_beyond_the_order_of_an_element_are_small():
+    orbit = refined("stiff base")[0].orbit
+    grid = orbit.form.mesh
+    fine = orbit.on_mesh(mesh_with_edges(grid.edges, grid.order), orbit.interval_count, orbit.stage_count)
+    aim = 1e-4
+    ratios = order_ratios(fine, grid.order, aim)
+    assert min(ratios) == pytest.approx(ORDER_RATIO_SETTINGS.min_ratio, abs=0.13)
+    assert max(ratios) == 1
+    each = coefficients_of_elements(fine)
+    largest = np.max([c.max(axis=1) for c in each], axis=0)
+    for c, order in zip(each, mesh_with_edges(grid.edges, grid.order, ratios).orders, strict=True):
+        assert (c[:, order:] <= aim * largest[:, None]).all()
+
+
+def test_a_mesh_with_unequal_orders_is_stored_and_refined():
+    mesh = OrbitMesh((0.0, 0.25, 1.0), 17, 9, 3, (0.5, 1.0))
+    assert OrbitMesh.from_array(mesh.as_array) == mesh
+    plain = OrbitMesh((0.0, 0.25, 1.0), 17, 9, 3)
+    assert OrbitMesh.from_array(plain.as_array) == plain
+    assert (mesh.unknown_count, plain.unknown_count) == (3 * (9 + 17), 3 * (17 + 17))
+    assert mesh.space_mesh.orders == (9, 17)
+    assert (np.array(mesh.finer_in_space.space_mesh.orders) > mesh.space_mesh.orders).all()
+    halved = OrbitMesh((0.0, 0.25, 1.0), 40, 9, 3, (0.5, 1.0)).finer_in_space
+    assert halved.space_mesh.orders == (12, 12, 24, 24)
+    orbit = refined("soft base")[0].orbit
+    sent = pickle.loads(pickle.dumps(orbit))
+    assert mesh_of(sent) == mesh_of(orbit)
+    assert mesh_of(sent).order_ratios
