@@ -2,7 +2,6 @@
 an arm needs a lower order than a long or soft one."""
 
 from dataclasses import dataclass
-from math import ceil
 from typing import ClassVar
 
 import numpy as np
@@ -45,10 +44,8 @@ def order_ratios(orbit: Orbit, order: int, aim: float) -> tuple[float, ...]:
     scales = np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     needed = np.array([_needed_order((c / scales[:, None]).max(axis=0), aim, order) for c in each])
     settings = ORDER_RATIO_SETTINGS
-    ratios = np.clip(needed / max(needed), settings.min_ratio, 1.0)
-    if (ratios == 1).all():
-        return ()
-    return tuple(ceil(settings.steps * ratio) / settings.steps for ratio in ratios.tolist())
+    ratios = np.ceil(settings.steps * np.maximum(needed / max(needed), settings.min_ratio)) / settings.steps
+    return () if min(ratios) == 1 else tuple(ratios.tolist())
 
 
 def _needed_order(c: Array, aim: float, order: int) -> int:
