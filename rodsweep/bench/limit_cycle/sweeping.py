@@ -10,7 +10,8 @@ from functools import partial
 from math import nan
 from typing import Any
 
-from ...model.material.build import Build
+from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.profile import Profile
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.accuracy.refinement import refined_cycle_of_any_period
@@ -32,6 +33,10 @@ from ..study import (
 )
 from .tracking import REFERENCE_NEWTON_TOLERANCE, cycle_request, orbit_of
 
+TWO_SEGMENT_PROFILE = Profile(
+    (0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))
+)
+"""Profile of an arm whose outer 0.6 of the length has 0.6 of the radius."""
 RODS = (
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5),
@@ -42,9 +47,10 @@ RODS = (
     Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
+    Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=TWO_SEGMENT_PROFILE)),
 )
 """Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
-as far from its Hopf point as the first rod, and the first rod made of rubber."""
+as far from its Hopf point as the first rod, the first rod made of rubber, and an arm of two segments."""
 QUICK_RODS = (RODS[2],)  # for a quick run
 SWEPT_PARAMETERS = NONLINEAR_PARAMETERS[:2]
 """Parameters along which sweeps are timed; neighbouring points differ in one of these parameters."""
@@ -182,9 +188,13 @@ def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement
 
 
 def rod_label(point: Rod) -> str:
-    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, law and section if not the default."""
+    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, number of segments, law and section if
+    not the default."""
     further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
-    further += [] if point.build.is_uniform_and_linear else [point.build.law, point.build.section]
+    segments = len(point.build.breaks) - 1
+    further += [] if segments == 1 else [f"{segments} segments"]
+    linear = (point.build.law, point.build.section) == (DEFAULT_BUILD.law, DEFAULT_BUILD.section)
+    further += [] if linear else [point.build.law, point.build.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
     return ", ".join([*(f"{value:g}" for value in values), *further])
 
@@ -193,11 +203,12 @@ def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
-    extra = errors | {"order": float(cycle.elements * cycle.order)}
+    extra = errors | {"order": float(cycle.order) if cycle.elements == 1 else nan}
     extra["estimate"] = cycle.errors.largest_weighted_error
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
         extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
+        extra["order"] = float(sum(orbit.form.mesh.orders))
         extra |= {"intervals": orbit.interval_count, "stages": orbit.stage_count}
     return {"error": max(errors.values()), "extra": extra}
 
