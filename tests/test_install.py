@@ -13,7 +13,7 @@ from conftest import ROOT
 from ruamel.yaml import YAML
 
 import rodsweep
-from rodsweep.solve.backend.debian import add_debian_modules
+from rodsweep.solve.backend.availability import add_debian_modules
 
 SETTINGS = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PROJECT = SETTINGS["project"]

@@ -11,9 +11,8 @@ from pydantic import ValidationError
 
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
-from ..config.material import MaterialSection
+from ..config.material import MaterialSection, with_profile_read
 from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
-from ..config.profile_file import with_profile_read
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
 from ..errors import InputError

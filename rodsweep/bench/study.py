@@ -242,8 +242,3 @@ def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -
         }
         lines.append(f"| {line.format_map(cells)} |")
     return "\n".join(lines)
-
-
-def count_text(count: int, noun: str) -> str:
-    """Text of a count with a regular noun, such as "1 round" or "2 rounds"."""
-    return f"{count} {noun}{'s' * (count != 1)}"

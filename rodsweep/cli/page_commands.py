@@ -187,6 +187,6 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
 @click.option("--open", "is_opened", is_flag=True, help="Open the page in the browser.")
 def explore(source: Path | None, port: int, is_opened: bool) -> None:
     """Explore a rod or an arm live on a local page, from the result FILE, a CONFIG, or an example."""
-    from ..explore.starting import serve_page as start
+    from ..explore import serve_page as start
 
     start(None if source is None else link_target(source), port, is_opened)

@@ -66,7 +66,7 @@ def rod_of_options(
 
 def _read_material(material: Mapping[str, Any]) -> Any:
     """The section `material` of a config, with the profile read from its file."""
-    from ..config.profile_file import with_profile_read
+    from ..config.material import with_profile_read
 
     return with_profile_read({"material": dict(material)}, Path())["material"]
 

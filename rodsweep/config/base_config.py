@@ -39,8 +39,6 @@ class Config(StrictSection):
     ] = None
     """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
-    solves_nonlinear_motion: ClassVar[bool] = False
-    """Whether the task solves the nonlinear motion of the rods."""
     allows_crushed_rods: ClassVar[bool] = False
     """Whether a grid may contain crushed rods: True for tasks with the state `crushed`."""
 

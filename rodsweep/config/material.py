@@ -1,13 +1,18 @@
-"""The section `material` of a config: constitutive law, cross-section, and a profile along the arm."""
+"""The section `material` of a config: constitutive law, cross-section, and a profile along the arm, which may
+be a CSV file.
+"""
 
+import csv
 from functools import cached_property
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
+from ..errors import InputError
 from ..model.material.build import Build
 from ..model.material.profile import FACTOR_NAMES, Profile
-from .values import Number, StrictSection
+from .values import Number, StrictSection, cell_number, short_repr
 
 MAX_PROFILE_ROWS = 1000
 """Maximum number of rows of a profile; longer profiles are refused."""
@@ -93,3 +98,53 @@ class MaterialSection(StrictSection):
             raise ValueError("the section is empty; give law, section or profile")
         assert self.build
         return self
+
+
+MAX_PROFILE_CHARACTERS = 1_000_000
+"""Maximum number of characters in the CSV file of a profile; longer files are refused."""
+
+
+def with_profile_read(tree: Any, directory: Path) -> Any:
+    """The parsed config `tree` with the file name in `material.profile` replaced by the columns of the file.
+
+    directory: folder of a relative file name. Raises InputError if the file is not a table of numbers.
+    """
+    if not isinstance(tree, dict) or not isinstance(tree.get("material"), dict):
+        return tree
+    name = tree["material"].get("profile")
+    if not isinstance(name, str):
+        return tree
+    if not name.strip():
+        raise InputError("material.profile is empty; it should be the name of a CSV file")
+    return tree | {"material": tree["material"] | {"profile": read_profile(directory / name)}}
+
+
+def read_profile(path: Path) -> dict[str, list[float]]:
+    """Columns of the CSV file of a profile, by name in the header; InputError for an invalid file."""
+    where = f"material.profile: {path}"
+    try:
+        if not path.is_file():
+            raise InputError(f"{where} {'is not a file' if path.exists() else 'does not exist'}")
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            text = file.read(MAX_PROFILE_CHARACTERS + 1)
+        rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if row]
+    except OSError as error:
+        raise InputError(f"{where} cannot be read: {error.strerror}") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{where} is not CSV text ({error})") from error
+    if len(text) > MAX_PROFILE_CHARACTERS or len(rows) > MAX_PROFILE_ROWS + 1:
+        raise InputError(f"{where} has more than {MAX_PROFILE_ROWS} rows")
+    header = rows[0] if rows else []
+    if "u" not in header or not set(header) <= {"u", *FACTOR_NAMES} or len(set(header)) < len(header):
+        raise InputError(f"{where}: the header must name u and any of {', '.join(FACTOR_NAMES)}, each once")
+    columns: dict[str, list[float]] = {name: [] for name in header}
+    for number, row in enumerate(rows[1:], 1):
+        row_name = f"{where}: row {number}"
+        if len(row) != len(header):
+            raise InputError(f"{row_name} has {len(row)} values, but the header names {len(header)}")
+        for name, cell in zip(header, row, strict=True):
+            try:
+                columns[name].append(cell_number(cell))
+            except ValueError:
+                raise InputError(f"{row_name}: {name} = {short_repr(cell)} is not a number") from None
+    return columns

@@ -100,12 +100,6 @@ class Beam(RodOnMesh):
         shape = self._shape_and_velocities(z, direction)[..., -1]
         return shape.real, shape.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 
-    def tip_velocity(self, z: Array, direction: Array) -> Array:
-        """Time derivative of (x, y, theta) of the tip at z for dz/dt = direction, (3, ...); z, direction:
-        (..., unknowns).
-        """
-        return self.tip_position_and_velocity(z, direction)[1]
-
     def transverse_velocities(self, z: Array, direction: Array) -> Array:
         """Time derivative of y at z for dz/dt = direction, at all nodes, (..., nodes + 1); z, direction:
         (..., unknowns).

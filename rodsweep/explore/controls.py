@@ -1,11 +1,12 @@
-"""Sliders, text fields and menus of the page. Every change by the user is reported by the name and the new
-text of the changed value.
+"""Sliders, text fields and menus of the page, and a timer for pauses of the user. Every change by the user is
+reported by the name and the new text of the changed value.
 """
 
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from bokeh.document import Document
 from bokeh.models import Column, InlineStyleSheet, Select, Slider, TabPanel, Tabs, TextInput
 from bokeh.models.css import StyleSheet
 
@@ -138,3 +139,33 @@ class Controls:
     def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
         if not self._is_updating:
             self._changed(**{key: new})
+
+
+PAUSE_MILLISECONDS = 900
+"""Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
+
+
+class PauseTimer:
+    """Runs `callback` on the event loop of a document once the controls have not changed for a while:
+    PAUSE_MILLISECONDS after the last `restart`.
+    """
+
+    def __init__(self, document: Document, callback: Callable[[], None]):
+        self.document = document
+        self.callback = callback
+        self._scheduled: Callable[[], None] | None = None
+
+    def restart(self) -> None:
+        """Starts the waiting time, again if it has not ended."""
+        self.cancel()
+        self._scheduled = self.document.add_timeout_callback(self._run, PAUSE_MILLISECONDS)
+
+    def cancel(self) -> None:
+        """Ends the waiting time without the callback."""
+        if self._scheduled is not None:
+            self.document.remove_timeout_callback(self._scheduled)
+            self._scheduled = None
+
+    def _run(self) -> None:
+        self._scheduled = None
+        self.callback()

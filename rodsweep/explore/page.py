@@ -8,8 +8,8 @@ from bokeh.document import Document
 from bokeh.events import Pan, Tap
 
 from ..errors import InputError
+from .controls import PauseTimer
 from .page_contents import PageContents
-from .pause_timer import PauseTimer
 from .sharing import state_from_config_text
 from .slider_scales import SCALES
 from .solving import question_inputs as kinds

@@ -15,9 +15,8 @@ from ..post.branch_curves import RodBranches
 from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
 from .slider_scales import SCALES
-from .solving.branches import drawn_branches
 from .solving.diagrams import Dataset, flag_words
-from .solving.questions import AnswerVariables
+from .solving.questions import AnswerVariables, drawn_branches
 from .state import PageState
 
 CONTROL_DIGITS = (5, 6)

@@ -1,11 +1,13 @@
-"""Rows of the table in a report on an arm: numbers with formulas and sources."""
+"""Rows of the table in a report on an arm: numbers with formulas and sources, and phrases for materials."""
 
 from math import isfinite
 from typing import NamedTuple
 
 from ..model.arm.arm import SlenderArm
+from ..model.arm.section import Tube
+from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR
-from .material_phrases import law_phrase, station_phrase
+from ..model.units import with_si_prefix
 from .planes import PlaneOfMotion
 from .rounding import range_text
 
@@ -100,11 +102,11 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
     forces = [] if found.failures else plane.flutter_load_by_drag
     if not forces or not all(isfinite(force) for force in forces):
         return []
-    value = value_with_drag_range(plane.arm, forces, " N")
+    value = value_with_drag_range(forces, " N")
     return [NumberRow("flutter force", value, "F at flutter times k3/L^2", "paper, Sec. IV, VI")]
 
 
-def value_with_drag_range(arm: SlenderArm, values: list[float], unit: str = "") -> str:
+def value_with_drag_range(values: list[float], unit: str = "") -> str:
     """values[0], followed by the range of all values in brackets and by `unit`, as text. values: a quantity
     for each drag, the most likely drag first.
     """
@@ -118,25 +120,25 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
     return [
         NumberRow(
             "drag across",
-            value_with_drag_range(arm, [d.gamma2 for d in drags], " Pa s"),
+            value_with_drag_range([d.gamma2 for d in drags], " Pa s"),
             "4 pi eta/(ln(2 L/a) - 1/2)",
             translation,
         ),
         NumberRow(
             "axial drag",
-            value_with_drag_range(arm, [d.gamma1 for d in drags], " Pa s"),
+            value_with_drag_range([d.gamma1 for d in drags], " Pa s"),
             "2 pi eta/(ln(2 L/a) - 3/2)",
             translation,
         ),
         NumberRow(
             "rotational drag",
-            value_with_drag_range(arm, [d.gamma3 for d in drags], " Pa s m^2"),
+            value_with_drag_range([d.gamma3 for d in drags], " Pa s m^2"),
             "(pi to 4 pi) eta a^2",
             "section turning about a diameter; Powers 2010",
         ),
         NumberRow(
             "tau2",
-            value_with_drag_range(arm, [arm.tau2_with(d) for d in drags], " s"),
+            value_with_drag_range([arm.tau2_with(d) for d in drags], " s"),
             "drag across L^4/k3",
             "paper, Sec. VI",
         ),
@@ -154,15 +156,38 @@ def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
         NumberRow("k2", f"{arm.k2:.5g}", "kappa G A L^2/k3, G = E/(2 (1 + nu))", "paper, Sec. III, VI"),
         NumberRow(
             "gamma3",
-            value_with_drag_range(arm, [arm.gamma3_with(d) for d in drags]),
+            value_with_drag_range([arm.gamma3_with(d) for d in drags]),
             "rotational drag/(drag across L^2)",
             "paper, Sec. VI",
         ),
         NumberRow(
             "gamma1",
-            value_with_drag_range(arm, [d.gamma1 / d.gamma2 for d in drags]),
+            value_with_drag_range([d.gamma1 / d.gamma2 for d in drags]),
             "axial drag/drag across",
             "paper, Sec. VI",
         ),
         *([force] if force else []),
     ]
+
+
+def law_phrase(arm: SlenderArm) -> str:
+    """Phrase for the constitutive law of an arm: "linear", or "neo-Hookean" and the kind of section."""
+    law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
+    return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
+
+
+def station_phrase(station: Station) -> str:
+    """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
+    inner radius 3 mm, 80 kPa".
+    """
+    sides = {"radius": station.section.drag_radius}
+    if isinstance(station.section, Tube):
+        sides["inner radius"] = station.section.inner_radius
+    parts = [f"{name} {_with_si_prefix(value, 'm')}" for name, value in sides.items()]
+    return ", ".join([*parts, _with_si_prefix(station.young, "Pa")])
+
+
+def _with_si_prefix(value: float, si: str) -> str:
+    """A value in the SI unit `si` as text with four digits and a prefix: "6 mm"."""
+    factor, unit = with_si_prefix(value, si)
+    return f"{value * factor:.4g} {unit}"

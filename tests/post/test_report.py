@@ -14,8 +14,8 @@ from surveyed import RODS, only
 
 from rodsweep.post.figures.cycle.point_map import cell_centres, cell_edges
 from rodsweep.post.report import write_report
-from rodsweep.post.report.dark_colours import MIN_CONTRAST, _contrast, dark_page_colour
 from rodsweep.post.report.label_text import label_text
+from rodsweep.post.report.vector_picture import MIN_CONTRAST, _contrast, dark_page_colour
 from rodsweep.post.summary import summary_of
 from rodsweep.results.file.view import read_view
 from rodsweep.tasks import TASKS

@@ -9,11 +9,11 @@ from math import isfinite, log, nan
 
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.reference_rod import warm_up
+from ...wording import counted
 from ..peers import Peers
 from ..study import (
     BenchmarkReport,
     Measurement,
-    count_text,
     every_nth_setting,
     grouped_by_fields,
     markdown_table,
@@ -87,7 +87,7 @@ def introduction(rounds: int) -> str:
         "Jacobian; the tolerance is the allowed error of each component of the state, divided by the largest "
         "value of this component. Errors of the period and of the largest tip y are relative and rms over 5 "
         "returns. Times are medians of "
-        f"{count_text(rounds, 'interleaved round')}."
+        f"{counted(rounds, 'interleaved round')}."
     )
 
 

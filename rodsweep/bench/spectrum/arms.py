@@ -16,7 +16,8 @@ from ...model.material.profile import Profile
 from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
-from ..study import Contender, Measurement, count_text, grouped_by_fields, markdown_table, measure_case
+from ...wording import counted
+from ..study import Contender, Measurement, measure_case
 from .exact import relative_error_by_name
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
@@ -27,6 +28,7 @@ from .rodsweep_spectrum import (
     UNCERTIFIED_NAME,
     leading_eigenvalues,
     rodsweep_spectrum,
+    table_by_case,
 )
 
 ARM_RACE = "arms"
@@ -96,22 +98,13 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
     TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds.
     """
-    rows = [
-        {
-            "method": method,
-            "cells": " | ".join(
-                _cheapest_time_cell(own) for own in grouped_by_fields(every, "case").values()
-            ),
-        }
-        for (method,), every in grouped_by_fields(measurements, "method").items()
-    ]
     return (
         f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
         "that "
-        f"reaches this error, {count_text(rounds, 'round')}. Cones have half the radius at their tips, the "
+        f"reaches this error, {counted(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are relative distances from the roots of D, with elements that resolve 16 times the |w|:\n\n"
-    ) + markdown_table(" | ".join(["method", *ARM_RODS]), "{method} | {cells}", rows)
+    ) + table_by_case(ARM_RODS, measurements, _cheapest_time_cell)
 
 
 def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:

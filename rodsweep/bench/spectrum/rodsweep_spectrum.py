@@ -1,10 +1,13 @@
-"""Spectra by rodsweep in the benchmark of spectra, and names and numbers shared by all methods."""
+"""Spectra by rodsweep in the benchmark of spectra, and what all methods share: names, numbers and a table."""
+
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
 from ...arrays import Complex
 from ...model.rod import Rod
 from ...solve.spectrum.search import SpectrumRequest, solve_spectrum
+from ..study import Measurement, grouped_by_fields, markdown_table
 
 MODE_COUNT = 4
 """Number of leading eigenvalues that every method computes."""
@@ -30,3 +33,16 @@ def leading_eigenvalues(w: Complex, count: int) -> Complex:
     """The `count` eigenvalues with the largest real parts, by descending real part, (count,). w: eigenvalues,
     (n,)."""
     return w[np.argsort(-w.real, kind="stable")][:count]
+
+
+def table_by_case(
+    cases: Iterable[str], measurements: Iterable[Measurement], cell: Callable[[list[Measurement]], str]
+) -> str:
+    """Table in Markdown with a row for each method and a column for each of the `cases`. cell: function from
+    the measurements of a method on a case, at all settings, to the text of a cell.
+    """
+    rows = [
+        {"method": method, "cells": " | ".join(map(cell, grouped_by_fields(every, "case").values()))}
+        for (method,), every in grouped_by_fields(measurements, "method").items()
+    ]
+    return markdown_table(" | ".join(["method", *cases]), "{method} | {cells}", rows)

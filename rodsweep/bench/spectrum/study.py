@@ -17,14 +17,13 @@ from ...model.rod import Rod
 from ...solve.spectrum.krylov_schur import uniform_solver
 from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
+from ...wording import counted
 from ..peers import Peers
 from ..study import (
     BenchmarkReport,
     Contender,
     Measurement,
-    count_text,
     every_nth_setting,
-    grouped_by_fields,
     markdown_table,
     measure_case,
     nan_median,
@@ -42,6 +41,7 @@ from .rodsweep_spectrum import (
     UNCERTIFIED_NAME,
     leading_eigenvalues,
     rodsweep_spectrum,
+    table_by_case,
 )
 
 ELEMENT_ORDERS = (8, 10, 12, 14, 16, 18, 20, 24, 28, 32, 40, 56, 80)
@@ -142,7 +142,7 @@ def equal_error_table(
     return (
         f"Leading {MODE_COUNT} eigenvalues to {target:.0e}: each method at the cheapest size that reaches "
         f"this error; median over {len(rods)} points of the paper's four rods, "
-        f"{count_text(rounds, 'round')}:\n\n"
+        f"{counted(rounds, 'round')}:\n\n"
     ) + markdown_table(
         "method | points reached | ms a point | worst error | times this tool's time",
         "{method} | {points:.0f} | {ms:.3f} | {worst:.0e} | {ratio:.1f}",
@@ -162,18 +162,11 @@ def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measureme
 def hard_rod_table(measurements: Sequence[Measurement]) -> str:
     """Table of hard rods, after a sentence that explains it: the smallest error of every method, and the time
     of the method for at most ten times this error."""
-    rows = [
-        {
-            "method": method,
-            "cells": " | ".join(hard_rod_cell(own) for own in grouped_by_fields(every, "case").values()),
-        }
-        for (method,), every in grouped_by_fields(measurements, "method").items()
-    ]
     return (
         f"Leading {MODE_COUNT} eigenvalues of hard rods: the smallest relative error that a method reaches "
         "at any size, and the ms of the cheapest size with at most ten times this error (the figure shows "
         "all sizes):\n\n"
-    ) + markdown_table(" | ".join(["method", *HARD_RODS]), "{method} | {cells}", rows)
+    ) + table_by_case(HARD_RODS, measurements, hard_rod_cell)
 
 
 def hard_rod_cell(measurements: Sequence[Measurement]) -> str:

@@ -12,10 +12,10 @@ from math import log, nan
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from ...wording import counted
 from ..study import (
     BenchmarkReport,
     Measurement,
-    count_text,
     grouped_by_fields,
     markdown_table,
     nan_median,
@@ -154,9 +154,7 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -
         "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }
-    return Measurement(
-        case.name, count_text(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra
-    )
+    return Measurement(case.name, counted(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra)
 
 
 def numbers_of_row(m: Measurement) -> dict[str, object]:

@@ -14,13 +14,13 @@ from typing import Any
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
+from ...wording import counted
 from ..peers import Peers
 from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 from ..study import (
     BenchmarkReport,
     Contender,
     Measurement,
-    count_text,
     grouped_by_fields,
     markdown_table,
     measure_case,
@@ -227,7 +227,7 @@ def introduction(rounds: int) -> str:
     """Description of the tables of uniform rods for the report. rounds: number of timed rounds."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
-        f"{count_text(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "
+        f"{counted(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "
         "one search. "
         "In addition to eigenproblems it evaluates the determinant D; each change is located to rounding "
         "error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."

@@ -18,7 +18,7 @@ from ..arm.quantities import drag_names
 from ..arm.section import ArmSection
 from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
-from ..profile_file import with_profile_read
+from ..material import with_profile_read
 from ..tasks import CONFIGS, makes_diagram
 from ..values import printable_name, short_repr
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text

@@ -73,7 +73,6 @@ class BranchConfig(Config):
     branch: BranchOptions = BranchOptions()
 
     parameters_depend_on_options: ClassVar[bool] = True
-    solves_nonlinear_motion: ClassVar[bool] = True
 
     @property
     def parameter_names(self) -> tuple[str, ...]:

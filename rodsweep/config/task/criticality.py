@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import inf
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -36,8 +36,6 @@ class CriticalityConfig(Config):
     of the amplitude coefficient and of the frequency slope follow from these errors; the file has all error
     estimates."""
     criticality: CriticalityOptions = CriticalityOptions()
-
-    solves_nonlinear_motion: ClassVar[bool] = True
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """Config of the task limit_cycle: the nonlinear rod, including its axial drag gamma1."""
 
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -59,8 +59,6 @@ class LimitCycleConfig(Config):
     """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
     hundred times larger, relative to the largest y. The file has error estimates of all these numbers."""
     limit_cycle: LimitCycleOptions = LimitCycleOptions()
-
-    solves_nonlinear_motion: ClassVar[bool] = True
 
     @property
     def chain_parameter(self) -> str:

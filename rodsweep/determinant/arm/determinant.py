@@ -15,7 +15,7 @@ from ...arrays import Array
 from ...model.dispersion import sampled_arm
 from ...model.material.build import LocalCoefficients
 from ...model.rod import Rod
-from ..value import DeterminantValue
+from ..value import DeterminantValue, newton_correction_and_scales
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
@@ -147,3 +147,14 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)
+
+
+def wave_number(rod: Rod, w: complex) -> float:
+    """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for an arm that is not
+    uniform or not of linear material, the average along the arm.
+    """
+    return (
+        newton_correction_and_scales(w, rod.coefficients)[2]
+        if rod.is_uniform_and_linear
+        else arm_determinant(rod).wave_number(w)
+    )

@@ -15,11 +15,11 @@ from ...api.answers.picture import plot
 from ...api.arm import Arm
 from ...api.dataset import view_of_dataset
 from ...api.sweeping import sweep
+from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...errors import InputError
-from ...post.branch_curves import RodBranches
+from ...post.branch_curves import RodBranches, stability_runs
 from ..state import MATERIAL_CHOICES, PageState, rod_of
-from .branches import drawn_branches
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
 from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
 
@@ -175,3 +175,25 @@ def answer_to(question: Question) -> AnswerVariables:
     if question.tip is not None:
         return TIP_SOLVERS[question.kind](question.state, question.tip)
     return STATE_SOLVERS[question.kind](question.state)
+
+
+BranchPiece = tuple[Array, Array, int]
+"""(F, largest y of the tip, stability) of a part of a branch; F and y: (vertices,). Stability: 1 stable, 0
+unstable, -1 unknown."""
+
+
+def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
+    """Variables of the answer "branch" for a rod, by name.
+
+    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`, see `BranchPiece`.
+    special: (F, y, kind, period) of each special point except ends of branches.
+    """
+    pieces: list[BranchPiece] = [
+        (curve.at[run], curve.y[run], stable)
+        for curve in rod.curves
+        for run, stable in stability_runs(curve.stable)
+    ]
+    straight = rod.straight_pieces((0.0, stop))
+    pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]
+    special = [(p.at, p.tip_y_max, p.kind, p.period) for curve in rod.curves for p in curve.special]
+    return {"pieces": pieces, "special": [each for each in special if each[2] != "end"]}

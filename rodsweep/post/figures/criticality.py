@@ -13,9 +13,10 @@ from matplotlib.patches import Patch
 
 from ...arrays import Array
 from ...results.file.view import View
+from ..summary.summary_lines import varied_parameters_at_points
 from . import style
 from .cycle.maps import label_maps, map_panels
-from .cycle.point_map import PointMap, cell_edges, point_map, varied_parameters, varies_two_parameters_on_grid
+from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
 from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
@@ -59,7 +60,7 @@ def draw_criticality(request: FigureRequest) -> str:
     style.require_content(
         view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
     )
-    varied = varied_parameters(view)
+    varied = list(varied_parameters_at_points(view))
     if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
         return request.write(
             _curves_figure(view, varied[0]),

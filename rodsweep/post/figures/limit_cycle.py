@@ -6,12 +6,13 @@ import numpy as np
 
 from ...errors import InputError
 from ...results.file.view import View
+from ..summary.summary_lines import varied_parameters_at_points
 from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
 from .cycle.amplitudes.branches import abscissa_parameter
 from .cycle.animation import FILM_SUFFIXES, write_animation
 from .cycle.energy import draw_energy
 from .cycle.maps import draw_maps
-from .cycle.point_map import point_map, varied_parameters, varies_two_parameters_on_grid
+from .cycle.point_map import point_map, varies_two_parameters_on_grid
 from .cycle.portrait import draw_portrait
 from .cycle.selection import (
     ENERGY_BUDGET_VARIABLES,
@@ -108,8 +109,8 @@ def _default_figure_kind(request: FigureRequest) -> str:
         return "cycle"
     if _has_many_lines(first):
         return "maps"
-    many = beats.size > MAX_CYCLES and len(varied_parameters(first)) > 0
-    return "amplitude" if many or "F" in varied_parameters(first) else "cycle"
+    varied = varied_parameters_at_points(first)
+    return "amplitude" if "F" in varied or (varied and beats.size > MAX_CYCLES) else "cycle"
 
 
 def _has_many_lines(view: View) -> bool:

@@ -20,11 +20,10 @@ from ...results.file.view import View
 from ...wording import counted
 from ..figures.request import ShapeFunction
 from ..output_files import atomic_write, require_output_path
-from .dark_colours import dark_page_colour
 from .page_tables import MAX_ROWS
 from .pictures import Pictures, pictures_of
 from .report_contents import ReportContents, report_contents
-from .vector_picture import VectorPicture
+from .vector_picture import VectorPicture, dark_page_colour
 
 QUOTED_TEXT = re.compile("`([^`]*)`")
 """Pattern for a text between backquotes in a sentence: a command, or a key of a config."""

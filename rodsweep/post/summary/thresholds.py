@@ -12,26 +12,16 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted, plural
 from .arm.arm import crossings_of_arm
 from .ranges import error_text, number_and_error, rounded_text, span_text
+from .stability import FORCE_THRESHOLD_WORDS
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotony_lines
 
-FIRST_THRESHOLD_WORDS = {
-    "hopf": ("F** (straight rod starts to beat)", "hopf_frequency", "frequency", ANGULAR_UNIT),
-    "restabilization": (
-        "restabilization (straight rod is stable again)",
-        "restabilization_frequency",
-        "frequency",
-        ANGULAR_UNIT,
-    ),
-    "onset": (
-        "F* (straight rod starts to oscillate, still stable)",
-        "onset_growth_rate",
-        "growth rate",
-        "1/tau2",
-    ),
+FIRST_THRESHOLD_RATES = {
+    "hopf": ("hopf_frequency", "frequency", ANGULAR_UNIT),
+    "restabilization": ("restabilization_frequency", "frequency", ANGULAR_UNIT),
+    "onset": ("onset_growth_rate", "growth rate", "1/tau2"),
 }
-"""(phrase for the first threshold, second variable, name of this variable, unit of this variable), by kind of
-threshold."""
+"""(second variable of the first threshold, name and unit of this variable), by kind of threshold."""
 ENDED_EARLY = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
@@ -40,8 +30,6 @@ FIRST_CROSSING_WORDS = {
     "restabilization": "stable again from",
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
-
-
 LATER_CROSSING_WORDS = {"hopf": "beating again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
 
@@ -67,7 +55,7 @@ def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
         return SummaryLines(
             crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
         )
-    answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_WORDS]
+    answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_RATES]
     reliability = search_lines(view, done, "rod")
     ends = view.variables["F_end"][done]
     if np.isfinite(ends).any():
@@ -80,7 +68,8 @@ def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
     with this threshold and with an unknown result. done: mask of the computed points, of the shape of the
     points.
     """
-    words, rate, noun, unit = FIRST_THRESHOLD_WORDS[event]
+    words = FORCE_THRESHOLD_WORDS[event]
+    rate, noun, unit = FIRST_THRESHOLD_RATES[event]
     v = view.variables
     F = np.where(done, v[f"F_{event}"], np.nan).ravel()
     found = np.isfinite(F)

@@ -3,6 +3,7 @@
 from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
+from .limit_cycle import LEAST_STRETCH
 from .rods import with_certified_meaning
 from .variables import (
     NEEDS_NEW_SOLVE,
@@ -68,12 +69,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
         real("tip_x_min", "L", "smallest x of the tip"),
         real("tip_x_max", "L", "largest x of the tip"),
         real("tip_theta_max", "rad", "largest |theta|, theta: the angle of the tip, over a period"),
-        real(
-            "least_stretch",
-            "1",
-            "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 "
-            "or less also between them; the model holds while it is positive",
-        ),
+        LEAST_STRETCH,
         real("multiplier", "1", "modulus of the largest nontrivial Floquet multiplier"),
         integer(
             "unstable_multipliers",

@@ -5,8 +5,8 @@ from typing import Any
 
 from ...model.parameters import NONLINEAR_PARAMETERS, PARAMETERS, parameter_names_except
 from .rods import with_certified_meaning
-from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
-from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, integer, real
+from .thresholds import CROSSING_LIST_EXTENSION_RULE, SEARCH_END_VARIABLES, search_variables
+from .variables import ANGULAR_UNIT, NEEDS_NEW_SOLVE, Layout, Variable, along_dimension, real
 
 FORCE_UNIT = PARAMETERS["F"].unit
 SLOPE_UNIT = "L^2/(k3 tau2)"
@@ -68,12 +68,10 @@ def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task criticality, for a resolved config."""
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
     after = [v.name for v in search].index("unstable_after") + 1
-    ends = (
-        real("F_end", FORCE_UNIT, "largest F of the search"),
-        integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
-    )
     variables = with_certified_meaning(
-        (*search[:after], *NORMAL_FORM_VARIABLES, *ends, *search[after:]), config, "Hopf points"
+        (*search[:after], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[after:]),
+        config,
+        "Hopf points",
     )
     return Layout(
         variables,

@@ -26,6 +26,12 @@ from .variables import (
     word,
 )
 
+LEAST_STRETCH = real(
+    "least_stretch",
+    "1",
+    "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
+    "less also between them; the model holds while it is positive",
+)
 POWER_UNIT = "k3/(L tau2)"
 """Dimensionless unit of a power."""
 STORED_MULTIPLIERS = 6
@@ -73,12 +79,7 @@ CYCLE_VARIABLES = (
         real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
         real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
     ),
-    real(
-        "least_stretch",
-        "1",
-        "smallest stretch h1 over a period at the nodes and times of the solution, and where it is 0.2 or "
-        "less also between them; the model holds while it is positive",
-    ),
+    LEAST_STRETCH,
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,
     SECONDS,

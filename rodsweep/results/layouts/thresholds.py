@@ -20,6 +20,10 @@ from .variables import (
 )
 
 FORCE_UNIT = PARAMETERS["F"].unit
+SEARCH_END_VARIABLES = (
+    real("F_end", FORCE_UNIT, "largest F of the search"),
+    integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+)
 THRESHOLD_VARIABLES = (
     real("F_onset", FORCE_UNIT, "smallest F at which two real leading eigenvalues merge into a complex pair"),
     real("onset_growth_rate", "1/tau2", "growth rate of the double eigenvalue at F_onset"),
@@ -27,8 +31,7 @@ THRESHOLD_VARIABLES = (
     real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_hopf"),
     real("F_restabilization", FORCE_UNIT, "smallest F at which the last unstable pair becomes stable again"),
     real("restabilization_frequency", ANGULAR_UNIT, "angular frequency of the pair at F_restabilization"),
-    real("F_end", FORCE_UNIT, "largest F of the search"),
-    integer("unstable_at_end", "number of modes with positive growth rate at F_end; -1: not known"),
+    *SEARCH_END_VARIABLES,
 )
 CROSSING_MEANINGS = {
     "none": "unused entry: the list is longer than the number of crossings",

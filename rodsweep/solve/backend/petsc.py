@@ -4,7 +4,7 @@ installation."""
 from functools import cache
 
 from ...errors import import_refusal
-from .debian import add_debian_modules
+from .availability import add_debian_modules
 
 add_debian_modules()
 try:

@@ -27,8 +27,7 @@ from ..orbit.measures import CyclePath, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
-from .accuracy.cycle_errors import CycleErrors
-from .accuracy.integration_errors import errors_of_two_integrations
+from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
 from .marching_settings import MARCHING_SETTINGS
 from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance

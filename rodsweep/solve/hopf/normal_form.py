@@ -21,7 +21,7 @@ from math import ceil
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...determinant.wave_number import wave_number
+from ...determinant.arm.determinant import wave_number
 from ...discretization.elements.elements import Elements, equal_edges, halve_elements
 from ...discretization.elements.mesh import mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, resolution_for

@@ -16,7 +16,7 @@ from math import nan
 
 import numpy as np
 
-from ...determinant.wave_number import wave_number
+from ...determinant.arm.determinant import wave_number
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.resolution import Resolution
 from ...discretization.straight.transverse_mesh import mesh_for

@@ -1,6 +1,6 @@
 """Propagators of elements at one z = w/W, from polynomials in z, and their products with minors.
 
-A propagator has the PROPAGATOR_ENTRIES of its columns one after the other, and then zeros up to PADDED: loops
+A propagator has the MINORS^2 entries of its columns one after the other, and then zeros up to PADDED: loops
 over PADDED entries are whole vector instructions. Real and imaginary parts are rows of their own, so that a
 sum over powers of z is a vector instruction over the entries. At real z there are no imaginary parts.
 

@@ -13,11 +13,9 @@ from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 SM, TS, TM, YT, YM = range(MINORS)
 """Row indices of the minors s^m, theta^s, theta^m, y^theta and y^m."""
-PROPAGATOR_ENTRIES = MINORS * MINORS
-"""Number of entries of a propagator, a matrix that multiplies the minors."""
 PADDED = 28
-"""Length of a stored propagator: its PROPAGATOR_ENTRIES, then zeros up to a multiple of 4, for vector
-instructions."""
+"""Length of a stored propagator, a matrix that multiplies the minors: its MINORS^2 entries, then zeros up to
+a multiple of 4, for vector instructions."""
 NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 """Row indices of the `LocalCoefficients` nu, c2, c3, gamma2, gamma3 and g."""
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
+from ...summary.summary_lines import varied_parameters_at_points
 from ..grid_sections import left_out_clause
 from ..style import is_logarithmic
 
@@ -33,16 +34,11 @@ class PointMap:
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 
-def varied_parameters(view: View) -> list[str]:
-    """Names of the parameters with several values in a file."""
-    return [name for name, column in view.point_columns.items() if len(np.unique(column)) > 1]
-
-
 def point_map(view: View) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
     do not form a grid over two parameters with at least two finite values each.
     """
-    varied = varied_parameters(view)
+    varied = list(varied_parameters_at_points(view))
     if len(varied) != 2:
         raise InputError(
             f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(varied)}"

@@ -132,7 +132,7 @@ def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
         values = ", ".join(style.number_in_tex(float(view.parameter_values[other][at]), 3) for at in alike)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
-    _label_axes(panel, view, along, _first_force_table(view, along, other)[some])
+    _label_axes(panel, view, along, table[some])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return len(some)
 

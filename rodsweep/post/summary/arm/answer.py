@@ -13,9 +13,8 @@ from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, load_kind, range_in_unit
-from .compression import compression_lines
 from .drag_range import arms_of_drags, drag_lines
-from .extreme_loads import ANSWER_DIGITS, extreme_arms_text, flutter_force_line
+from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
 from .validity_sentences import plane_lines, validity_sentence
 
 Lines = list[str]

@@ -19,7 +19,7 @@ from ...orbit.orbit_mesh import OrbitMesh
 from ...orbit.tails import tails_of
 from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CycleErrors, errors_with_safety_factors
-from .error_growth import error_growth_factors, indicator_growth, squared_tail_growth, tails_and_size
+from .error_indicators import error_growth_factors, indicator_growth, squared_tail_growth, tails_and_size
 
 ERROR_COUNT = 5
 """Length of the error arrays: the errors of `path_differences`, and the error of the multiplier."""

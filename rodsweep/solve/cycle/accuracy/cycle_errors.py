@@ -4,7 +4,7 @@ largest nontrivial Floquet multiplier.
 Errors are measured in `finer_meshes`, as differences between the cycles on the mesh and on two finer meshes,
 or predicted in `coarser_meshes`, and `calibration` scales them to later cycles. Then
 `errors_with_safety_factors` applies safety factors and lower limits, with the factors of
-`calibration_settings`. The errors of integrated cycles come from `integration_errors`.
+`calibration_settings`. The errors of integrated cycles come from `errors_of_two_integrations`.
 """
 
 from dataclasses import dataclass
@@ -13,7 +13,9 @@ from math import nan
 import numpy as np
 
 from ....arrays import Array
+from ...orbit.measures import CyclePath
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
+from ..marching_settings import MARCHING_SETTINGS
 from .calibration_settings import CALIBRATION_SETTINGS
 
 MULTIPLIER_INDEX = 4
@@ -90,3 +92,23 @@ def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Ar
 
 
 UNKNOWN_ERRORS = CycleErrors(nan, nan, nan, nan)
+
+
+def errors_of_two_integrations(one: CyclePath, other: CyclePath, distance: float) -> CycleErrors:
+    """Error estimates from the differences between the cycles `one` and `other` of two time integrations,
+    relative to the largest y and the period of `other`; NaN for the multiplier. distance: relative distance
+    of the settled motions from the cycle, which is added to the error estimates."""
+    a = one.extrema
+    b = other.extrema
+    size = abs(b["tip_y_max"])
+    period = abs(one.orbit.period / other.orbit.period - 1)
+    height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
+    worst = max(abs(a[name] - b[name]) for name in a) / size
+    # Errors of extrema are divided by the largest y; theta may be several times as large as y.
+    left = distance * max(1.0, abs(b["tip_theta_max"]) / size)
+    return CycleErrors(
+        float(MARCHING_SETTINGS.difference_safety_factor * period + distance),
+        float(MARCHING_SETTINGS.difference_safety_factor * height + distance),
+        float(MARCHING_SETTINGS.difference_safety_factor * worst + left),
+        nan,
+    )

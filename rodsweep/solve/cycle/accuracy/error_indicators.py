@@ -1,5 +1,6 @@
-"""Indicators of the errors of a cycle in time: the energy lost by the collocation, the error of the amplitude
-due to this loss, and the last harmonics of the tip's path.
+"""Indicators of the errors of a cycle in time, and the growth of errors along a chain of cycles. The
+indicators are the energy lost by the collocation, the error of the amplitude due to this loss, and the last
+harmonics of the tip's path.
 
 Forces and drag balance over a period of the exact cycle. On a mesh the collocation loses some more energy:
 with a linear law, each time interval loses the square of a norm of its truncation error. All these losses
@@ -12,6 +13,9 @@ import numpy as np
 from ....arrays import Array, Complex
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
+from ...orbit.orbit import Orbit
+from ...orbit.tails import smooth_tails
+from .calibration_settings import CALIBRATION_SETTINGS
 from .cycle_errors import CYCLE_ERROR_SETTINGS
 
 ENERGY_LOSS_INDEX, AMPLITUDE_ERROR_INDEX, LAST_HARMONICS_INDEX = range(3)
@@ -49,3 +53,41 @@ def _decay_in_one_part(partial: Complex) -> float:
     multipliers over the solved part of the period, with the trivial multiplier, (rank,)."""
     exponents = np.sort(np.abs(np.log(partial[partial != 0])))[1:]  # the exponent of the trivial one is 0
     return float(exponents[0]) if len(exponents) else 1.0
+
+
+def tails_and_size(orbit: Orbit) -> Array:
+    """Relative tails of an orbit in space and in time, not below a minimum, and size of the orbit, (3,)."""
+    return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
+
+
+def error_growth_factors(before: Array, after: Array) -> Array:
+    """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
+
+    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
+
+    Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
+    the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
+    `indicator_growth` includes this factor for the errors in time. A predicted decrease is ignored.
+    """
+    # Errors are of second order in the tails.
+    growth = np.maximum(squared_tail_growth(before, after), 1.0)
+    growth[0] *= max((before[2] / after[2]) ** 2, 1.0)
+    return growth
+
+
+def squared_tail_growth(before: Array, after: Array) -> Array:
+    """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
+    after: relative tails and size, (3,) each."""
+    change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
+    return change
+
+
+def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
+    """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
+
+    before, after: `error_indicators` of both orbits, (3,) each. The tail in time is the largest of all fields
+    and intervals, and may belong to a field on which the cycle hardly depends. The lost energy is the sum
+    over all fields and intervals. Between the time nodes, errors grow with the last harmonics of the path.
+    """
+    growth = after / before
+    return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])

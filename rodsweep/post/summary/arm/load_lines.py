@@ -1,9 +1,13 @@
-"""The arms with the smallest and the largest flutter load, and flutter as a force at the tip, in words."""
+"""Loads of arms in words: flutter as a force at the tip, the arms with extreme flutter loads, and the loads
+that compress an arm beyond the limit of the model.
+"""
 
 import numpy as np
 
-from ....model.arm.quantities import SCALE_NAME
+from ....model.arm.neglected import COMPRESSION_LIMIT
+from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
+from ...crushing import build_of_rods
 from .arm import load_kind, range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
@@ -33,3 +37,25 @@ def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest:
     ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
     least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
     return "" if least == most else f"{smallest} at {least}; largest at {most}"
+
+
+def compression_lines(view: View, rods: np.ndarray) -> list[str]:
+    """Line with the range of loads above which the rows of a phase diagram are compressed beyond the limit,
+    in a list; empty for other tasks, and if all loads of the rows are smaller. rods: mask of rows, (...,).
+
+    The validity of a row is that at its first Hopf point, and a row has larger loads. Rubber has no limit of
+    compression, because its law includes large compression. Raises InputError if this version of rodsweep
+    does not accept the config of the file.
+    """
+    if "F" in view.parameters or "F" not in view.variables or not rods.any():
+        return []  # no rows along F
+    columns = view.point_columns
+    tapers = columns.get("taper", np.ones_like(columns["k1"]))
+    largest = COMPRESSION_LIMIT * columns["k1"] * build_of_rods(view).relative_crushing_forces(tapers)
+    forces = largest.reshape(rods.shape)[rods]
+    if not forces.min() < view.variables["F"].max():
+        return []
+    kind = load_kind(view)
+    loads = forces * np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
+    text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
+    return [f"above {text} compression exceeds its limit, and the model does not apply"]
