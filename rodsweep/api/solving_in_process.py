@@ -45,7 +45,7 @@ def solve_in_process(
     notebook. Raises InputError for any other value of `progress`, and EnvironmentIncomplete if PETSc or SLEPc
     is missing.
     """
-    shown = progress_display(progress, job.points.count, job.name)
+    shown = progress_display(progress, job.points.count, job.title)
     require_solvers()
     solver = job.solver()
     started = utc_time()

@@ -712,7 +712,7 @@ def figure_of(task, **words):
     draw(
         view_of_dataset(rs.sweep(task, progress=False, **words), Path("d.h5")),
         Path("f.png"),
-        keep=figures.append,
+        figure_callback=figures.append,
     )
     return figures[0]
 

@@ -15,7 +15,7 @@ from ...results.layouts.variables import MISSING_STATUS
 from ...wording import count_of_total, counted, has_or_have, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
 from ..crushing import uncrushed_ranges
-from ..parameter_ranges import ParameterRange
+from ..range_unions import ParameterRange
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest

@@ -54,10 +54,10 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
-    return outcome_or_failure(lambda: _MarchedMotion(rod, request).cycle(), failed)
+    return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
 
 
-class _MarchedMotion:
+class _IntegrationUntilSettled:
     """Integration of the motion of one rod until the motion settles, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:
