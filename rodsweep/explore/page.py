@@ -113,7 +113,7 @@ class Page:
         self.latest_inputs.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
-            self.solvers.drop(self.session, kind)
+            self.solvers.cancel(self.session, kind)
 
     def _callbacks(self) -> dict[str, Callable[..., None]]:
         return {

@@ -150,7 +150,7 @@ class _RankRun:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.request.fresh, self.request.extend)
         if self.sweep_wide and (self.request.fresh or not self._lacks_sweep_wide_variables(0)):
-            self.sweep_wide.item_results.drop()
+            self.sweep_wide.item_results.remove_all()
         self._print_store_notes()
         return self.store.missing()
 
@@ -185,7 +185,7 @@ class _RankRun:
             return True
         self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
         if self.sweep_wide:
-            self.sweep_wide.item_results.drop()
+            self.sweep_wide.item_results.remove_all()
         return False
 
     def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:

@@ -199,7 +199,7 @@ class ArmSection(StrictSection):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) for n values."""
+        """Values of the arm's quantities and units by name: (), or (n,) along the parameter they change."""
         values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]

@@ -157,7 +157,7 @@ def _draw_pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
-    neighbouring vertices, (n - 1,). colour, marker: of the curve, for matplotlib.
+    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib.
     """
     for vertices, kind in stability_runs(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)

@@ -115,7 +115,7 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
     return list(dict.fromkeys(lines))
 
 
-def agreement_lines(view: View, line: str) -> list[str]:
+def curve_count_lines(view: View, line: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
     along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
     v = view.variables
@@ -137,7 +137,7 @@ def agreement_lines(view: View, line: str) -> list[str]:
     return lines
 
 
-def cut_lines(view: View, line: str, row: str) -> list[str]:
+def incomplete_curve_lines(view: View, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
     list was full. line, row: as in `curve_lines`.
     """

@@ -64,7 +64,7 @@ class ResultHeader:
     """Description of a complete result file at `path`. attributes: attributes of the file. layout: its
     variables.
 
-    config: the resolved config. fingerprint: of config and points. points: number of points.
+    config: the resolved config. fingerprint: digest of config and points. points: number of points.
     """
 
     path: Path

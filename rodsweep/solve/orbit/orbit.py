@@ -42,7 +42,7 @@ class Orbit:
         cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int
     ) -> "Orbit":
         """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
-        n)."""
+        n). stages: number s of stages of an interval."""
         values = np.append(states.ravel(), period)
         return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 

@@ -35,9 +35,8 @@ the option `samples`."""
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """Limit cycle or transient at one point of a result file. parameters: of the point, by name. values:
-    variables in `units`, by name. period: NaN if there is no cycle.
-    """
+    """Limit cycle or transient at one point of a result file. parameters: parameters of the point, by
+    name. values: variables in `units`, by name. period: NaN if there is no cycle."""
 
     number: int
     """Number of the point in the file, from 1."""

@@ -136,7 +136,7 @@ class Transient:
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
-        times, states: of the returns, (k,) and (k, unknowns)."""
+        times, states: times and states of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.stress_field(states, "m3")
