@@ -67,15 +67,15 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     return out
 
 
-def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
+def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     """S at the nodes of every element, (3, ..., elements, order + 1); the two elements at a jump have the
     values of their own side.
 
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
-    fields: Array = S[..., grid.element_nodes]
+    fields: Array = S[..., mesh.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
-        e = node // grid.order
+        e = node // mesh.order
         for component, before, behind in zip(
             (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX), sides[0], sides[1], strict=True
         ):

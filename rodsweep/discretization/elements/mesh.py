@@ -95,17 +95,17 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     return source.evaluation_matrix(target.node_positions)
 
 
-def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
+def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains.
 
     strains: (h1, h2, Pi) at the nodes of every element, (3, ..., elements (order + 1)). clamp: (x, y, theta)
     at u = 0, (3,).
     """
-    values, angles, integrals, ends = shape_integration_matrices(grid.order)
-    p = grid.order
-    state = np.empty((*strains.shape[:-1], grid.node_count + 1), strains.dtype)
+    values, angles, integrals, ends = shape_integration_matrices(mesh.order)
+    p = mesh.order
+    state = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
-    for e, length in enumerate(grid.lengths):
+    for e, length in enumerate(mesh.lengths):
         element = slice(e * p, (e + 1) * p + 1)
         h1, h2, Pi = (strain[..., e * (p + 1) : (e + 1) * (p + 1)] for strain in strains)
         theta = start[2] + length * (Pi @ angles)

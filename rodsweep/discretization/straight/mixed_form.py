@@ -224,13 +224,13 @@ def axial_field(values: Array) -> Array:
     return field
 
 
-def integral_to_tip(grid: Mesh, values: Array) -> Array:
+def integral_to_tip(mesh: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
     (nodes + 1,).
     """
-    ends = shape_integration_matrices(grid.order).angles_at_nodes
-    total = np.zeros(grid.node_count + 1)
-    for e, length in enumerate(grid.lengths):
-        element = slice(e * grid.order, (e + 1) * grid.order + 1)
+    ends = shape_integration_matrices(mesh.order).angles_at_nodes
+    total = np.zeros(mesh.node_count + 1)
+    for e, length in enumerate(mesh.lengths):
+        element = slice(e * mesh.order, (e + 1) * mesh.order + 1)
         total[element] = total[element.start] + length * (values[element] @ ends)
     return total[-1] - total

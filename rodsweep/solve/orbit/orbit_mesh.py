@@ -163,8 +163,8 @@ class OrbitMesh:
 
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
-    grid = orbit.form.mesh
-    return OrbitMesh(grid.edges, grid.order, orbit.interval_count, orbit.stage_count)
+    mesh = orbit.form.mesh
+    return OrbitMesh(mesh.edges, mesh.order, orbit.interval_count, orbit.stage_count)
 
 
 def cheapest_stage_count(accuracy: float) -> int:

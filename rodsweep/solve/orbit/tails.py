@@ -86,13 +86,13 @@ def _coefficient_decay(c: Array) -> float:
 def _space_coefficients(orbit: Orbit) -> Array:
     """Largest moduli of the Legendre coefficients in space of n1, n2 and m3, over all elements and the ends
     of all time intervals, (3, p + 1), p: order of the elements."""
-    grid = orbit.form.mesh
+    mesh = orbit.form.mesh
     ends = np.ascontiguousarray(orbit.stage_states[:, -1])
     if not orbit.form.has_continuous_stresses:
-        c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(grid.order))
+        c = np.abs(_stresses_by_element(orbit, ends) @ _analysis_matrix_on_element(mesh.order))
         largest: Array = c.max(axis=(1, 2))
         return largest
-    return largest_coefficients(ends, grid.element_count, _analysis_matrix_on_element(grid.order))
+    return largest_coefficients(ends, mesh.element_count, _analysis_matrix_on_element(mesh.order))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -130,15 +130,15 @@ def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
     smoothly along a branch, because the tail in space is the norm of
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
-    grid = orbit.form.mesh
+    mesh = orbit.form.mesh
     if not orbit.form.has_continuous_stresses:
         fields = _stresses_by_element(orbit, orbit.all_states)
-        ends = np.linalg.norm(fields @ _last_columns_of_analysis_matrix(grid.order), axis=-1).max(axis=(1, 2))
+        ends = np.linalg.norm(fields @ _last_columns_of_analysis_matrix(mesh.order), axis=-1).max(axis=(1, 2))
         largest = np.maximum(np.abs(fields).max(axis=(1, 2, 3)), EXPONENT_SETTINGS.least_divisor)
         in_space = float((ends / largest).max())
     else:
         in_space = largest_tail_in_space(
-            orbit.all_states, grid.element_count, _last_columns_of_analysis_matrix(grid.order)
+            orbit.all_states, mesh.element_count, _last_columns_of_analysis_matrix(mesh.order)
         )
     return np.array([in_space, _tail_in_time(orbit)])
 
