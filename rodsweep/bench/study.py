@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ..post.work_precision import draw_work_precision
-from ..results.file.measurements import Table
+from ..results.file.benchmark_file import Table
 
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""

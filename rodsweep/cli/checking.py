@@ -14,7 +14,7 @@ from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
-from ..post.summary.ranges import span_text
+from ..post.summary.number_texts import span_text
 from ..sweep.cost_estimate import MAX_SAMPLED_POINTS
 from ..sweep.points.points import Points
 from ..tasks.arm.point_solver import NoRodStatus, rod_numbers

@@ -15,7 +15,7 @@ from tornado.ioloop import IOLoop
 
 from ..state import PageState
 from . import worker
-from .forks import FORK_SERVER, start_fork_server
+from .fork_server import FORK_SERVER, start_fork_server
 from .questions import Question, Reply
 
 Key = tuple[str, str]

@@ -14,7 +14,7 @@ from ...results.file.view import View
 from ..figures import style
 from ..range_unions import ParameterRange
 from ..summary.arm.arm import printing_unit
-from ..summary.ranges import ranges_text, rounded_text
+from ..summary.number_texts import ranges_text, rounded_text
 
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""

@@ -11,7 +11,7 @@ from ..branch_curves import RodBranches, StoredBranch, branch_ends, followed_par
 from ..crushing import uncrushed_ranges
 from ..range_unions import ParameterRange
 from .errors import known_range_text
-from .ranges import number_with_error, ranges_text, rounded_text, span_text
+from .number_texts import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 

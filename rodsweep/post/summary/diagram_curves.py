@@ -10,7 +10,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
-from .ranges import error_text, number_with_error, span_text
+from .number_texts import error_text, number_with_error, span_text
 
 CYCLE_CHANGE_WORDS = {
     "fold": "folds of cycles",

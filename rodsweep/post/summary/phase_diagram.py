@@ -18,7 +18,7 @@ from .diagram_curves import (
     curve_lines,
     incomplete_curve_lines,
 )
-from .ranges import axis_values_text, span_text
+from .number_texts import axis_values_text, span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 

@@ -2,7 +2,7 @@
 exchanges of the leading eigenvalue.
 
 The crossings come from `determinant.certificate.covering`, or for nonuniform arms from `arm.crossings`; the
-exchanges come from `leading_eigenvalue`. Winding numbers confirm the numbers of unstable modes.
+exchanges come from `leader_exchanges`. Winding numbers confirm the numbers of unstable modes.
 """
 
 import math
@@ -16,7 +16,7 @@ from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
 from .kinds import Threshold, crossing_kind
-from .leading_eigenvalue import LeaderExchangeSearch
+from .leader_exchanges import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
 from .unstable_modes import ModeCounter

@@ -34,8 +34,8 @@ from .marching_settings import MARCHING_SETTINGS
 from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
-from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
+from .transient.orbit_from_motion import collocation_states
 from .transient.returns import (
     RETURN_SETTINGS,
     not_settled_text,

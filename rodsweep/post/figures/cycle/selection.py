@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ...summary.ranges import rounded_text
+from ...summary.number_texts import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
 from .units_and_labels import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points

@@ -28,8 +28,8 @@ from ..cycle import CycleRequest
 from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
-from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
+from .orbit_from_motion import orbit_from_motion
 from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
