@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.post.summary.ranges import (
+from rodsweep.post.summary.number_texts import (
     error_text,
     number_with_error,
     ranges_text,

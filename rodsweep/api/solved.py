@@ -37,7 +37,7 @@ class Result(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class StoredResult:
+class DatasetResult:
     """A result given as a Dataset, from which the view is made. dataset: the Dataset of the whole file."""
 
     dataset: xr.Dataset
@@ -50,7 +50,7 @@ class StoredResult:
 
 @dataclass(frozen=True, kw_only=True)
 class SolvedPoints:
-    """Results of all points of a job. Pickling or deep copying gives a `StoredResult` with the Dataset."""
+    """Results of all points of a job. Pickling or deep copying gives a `DatasetResult` with the Dataset."""
 
     job: Job
     plan: Plan = field(repr=False)
@@ -85,5 +85,5 @@ class SolvedPoints:
         """The view of the points that tables read."""
         return view_in_memory(self.job, self.plan, self.values, self.filled)
 
-    def __reduce__(self) -> tuple[type[StoredResult], tuple[xr.Dataset]]:
-        return StoredResult, (self.dataset,)
+    def __reduce__(self) -> tuple[type[DatasetResult], tuple[xr.Dataset]]:
+        return DatasetResult, (self.dataset,)

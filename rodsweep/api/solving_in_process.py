@@ -45,7 +45,7 @@ def solve_in_process(
     notebook. Raises InputError for any other value of `progress`, and EnvironmentIncomplete if PETSc or SLEPc
     is missing.
     """
-    shown = progress_display(progress, job.points.count, job.name)
+    shown = progress_display(progress, job.points.count, job.title)
     require_solvers()
     solver = job.solver()
     started = utc_time()
@@ -110,9 +110,9 @@ def _solve_points(
     count = job.points.count
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
-    left = range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, flat, shown)
+    unsolved = range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, flat, shown)
     for done, (index, outcome) in enumerate(
-        _solve_outcomes(left, count, solver, shown), count - len(left) + 1
+        _solve_outcomes(unsolved, count, solver, shown), count - len(unsolved) + 1
     ):
         record = solver.record(index, outcome)
         for name, array in flat.items():
@@ -136,17 +136,17 @@ def _solve_stretches(
 
     flat: variables by name, (points, ...). shown: progress display.
     """
-    left: list[int] = []
+    unsolved: list[int] = []
     done = 0
     for indices in map(stretches.indices, range(stretches.count)):
         found = solve_stretch(indices)
         here = np.flatnonzero(found.is_solved)
         for name, column in found.part_at(here).values.items():
             flat[name][indices[here]] = column
-        left += indices[~found.is_solved].tolist()
+        unsolved += indices[~found.is_solved].tolist()
         done += len(here)
         shown(done)
-    return left
+    return unsolved
 
 
 def _sweep_wide_variables(solver: SweepWideSolver, view: View, shown: Display) -> Sequence[FilledVariable]:
@@ -163,14 +163,14 @@ def _sweep_wide_variables(solver: SweepWideSolver, view: View, shown: Display) -
 
 
 def _solve_outcomes(
-    left: Sequence[int], count: int, solver: Solver, shown: Display
+    unsolved: Sequence[int], count: int, solver: Solver, shown: Display
 ) -> Iterator[tuple[int, Any]]:
-    """Solves the points with flat indices `left`; yields (flat index, outcome) of each point. Along a chain,
-    each point starts from the solution of the previous point.
+    """Solves the points with flat indices `unsolved`; yields (flat index, outcome) of each point. Along a
+    chain, each point starts from the solution of the previous point.
 
     count: number of all points. shown: progress display.
     """
-    done = count - len(left)
+    done = count - len(unsolved)
 
     @contextmanager
     def point_progress() -> Iterator[None]:
@@ -183,7 +183,7 @@ def _solve_outcomes(
             yield
 
     if solver.chained is None:
-        for index in left:
+        for index in unsolved:
             with point_progress():
                 outcome = solver.solve(index)
             done += 1

@@ -13,7 +13,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ..post.work_precision import draw_work_precision
-from ..results.file.measurements import Table
+from ..results.file.benchmark_file import Table
 
 Outcome = TypeVar("Outcome")
 """Type of the result of a timed function."""
@@ -222,7 +222,7 @@ def nan_median(values: Iterable[float]) -> float:
     return float(median(numbers)) if numbers else nan
 
 
-class PrintedNumber(float):
+class BlankIfNan(float):
     """A number whose formatted text is "" if the number is nan."""
 
     def __format__(self, form: str) -> str:
@@ -238,7 +238,7 @@ def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -
     lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
     for row in rows:
         cells = {
-            k: PrintedNumber(value) if isinstance(value, int | float) else value for k, value in row.items()
+            k: BlankIfNan(value) if isinstance(value, int | float) else value for k, value in row.items()
         }
         lines.append(f"| {line.format_map(cells)} |")
     return "\n".join(lines)

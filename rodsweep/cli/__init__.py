@@ -25,7 +25,7 @@ from ..config.values import printable  # noqa: E402 - after the environment is s
 from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import prints_messages  # noqa: E402 - after the environment is set
-from .page_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
+from .output_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
 from .usage_errors import usage_error_text  # noqa: E402 - after the environment is set
 
 __all__ = ["commands", "main"]

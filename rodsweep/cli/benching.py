@@ -42,7 +42,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         raise EnvironmentIncomplete(
             f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
         ) from None
-    from ..results.file.measurements import write_measurements
+    from ..results.file.benchmark_file import write_measurements
 
     studies: dict[str, Callable[[bool, Peers], BenchmarkReport]] = {
         "spectrum": spectrum_study,

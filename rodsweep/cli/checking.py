@@ -14,7 +14,7 @@ from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
-from ..post.summary.ranges import span_text
+from ..post.summary.number_texts import span_text
 from ..sweep.cost_estimate import MAX_SAMPLED_POINTS
 from ..sweep.points.points import Points
 from ..tasks.arm.point_solver import NoRodStatus, rod_numbers
@@ -80,7 +80,7 @@ def _arm_lines(job: Job) -> list[str]:
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
         f"the arm as a rod: {', '.join(made)} s",
-        *_uncovered_lines(job.points),
+        *_lines_on_points_without_rod(job.points),
         f"{validity}; the run also tests inertia, by the frequency of the arm's motion{load_clause}",
     ]
 
@@ -110,18 +110,18 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     return [f"{warning} Of {counted(effect.value.size, 'tube')} this is the worst."] if some else []
 
 
-def _uncovered_lines(points: Points) -> list[str]:
+def _lines_on_points_without_rod(points: Points) -> list[str]:
     """Lines with the number of different rods, and with the number of points to which the rod model does not
     apply, by reason.
     """
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:
-        there = rods if points.coverage is None else rods[points.coverage == SLENDER]
+        there = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
         different = counted(len(np.unique(there)), "different rod")
         lines.append(f"{different} at {len(there)} points; rods that are equal are solved once")
     for status in NoRodStatus:
-        number = 0 if points.coverage is None else int((points.coverage == status).sum())
+        number = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
         if number:
             lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")
     return lines

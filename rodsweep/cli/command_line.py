@@ -1,4 +1,4 @@
-"""Commands and options of `rodsweep`, except the commands of `rodsweep.cli.page_commands`."""
+"""Commands and options of `rodsweep`, except the commands of `rodsweep.cli.output_commands`."""
 
 import sys
 from pathlib import Path

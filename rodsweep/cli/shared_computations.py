@@ -19,7 +19,7 @@ from ..tasks.protocol import Task
 
 
 @dataclass(slots=True)
-class _SharedWork:
+class _SharedComputations:
     """Computations divided among the ranks of `team`. Each rank omits its remaining items after a stop
     signal, recorded in `stop`.
     """
@@ -49,7 +49,7 @@ def with_variables_from_config(plan: Plan, task: Task, team: Team, stop: StopReq
 
     None if a stop signal came before the computation ended.
     """
-    shared = _SharedWork(team, stop)
+    shared = _SharedComputations(team, stop)
     found = task.variables_from_config(shared.gather_in_order)
     return None if shared.any_rank_stopped else replace(plan, variables_from_config=lambda: found)
 
@@ -65,7 +65,7 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     ):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
         team.require_on_all_ranks(start_solvers)
-    shared = _SharedWork(team, stop)
+    shared = _SharedComputations(team, stop)
     found = shared.gather_in_order(rods, flutter_force_of_rod)
     return None if shared.any_rank_stopped else dict(zip(rods, found, strict=True))
 

@@ -116,21 +116,21 @@ class Config(StrictSection):
         """
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
         numbers = dict(self.parameters.constant_parameters)
-        meant = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
+        settings = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
         if self.material is not None and not self.build.is_uniform_and_linear:
-            meant["material"] = self.material.model_dump(mode="json", exclude_none=True)
+            settings["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
-            return meant
+            return settings
         if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
             given = self.parameters.given_axes
             given_values = {
                 name: float(given[name].array()[0]) if name in given else None
                 for name in self.parameter_names
             }
-            meant["parameters"] |= {
+            settings["parameters"] |= {
                 k: v for k, v in given_values.items() if k not in self.parameters.arm_axes
             }
-        return meant | {"arm": self.parameters.arm.settings_of_results}
+        return settings | {"arm": self.parameters.arm.settings_of_results}
 
     def refuse_solved_parameter(self, name: str, why: str) -> None:
         """Raises ValueError, with the reason `why`, if the config gives the parameter `name`, for which the

@@ -92,7 +92,7 @@ class Axes(LinearAxes):
         """
         if self.arm is None or self.arm_axes:
             return self.given_axes
-        axes = self.arm.grid_axes() | self.given_axes
+        axes = self.arm.dimensionless_axes() | self.given_axes
         return {name: axes[name] for name in self.task_parameters if name in axes}
 
     @cached_property
@@ -165,7 +165,7 @@ class Axes(LinearAxes):
                 "allowed; use fewer values"
             )
         if not self.arm_axes:
-            arm.grid_axes()
+            arm.dimensionless_axes()
 
 
 AxesAndNumbers: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Number)

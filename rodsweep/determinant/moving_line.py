@@ -62,8 +62,8 @@ class IntervalEnd(NamedTuple):
 class UnprovedStrip(NamedTuple):
     """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
 
-    p_start, p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: of the
-    next rectangle to try, in y.
+    p_start, p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: half the
+    height of the next rectangle to try, in y.
     """
 
     p_start: float

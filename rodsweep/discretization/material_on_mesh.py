@@ -23,7 +23,7 @@ from .elements.quadrature import gauss_lobatto_rule
 from .nodal_rod import NO_JUMP_DERIVATIVE, NO_JUMPS, IntegerArray, Jumps
 
 
-def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
+def material_at_nodes(rod: Rod, mesh: Mesh) -> Material:
     """The material of a rod at the nodes of a mesh; compliance, drag and rest_strain are constants, (3,), for
     a uniform rod of linear material, and (3, nodes + 1) for any other arm.
 
@@ -31,42 +31,42 @@ def material_at_nodes(rod: Rod, grid: Mesh) -> Material:
     """
     if rod.is_uniform_and_linear:
         return rod.material
-    compliance, drag, rest = _mean_coefficients_at_nodes(rod.sections(grid.points_inside_elements), grid)
+    compliance, drag, rest = _mean_coefficients_at_nodes(rod.sections(mesh.points_inside_elements), mesh)
     return Material(compliance, drag, rod.F, rest)
 
 
-def material_derivative_at_nodes(rod: Rod, name: str, grid: Mesh) -> Material:
+def material_derivative_at_nodes(rod: Rod, name: str, mesh: Mesh) -> Material:
     """The derivative of `material_at_nodes` with respect to the coordinate of the parameter `name`: 1/k for a
     stiffness k, else the parameter itself.
     """
     if rod.is_uniform_and_linear and name != "taper":
         return rod.material_derivative(name)
     compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.section_derivatives(name, grid.points_inside_elements), grid
+        rod.section_derivatives(name, mesh.points_inside_elements), mesh
     )
     return Material(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
-def relative_bending_compliance_at_nodes(build: Build, grid: Mesh) -> Array:
+def relative_bending_compliance_at_nodes(build: Build, mesh: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
     `build`.
 
     At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
     """
     if build.profile is None:
-        return np.ones(grid.node_count + 1)
-    return _mean_at_nodes(build.relative_compliances(1.0, grid.points_inside_elements)[2:], grid)[0]
+        return np.ones(mesh.node_count + 1)
+    return _mean_at_nodes(build.relative_compliances(1.0, mesh.points_inside_elements)[2:], mesh)[0]
 
 
-def jumps_on_mesh(rod: Rod, grid: Mesh) -> Jumps:
+def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
     nodes.
     """
-    inside, at = _indices_beside_jumps(rod.build, grid)
+    inside, at = _indices_beside_jumps(rod.build, mesh)
     if not len(at):
         return NO_JUMPS
-    points = grid.points_inside_elements[inside]
-    weights = _nodes_and_weights_of_points(grid)[1][inside]
+    points = mesh.points_inside_elements[inside]
+    weights = _nodes_and_weights_of_points(mesh)[1][inside]
     sections = rod.sections(points.ravel())
     c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
     soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
@@ -76,33 +76,33 @@ def jumps_on_mesh(rod: Rod, grid: Mesh) -> Jumps:
     return Jumps(at, np.ascontiguousarray(sides))
 
 
-def jump_derivatives(rod: Rod, name: str, grid: Mesh) -> Array:
+def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
     `name`, (k, 2, 3).
 
     Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which the stress at a jump
     depends only on the mean strain.
     """
-    inside, at = _indices_beside_jumps(rod.build, grid)
+    inside, at = _indices_beside_jumps(rod.build, mesh)
     if rod.build.constitutive_law is LINEAR or not len(at):
         return NO_JUMP_DERIVATIVE
-    changes = rod.section_derivatives(name, grid.points_inside_elements[inside].ravel())
+    changes = rod.section_derivatives(name, mesh.points_inside_elements[inside].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
-def _indices_beside_jumps(build: Build, grid: Mesh) -> tuple[IntegerArray, IntegerArray]:
+def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (points, nodes) of the k jumps. points: indices in the `points_inside_elements` of the
     points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
     """
     jumps = build.jump_positions
-    ends = np.array([e for e in range(1, grid.element_count) if grid.edges[e] in jumps], np.int64)
-    nodes = np.array([grid.node_ranges[e].start for e in ends], np.int64)
+    ends = np.array([e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64)
+    nodes = np.array([mesh.node_ranges[e].start for e in ends], np.int64)
     behind = nodes + ends
     return np.stack([behind - 1, behind], axis=-1), nodes
 
 
-def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, Array, Array]:
+def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
 
     sections: the coefficients at the `points_inside_elements` of the mesh, or derivatives of the
@@ -111,25 +111,25 @@ def _mean_coefficients_at_nodes(sections: Sections, grid: Mesh) -> tuple[Array, 
     rest = np.zeros_like(sections.drag)
     rest[0] = sections.nu
     compliance, drag, rest = (
-        _mean_at_nodes(values, grid) for values in (sections.compliance, sections.drag, rest)
+        _mean_at_nodes(values, mesh) for values in (sections.compliance, sections.drag, rest)
     )
     return compliance, drag, rest
 
 
-def _mean_at_nodes(values: Array, grid: Mesh) -> Array:
+def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside_elements`,
     (m, points).
     """
-    element, weights = _nodes_and_weights_of_points(grid)
-    mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / grid.quadrature
+    element, weights = _nodes_and_weights_of_points(mesh)
+    mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / mesh.quadrature
     return mean
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _nodes_and_weights_of_points(grid: Mesh) -> tuple[IntegerArray, Array]:
+def _nodes_and_weights_of_points(mesh: Mesh) -> tuple[IntegerArray, Array]:
     """Returns (nodes, weights) of all `points_inside_elements`, (nodes + elements,) each: node of the mesh,
     and quadrature weight within the element.
     """
-    parts = zip(grid.lengths, grid.orders, strict=True)
+    parts = zip(mesh.lengths, mesh.orders, strict=True)
     weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
-    return grid.element_nodes, weights
+    return mesh.element_nodes, weights

@@ -66,7 +66,7 @@ class NodalRodDerivative(NamedTuple):
 
 def nodal_rod(
     material: Material,
-    grid: Mesh,
+    mesh: Mesh,
     unknown_velocities: tuple[int, ...] = (),
     law: int = 0,
     jumps: Jumps = NO_JUMPS,
@@ -76,26 +76,26 @@ def nodal_rod(
     unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
     jumps: jumps of the material on this mesh.
     """
-    size = grid.node_count + 1
+    size = mesh.node_count + 1
     rest = _expanded_to_nodes(material.rest_strain, size)
     compliance = _expanded_to_nodes(material.compliance, size)
-    resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, grid, unknown_velocities)
+    resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, mesh, unknown_velocities)
     return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
 
 
 def nodal_rod_derivative(
-    change: Material, grid: Mesh, sides: Array = NO_JUMP_DERIVATIVE
+    change: Material, mesh: Mesh, sides: Array = NO_JUMP_DERIVATIVE
 ) -> NodalRodDerivative:
     """The `NodalRodDerivative` of a mesh. change: derivative of the material by a parameter. sides:
     derivatives at the jumps, (k, 2, 3), as in `NodalRodDerivative`."""
     fields = change.rest_strain, change.compliance, change.drag
-    rest, compliance, drag = (_expanded_to_nodes(field, grid.node_count + 1) for field in fields)
+    rest, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)
     return NodalRodDerivative(change.tip_stress, rest, compliance, drag, sides)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _cached_drag_arrays(
-    drag: bytes, shape: tuple[int, ...], grid: Mesh, unknown_velocities: tuple[int, ...]
+    drag: bytes, shape: tuple[int, ...], mesh: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """The result of `_drag_arrays`, cached by the bytes of the drag, because rods that differ only in F have
     equal drags.
@@ -105,21 +105,21 @@ def _cached_drag_arrays(
     """
     # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)
-    return _drag_arrays(values if len(shape) > 1 else values[:, None], grid, unknown_velocities)
+    return _drag_arrays(values if len(shape) > 1 else values[:, None], mesh, unknown_velocities)
 
 
 def _drag_arrays(
-    drag: Array, grid: Mesh, unknown_velocities: tuple[int, ...]
+    drag: Array, mesh: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """Returns (drag, mobility, mobility_laplacian, unknown_velocities), fields of a `NodalRod`. drag: drags
     of the components, (d, 1) or (d, nodes + 1).
     """
-    drag = _expanded_to_nodes(drag, grid.node_count + 1)
+    drag = _expanded_to_nodes(drag, mesh.node_count + 1)
     mobility = np.zeros(drag.shape)
     eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
     mobility[eliminated] = 1 / drag[eliminated]
     # The product of the two differentiations of the stress, D* and the weak D, does not depend on the state.
-    second = grid.matrices.weak_derivative @ (mobility[:, :, None] * grid.matrices.D)
+    second = mesh.matrices.weak_derivative @ (mobility[:, :, None] * mesh.matrices.D)
     return drag, mobility, second, np.array(unknown_velocities, np.int64)
 
 

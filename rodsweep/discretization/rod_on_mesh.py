@@ -156,17 +156,17 @@ class RodOnMesh(ABC):
         stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
         return stored
 
-    def stresses_on_mesh(self, grid: Mesh, x: Array) -> Array:
-        """Stresses S of states x at all nodes of the mesh `grid`, (3, ..., nodes of grid + 1)."""
+    def stresses_on_mesh(self, target: Mesh, x: Array) -> Array:
+        """Stresses S of states x at all nodes of the mesh `target`, (3, ..., nodes of target + 1)."""
         S = self.stresses(x)
         if self.has_continuous_stresses:
-            return interpolate_stress(self.rod, S, self.mesh, grid)
-        return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, grid)
+            return interpolate_stress(self.rod, S, self.mesh, target)
+        return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, target)
 
-    def stress_changes_on_mesh(self, grid: Mesh, change: Array) -> Array:
-        """Changes of the stresses S by the changes `change` of states, at all nodes of the mesh `grid`,
-        (3, ..., nodes of grid + 1), by a linear map."""
-        return interpolate_stress(self.rod, self.stresses(change), self.mesh, grid)
+    def stress_changes_on_mesh(self, target: Mesh, change: Array) -> Array:
+        """Changes of the stresses S by the changes `change` of states, at all nodes of the mesh `target`,
+        (3, ..., nodes of target + 1), by a linear map."""
+        return interpolate_stress(self.rod, self.stresses(change), self.mesh, target)
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a

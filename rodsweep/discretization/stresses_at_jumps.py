@@ -68,15 +68,15 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     return out
 
 
-def stresses_by_element(rod: NodalRod, grid: Mesh, S: Array) -> Array:
+def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     """S at the nodes of every element, (3, ..., nodes + elements); the two elements at a jump have the values
     of their own side.
 
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
-    fields: Array = S[..., grid.element_nodes]
+    fields: Array = S[..., mesh.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
-        before = index_before_jump(int(node), grid.element_nodes)
+        before = index_before_jump(int(node), mesh.element_nodes)
         for side, values in enumerate(sides):
             for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
                 fields[component, ..., before + side] = value
@@ -164,9 +164,9 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     return out
 
 
-def _element_behind(grid: Mesh, node: int) -> int:
+def _element_behind(mesh: Mesh, node: int) -> int:
     """Index of the element that begins at the node `node` of a jump."""
-    return index_before_jump(int(node), grid.element_nodes) + 1 - int(node)
+    return index_before_jump(int(node), mesh.element_nodes) + 1 - int(node)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

@@ -9,7 +9,7 @@ import asyncio
 from pathlib import Path
 
 from ..errors import InputError
-from .solving.forks import start_fork_server
+from .solving.fork_server import start_fork_server
 
 
 def serve_page(source: Path | None, port: int, is_opened: bool) -> None:

@@ -8,6 +8,7 @@ from bokeh.document import Document
 from bokeh.events import Pan, Tap
 
 from ..errors import InputError
+from .answers_from_file import AnswersFromFile
 from .controls import PauseTimer
 from .page_contents import PageContents
 from .sharing import state_from_config_text
@@ -19,7 +20,6 @@ from .solving.questions import Question, Reply
 from .solving.solvers import Solvers
 from .solving.tip_release import Tip
 from .state import PageState, from_address, rod_of
-from .stored_answers import StoredAnswers
 from .texts import progress_text, solving_text
 
 STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
@@ -32,7 +32,7 @@ class Page:
     """
 
     def __init__(
-        self, document: Document, solvers: Solvers, state: PageState, stored: StoredAnswers | None = None
+        self, document: Document, solvers: Solvers, state: PageState, stored: AnswersFromFile | None = None
     ):
         self.document = document
         self.solvers = solvers
@@ -113,7 +113,7 @@ class Page:
         self.latest_inputs.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
-            self.solvers.drop(self.session, kind)
+            self.solvers.cancel(self.session, kind)
 
     def _callbacks(self) -> dict[str, Callable[..., None]]:
         return {

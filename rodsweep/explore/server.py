@@ -21,10 +21,10 @@ from tornado.iostream import IOStream
 from tornado.netutil import bind_sockets
 
 from ..errors import InputError
+from .answers_from_file import AnswersFromFile
 from .page import Page
 from .solving.solvers import Solvers
 from .state import PageState
-from .stored_answers import StoredAnswers
 
 LISTEN_ADDRESS = "127.0.0.1"
 """IP address on which the server listens."""
@@ -86,7 +86,7 @@ class ExploreServer:
     any free port. Raises InputError if the port is in use.
     """
 
-    def __init__(self, state: PageState, stored: StoredAnswers | None = None, port: int = 0):
+    def __init__(self, state: PageState, stored: AnswersFromFile | None = None, port: int = 0):
         self.state = state
         self.stored = stored
         sockets = _bound_sockets(port)
@@ -148,7 +148,7 @@ def _bound_sockets(port: int) -> list[socket.socket]:
         raise InputError(f"--port {port}: {error.strerror}; without --port any free port is taken") from None
 
 
-async def serve(state: PageState, stored: StoredAnswers | None, port: int, is_opened: bool) -> None:
+async def serve(state: PageState, stored: AnswersFromFile | None, port: int, is_opened: bool) -> None:
     """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state, stored, port: as in `ExploreServer`.
     is_opened: whether to open a browser; if none can be opened, a line on standard error says so.
     """

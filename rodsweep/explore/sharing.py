@@ -28,7 +28,7 @@ if (bytes.length > 0) download(new Blob([bytes], {type: "image/gif"}), "explore.
 """Browser script that saves a film as a file."""
 COPY_SCRIPT = "navigator.clipboard.writeText(lines.{})"
 """Browser script that copies a text to the clipboard. The format argument is the name of a field of
-`SharedLines`."""
+`ExportedLines`."""
 CONFIG_TASKS = ["limit_cycle", "spectrum", "thresholds", "branch"]
 """Tasks for which the page writes a config; the first is the default."""
 FILM_COMMANDS = """# the film of the arm:
@@ -38,7 +38,7 @@ FILM_COMMANDS = """# the film of the arm:
 """Comment at the end of a `limit_cycle` config: shell commands that make a film."""
 
 
-class SharedLines(DataModel):
+class ExportedLines(DataModel):
     """Config and Python lines that the buttons copy and save. These texts are updated at every change of the
     controls, because they are not part of the page's layout.
     """
@@ -63,7 +63,7 @@ class Sharing:
             Div(name=name, sizing_mode="stretch_width", stylesheets=[texts])
             for name in ("address", "yaml", "python")
         )
-        self.shared_lines = SharedLines()
+        self.shared_lines = ExportedLines()
         self.task = Select(
             title="Config of the task",
             name="task",

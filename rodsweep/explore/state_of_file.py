@@ -14,6 +14,7 @@ from ..config.document.reading import config_from_resolved, load_config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
 from ..results import RESULT_ENDINGS
+from .answers_from_file import AnswersFromFile
 from .slider_scales import SCALES
 from .solving.diagrams import (
     Dataset,
@@ -31,13 +32,12 @@ from .state import (
     SECOND_PARAMETERS,
     PageState,
 )
-from .stored_answers import StoredAnswers
 
 HIDDEN_QUANTITIES = ("density_difference", "fluid_density", "law", "section")
 """Keys of an arm that are ignored or have a control outside the tab of the arm."""
 
 
-def page_state_of_file(path: Path) -> tuple[PageState, StoredAnswers | None]:
+def page_state_of_file(path: Path) -> tuple[PageState, AnswersFromFile | None]:
     """Returns (state, stored). state: state with which the page opens for a result file or a config. stored:
     answers of a result file; None for a config.
 
@@ -50,7 +50,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, StoredAnswers | None]:
         state = state_from_config(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)
     except ValueError as error:
         raise InputError(f"{path}: {error}") from None
-    return state, StoredAnswers(path, data, state, stored_diagram(data, state))
+    return state, AnswersFromFile(path, data, state, stored_diagram(data, state))
 
 
 def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) -> PageState:

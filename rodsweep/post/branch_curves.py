@@ -18,7 +18,7 @@ from ..model.floquet import min_unstable_count
 from ..model.parameters import PARAMETERS
 from ..results.file.view import View
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
-from .parameter_ranges import ParameterRange, intersection_of_ranges, union_of_ranges
+from .range_unions import ParameterRange, intersection_of_ranges, union_of_ranges
 
 HOPF, FOLD, END = (SPECIAL_KINDS.index(kind) for kind in ("hopf", "fold", "end"))
 """Codes of the kinds of special points in a result file."""

@@ -11,7 +11,7 @@ from ..model.crushing import uncrushed_interval
 from ..model.material.build import Build
 from ..results.file.view import View
 from .branch_curves import branch_ends, followed_parameter
-from .parameter_ranges import ParameterRange
+from .range_unions import ParameterRange
 
 
 def build_of_rods(view: View) -> Build:

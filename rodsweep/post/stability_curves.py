@@ -7,7 +7,7 @@ import numpy as np
 from ..arrays import Array
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS
-from .hopf_points import STABILITY_CHANGES
+from .located_thresholds import STABILITY_CHANGES
 
 
 def curves_bounding_stability(view: View, line: str, row: str) -> dict[int, bool]:

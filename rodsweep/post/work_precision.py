@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ..errors import EnvironmentIncomplete
-from ..results.file.measurements import Table
+from ..results.file.benchmark_file import Table
 from .figures.style import BLUE, FIGURE_STYLE, GREEN, VERMILION
 
 GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")

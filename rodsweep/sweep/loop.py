@@ -45,7 +45,7 @@ class ProgressSink(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class RankWork:
+class RankStatistics:
     """Statistics of a rank after the sweep.
 
     solved_points: number of points that this rank solved. busy_seconds, idle_seconds: time spent on solving
@@ -78,7 +78,7 @@ class SweepCallbacks:
 
 def sweep(
     team: Team, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
-) -> RankWork:
+) -> RankStatistics:
     """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
     finished.
 
@@ -115,7 +115,7 @@ class _RankLoop:
         self.points = 0
         self.was_interrupted = False
 
-    def solve_chunks(self) -> RankWork:
+    def solve_chunks(self) -> RankStatistics:
         """Solves chunk after chunk; returns the statistics of the rank once all ranks have finished."""
         started = time.monotonic()
         busy = 0.0
@@ -138,7 +138,7 @@ class _RankLoop:
         if isinstance(self.requests, FirstRankRequests):
             self.requests.close()
         self.team.wait_for_all()
-        return RankWork(self.points, busy, time.monotonic() - started - busy, self.was_interrupted)
+        return RankStatistics(self.points, busy, time.monotonic() - started - busy, self.was_interrupted)
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item.

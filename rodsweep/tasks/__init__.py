@@ -1,8 +1,8 @@
 """One module per task: a task connects config and points with a solver and the variables of the file.
 
 A new task needs a module of the same name here, in `rodsweep.config.task`, `rodsweep.results.layouts`,
-`rodsweep.post.summary` and `rodsweep.post.figures`, and an entry in the registry of each stage: of configs
-that is `rodsweep.config.tasks`, of the others their package.
+`rodsweep.post.summary` and `rodsweep.post.figures`, and an entry in the registry of each stage. The registry
+of configs is `rodsweep.config.tasks`; the registry of every other stage is in its package.
 """
 
 from collections.abc import Callable

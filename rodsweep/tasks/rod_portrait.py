@@ -13,7 +13,7 @@ from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.parameters import OPTIONAL_PARAMETERS
 from ..post.branch_curves import RodBranches
-from ..post.parameter_ranges import ParameterRange
+from ..post.range_unions import ParameterRange
 from ..post.rod_portrait.results import DescribedRod, RodResults
 from ..results.file.view import View
 from ..results.layouts.thresholds import CROSSING_KINDS

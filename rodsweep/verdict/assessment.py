@@ -52,7 +52,7 @@ class Assessment:
         return effects_at_flutter(self.arm, self.thresholds)
 
     @cached_property
-    def under_load(self) -> tuple[Effect, ...]:
+    def compression_under_load(self) -> tuple[Effect, ...]:
         """Compression by the arm's load, the only neglected effect that depends on the load; empty if the arm
         has no load.
         """
@@ -73,7 +73,7 @@ class Assessment:
     @property
     def effects(self) -> tuple[Effect, ...]:
         """Neglected effects at the flutter threshold, then under the load."""
-        return *self.at_flutter, *self.under_load
+        return *self.at_flutter, *self.compression_under_load
 
     @property
     def validity_at_flutter(self) -> Validity:

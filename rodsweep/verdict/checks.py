@@ -90,10 +90,10 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
     if assessment.arm.law != LINEAR.law:
         return _rubber_compression_check(assessment)
     says = []
-    effects = [at_flutter, *assessment.under_load]
-    if assessment.under_load:
+    effects = [at_flutter, *assessment.compression_under_load]
+    if assessment.compression_under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
-        says.append(f"the load {verb} the arm by {_percent_text(assessment.under_load[0])}")
+        says.append(f"the load {verb} the arm by {_percent_text(assessment.compression_under_load[0])}")
     if not isnan(at_flutter.value):
         says.append(f"the flutter load shortens {'it' if says else 'the arm'} by {_percent_text(at_flutter)}")
     validity = max(map(_validity_of_effect, effects))

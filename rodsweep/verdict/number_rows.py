@@ -88,7 +88,9 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     if arm.load is None:
         return []
     of_tip = " of the tip" if arm.shape.varies else ""
-    formula = f"{arm.shape.tip.section.face_formula}{of_tip}" if arm.load == "pressure" else "as given"
+    formula = (
+        f"{arm.shape.tip.section.pressure_force_formula}{of_tip}" if arm.load == "pressure" else "as given"
+    )
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 

@@ -123,9 +123,9 @@ def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
             "the flutter threshold to which a relative load refers is not found, because no bound on the "
             "eigenvalues of this rod is known; give an absolute load"
         )
-    zeros, left, _ = cover_with_boxes(boxes, path.origin, path.direction)
+    zeros, undecided, _ = cover_with_boxes(boxes, path.origin, path.direction)
     first = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
-    if any(min(box.p_from, box.p_to) < first for box in left):
+    if any(min(box.p_from, box.p_to) < first for box in undecided):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
             "may lie below the first Hopf point found; give an absolute load"

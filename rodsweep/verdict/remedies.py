@@ -74,7 +74,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
         most = rounded_down(value_in_unit(abs(arm.si.density_difference) * share, unit, si))
         return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
-    if any(effect is each for each in assessment.under_load):
+    if any(effect is each for each in assessment.compression_under_load):
         pulls = "a pull" if arm.F < 0 else "a load"
         return (
             f"the model needs {pulls} of at most {LoadFormatter(arm).rounded_down_text(abs(arm.F) * share)}"

@@ -8,7 +8,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.api.solved import StoredResult
+from rodsweep.api.solved import DatasetResult
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.post.tables.table_names import TABLE_NAMES
 
@@ -115,7 +115,7 @@ def test_what_a_rod_has_not_is_nan_or_none_and_not_printed():
 def test_a_count_that_is_not_known_is_none_and_named_below():
     whole = rs.Rod(**ROD).spectrum().whole.copy(deep=True)
     whole["unstable_count"][...] = -1
-    answer = rs.Answer("rod", StoredResult(whole), "")
+    answer = rs.Answer("rod", DatasetResult(whole), "")
     assert answer.unstable_count is None
     assert repr(answer).startswith("number of unstable modes not known: ")
     assert repr(answer.table()).endswith("\n\nnone: unstable_count")

@@ -20,7 +20,7 @@ from surveyed import only
 
 import rodsweep as rs
 from rodsweep.api import task_keywords
-from rodsweep.api.answers.picture import SolvedShapes, as_python_arguments
+from rodsweep.api.answers.picture import CachedShapeSolver, as_python_arguments
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.cli import commands
 from rodsweep.config.base_config import Config
@@ -498,7 +498,7 @@ def test_a_cycle_without_stored_shapes_is_drawn_with_the_shapes_that_it_would_ha
 
 def test_a_picture_solves_shapes_once_however_often_it_is_drawn():
     asked = []
-    shapes = SolvedShapes(lambda view, numbers: asked.append(numbers) or view)
+    shapes = CachedShapeSolver(lambda view, numbers: asked.append(numbers) or view)
     assert shapes("file", [1, 2]) == shapes("file", (1, 2)) == "file"
     assert asked == [[1, 2]]
 

@@ -14,7 +14,7 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.api.answers.frames import frame_of
-from rodsweep.api.solved import StoredResult
+from rodsweep.api.solved import DatasetResult
 from rodsweep.cli.checking import print_job_check
 from rodsweep.post.headline.one_rod import ColumnTexts
 from rodsweep.post.headline.sentences import HEADLINES
@@ -150,7 +150,7 @@ def test_an_answer_that_failed_begins_with_the_meaning_of_its_status():
     for name in ("growth_rate", "frequency", "error_estimate"):
         whole[name][...] = np.nan
     whole["unstable_count"][...] = -1
-    answer = rs.Answer("rod", StoredResult(whole), "no factorization")
+    answer = rs.Answer("rod", DatasetResult(whole), "no factorization")
     first, second, *_ = repr(answer).splitlines()
     assert first.startswith(f"spectrum: {answer.sentence[:60]}")
     assert "rod, spectrum: failed" in repr(answer)

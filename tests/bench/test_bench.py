@@ -53,7 +53,7 @@ from rodsweep.bench.study import (
 )
 from rodsweep.cli.benching import machine_attributes
 from rodsweep.model.rod import Rod
-from rodsweep.results.file.measurements import write_measurements
+from rodsweep.results.file.benchmark_file import write_measurements
 
 EASY = Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4)
 

@@ -17,7 +17,7 @@ from rodsweep.bench.sweep.launch import (
     HOPF_FORCE,
     INSTANT,
     KILLED,
-    CommandRun,
+    CommandRunCost,
     SweepCase,
     launcher_words,
     run_case,
@@ -45,7 +45,7 @@ def row(name, points, ranks, seconds, memory):
     """Three runs of which the median takes `seconds`."""
     case = SweepCase(name, points, (Path(),), KILLED if name == KILLED else INSTANT)
     runs = [
-        CommandRun(
+        CommandRunCost(
             seconds=s,
             stated_seconds=s - 0.5,
             solver_seconds=0.0,

@@ -124,12 +124,12 @@ def test_failed_point_is_a_status_and_not_the_end(command):
 def run_patched(command, patch, ranks=2):
     """A run whose every rank wraps `solve(index)` by the function `patched(rank, solve)` of `patch`."""
     patch = (
-        "import time\nimport rodsweep.cli.run.point_work as point_work\nreal = point_work.sweep\n"
+        "import time\nimport rodsweep.cli.run.shard_solver as shard_solver\nreal = shard_solver.sweep\n"
         + patch
         + "\nfrom dataclasses import replace\n"
         "def sweep(team, todo, loop, *words):\n"
         "    return real(team, todo, replace(loop, solve=patched(team.rank, loop.solve)), *words)\n"
-        "point_work.sweep = sweep\n"
+        "shard_solver.sweep = sweep\n"
     )
     return command("run", "c.yaml", ranks=ranks, patch=patch)
 

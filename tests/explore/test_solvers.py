@@ -215,7 +215,7 @@ def test_a_long_solve_sends_its_progress_until_it_is_dropped(solver):
     wait_until(lambda: places)
     assert places[0].outcome == "progress"
     assert places[0].content["words"]
-    solver.drop(("page", "branch"))
+    solver.cancel(("page", "branch"))
     solver.ask(("page", "thresholds"), QUICK, replies.append)
     wait_until(lambda: replies)
     assert ([reply.outcome for reply in replies], solver.pid) == (["answer"], pid)

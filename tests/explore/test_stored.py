@@ -9,12 +9,12 @@ from explore.test_page import ImmediateSolvers, page_with, run_callbacks, shown
 from surveyed import few
 
 import rodsweep as rs
+from rodsweep.explore.answers_from_file import AnswersFromFile
 from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import TORUS_COLOUR
 from rodsweep.explore.pictures.numbers import number_text
 from rodsweep.explore.solving.questions import answer_to
 from rodsweep.explore.state_of_file import page_state_of_file, stored_diagram
-from rodsweep.explore.stored_answers import StoredAnswers
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
 ROD = "k1: 1.0e4, k2: 100, gamma3: 0.01"
@@ -145,7 +145,7 @@ def test_stored_curves_of_torus_points_are_drawn_dashed_in_a_colour_of_their_own
     kind = data["cycle_curve_kind"]
     kind.values[:] = SPECIAL_KINDS.index("torus")
     page = page_with(
-        NoSolvers(), state=state, stored=StoredAnswers(path, data, state, stored_diagram(data, state))
+        NoSolvers(), state=state, stored=AnswersFromFile(path, data, state, stored_diagram(data, state))
     )
     curves = page.contents.diagram.cycle_curve_source.data
     assert list(zip(curves["colour"], curves["dash"], strict=True)) == [(TORUS_COLOUR, "dashed")]

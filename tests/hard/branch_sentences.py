@@ -11,7 +11,7 @@ from rods import rod_of
 
 import rodsweep as rs
 from rodsweep.post.branch_curves import RodBranches, branch_ends
-from rodsweep.post.parameter_ranges import intersection_of_ranges, union_of_ranges
+from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
 
 from .page import NUMBER, as_stated, counts, range_as_stated, ranges, read, with_error
 from .truths import leading

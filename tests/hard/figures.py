@@ -180,7 +180,9 @@ def wrong_figure(task, keywords, choices, width):
     choices = {name: str(value) for name, value in choices.items() if value is not None}
     figures = []
     try:
-        sentence = draw(view, Path("drawn.png"), look=FigureLook(width=width), keep=figures.append, **choices)
+        sentence = draw(
+            view, Path("drawn.png"), look=FigureLook(width=width), figure_callback=figures.append, **choices
+        )
     except InputError as refused:
         return (
             []

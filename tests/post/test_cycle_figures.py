@@ -26,7 +26,7 @@ from rodsweep.post.figures.cycle.portrait import ARROW_LENGTH, draw_portrait, dr
 from rodsweep.post.figures.cycle.selection import chosen_cycles
 from rodsweep.post.figures.limit_cycle import chosen_figure_kind
 from rodsweep.post.figures.request import FigureRequest
-from rodsweep.post.hopf_points import LocatedThreshold
+from rodsweep.post.located_thresholds import LocatedThreshold
 
 pytestmark = pytest.mark.filterwarnings("error::UserWarning")  # a layout that fails is only a warning
 

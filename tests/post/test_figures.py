@@ -21,7 +21,7 @@ from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
 from rodsweep.post.figures.grid_sections import section_at_values
-from rodsweep.post.figures.lists import label_point_numbers
+from rodsweep.post.figures.point_lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
 from rodsweep.post.figures.stability.class_colours import CLASS_COLOURS
@@ -712,7 +712,7 @@ def figure_of(task, **words):
     draw(
         view_of_dataset(rs.sweep(task, progress=False, **words), Path("d.h5")),
         Path("f.png"),
-        keep=figures.append,
+        figure_callback=figures.append,
     )
     return figures[0]
 

@@ -8,7 +8,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.hopf_points import BracketedThreshold, LocatedThreshold, StoredThresholds
+from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.protocol import solve_on_one_rank

@@ -10,9 +10,9 @@ from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
 import rodsweep as rs
-from rodsweep.post.hopf_points import BracketedThreshold, LocatedThreshold, StoredThresholds
+from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
-from rodsweep.post.summary.ranges import axis_values_text, number_with_error
+from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.status import ThresholdStatus

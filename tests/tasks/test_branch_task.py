@@ -17,7 +17,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches, stability_between_vertices
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.smooth_branch import smooth_curve_of_branch
-from rodsweep.post.parameter_ranges import intersection_of_ranges, union_of_ranges
+from rodsweep.post.range_unions import intersection_of_ranges, union_of_ranges
 from rodsweep.post.summary import branch as summary
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.branch import END_REASONS, SPECIAL_KINDS

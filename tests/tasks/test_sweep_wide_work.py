@@ -257,4 +257,4 @@ def test_results_of_units_are_read_whole_or_not_at_all(tmp_path):
         path.write_bytes(bytes(damaged))
         assert kept.read() == {}
     os.remove(path)
-    kept.drop()
+    kept.remove_all()

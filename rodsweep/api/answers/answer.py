@@ -35,7 +35,7 @@ number of rows."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class WholeTable:
+class FullListing:
     """All numbers of an answer, and the lists in LISTS_PRINTED_IN_FULL. text: the table for a
     terminal. html: the table for a notebook."""
 
@@ -158,14 +158,14 @@ class Answer:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
 
     @refusing_wrong_arguments("answer.table()")
-    def table(self) -> "WholeTable":
+    def table(self) -> "FullListing":
         """All numbers with units and meanings, and the short lists, as a text in a terminal and as a table in
         a notebook. Of long lists, such as `cycles`, only the number of rows is shown.
 
         `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """
         printed = self._printed()
-        return WholeTable(whole_text(printed), whole_html(printed))
+        return FullListing(whole_text(printed), whole_html(printed))
 
     def __repr__(self) -> str:
         return brief_text(self._printed())

@@ -111,7 +111,7 @@ def _require_allowed_look(look: Mapping[str, object]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class SolvedShapes:
+class CachedShapeSolver:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
     function that computes the shapes.
     """
@@ -159,7 +159,7 @@ class Picture:
         """
         drawn: list[FigureClass] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
-        draw(self.views, name, keep=drawn.append, **self.choices)
+        draw(self.views, name, figure_callback=drawn.append, **self.choices)
         return drawn[0]
 
     @property
@@ -203,7 +203,7 @@ def plot(
     values = checked_section_values(at)
     views = [section_at_values(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
-    choices |= {"look": FigureLook(**look), "shapes": SolvedShapes()}
+    choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
     ending = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as folder:

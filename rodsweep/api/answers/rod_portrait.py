@@ -123,7 +123,7 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
     def solve(job: Job) -> View:
         solved = solve_in_process(job, progress=progress)
         answers[job.config_text] = Answer(rod, solved, solved.messages[0])
-        return view_of_dataset(solved.dataset, Path(job.name))
+        return view_of_dataset(solved.dataset, Path(job.title))
 
     results = rod_results(replace(request, **own), solve)
     return RodPortrait(rod, results, answers)

@@ -135,9 +135,9 @@ def time_at_error(target: float, errors: Sequence[float], times: Sequence[float]
     """Time of a method at the error `target`, interpolated in logarithms; nan if the method does not reach
     this error, or has no larger error at any setting.
 
-    errors, times: of all settings, from the loosest. The time is interpolated between the last setting with
-    an error above the target and the next setting, so that an accidentally small error at a loose tolerance
-    has no effect.
+    errors, times: error and time of each setting, from the loosest setting on. The time is interpolated
+    between the last setting with an error above the target and the next setting, so that an accidentally
+    small error at a loose tolerance has no effect.
     """
     above = [k for k, error in enumerate(errors) if not error <= target]
     if not above or above[-1] + 1 == len(errors) or not isfinite(errors[above[-1]]):

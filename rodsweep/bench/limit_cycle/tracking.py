@@ -147,8 +147,8 @@ def _rms(values: NDArray[np.floating]) -> float:
 class TipReturns:
     """Returns of the tip in a run, at which the tip angle theta rises through 0.
 
-    times: of the returns, in tau2, (k,). states: z at the returns, (k, unknowns). heights: largest y of the
-    tip, in L, between successive returns, (k - 1,).
+    times: times of the returns, in tau2, (k,). states: z at the returns, (k, unknowns). heights: largest y of
+    the tip, in L, between successive returns, (k - 1,).
     """
 
     times: Array

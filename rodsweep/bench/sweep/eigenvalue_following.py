@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...results.file.view import read_view
 from ..study import Measurement, markdown_table
-from .launch import CONFIG_NAME, RESULT, SOLVED, CommandRun, SweepCase
+from .launch import CONFIG_NAME, RESULT, SOLVED, CommandRunCost, SweepCase
 
 FOLLOWING_SWEEP_CONFIG = """
 task: spectrum
@@ -60,7 +60,9 @@ QUICK_GRID_PAIRS = (
 """Pairs of grids that are timed in a quick run."""
 
 
-def measure_followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick: bool) -> list[Measurement]:
+def measure_followed_sweeps(
+    folder: Path, run: Callable[..., CommandRunCost], quick: bool
+) -> list[Measurement]:
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
     then ALONE_METHOD.
 
@@ -81,7 +83,7 @@ def measure_followed_sweeps(folder: Path, run: Callable[..., CommandRun], quick:
     return found
 
 
-def followed_measurement(case: SweepCase, method: str, run: CommandRun) -> Measurement:
+def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> Measurement:
     """Measurement of the sweep `case` by `method` from its run `run`: times, number of points solved on a
     mesh, number of points without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables

@@ -106,7 +106,7 @@ def shuffled_forces(count: int) -> np.ndarray:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CommandRun:
+class CommandRunCost:
     """Time, memory and disk space of a run of the command."""
 
     seconds: float
@@ -136,7 +136,7 @@ def launcher_words(ranks: int) -> list[str]:
     return [found, "-n", str(ranks)] if found else []
 
 
-def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRun:
+def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRunCost:
     """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run that
     is not to be killed fails.
 
@@ -151,7 +151,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     elsewhere = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
     files = [directory / RESULT for directory in case.directories]
     solved = [_solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files]
-    return CommandRun(
+    return CommandRunCost(
         seconds=seconds,
         stated_seconds=max(said),
         solver_seconds=sum(spent for spent, _ in solved),

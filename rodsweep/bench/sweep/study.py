@@ -26,7 +26,7 @@ from .launch import (
     INSTANT,
     KILLED,
     SOLVED,
-    CommandRun,
+    CommandRunCost,
     SweepCase,
     cycle_case,
     launcher_words,
@@ -59,7 +59,7 @@ points, not on waiting. "Outside the solver" is the ranks' time inside minus the
 loading compiled code, scheduling, storing, and waiting. Memory is the peak of a rank's resident set. A second
 rank gains less while other programs, or the host of a virtual machine, keep processors busy."""
 """Description of the measurements for the report."""
-RunCase = Callable[..., CommandRun]
+RunCase = Callable[..., CommandRunCost]
 """`run_case` with its first argument, the start of the measured command, bound."""
 
 
@@ -125,14 +125,14 @@ def measure_instant_sweeps(
 
 def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]]) -> list[Measurement]:
     """Measurements of sweeps, run in turn; entries: (case, number of ranks, number of rounds)."""
-    runs: list[list[CommandRun]] = [[] for _ in entries]
+    runs: list[list[CommandRunCost]] = [[] for _ in entries]
     for i in timing_order([rounds for _, _, rounds in entries]):
         case, ranks, _ = entries[i]
         runs[i].append(run(case, ranks))
     return [sweep_measurement(case, ranks, own) for (case, ranks, _), own in zip(entries, runs, strict=True)]
 
 
-def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRun]) -> Measurement:
+def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost]) -> Measurement:
     """Measurement of a sweep from its runs; times are medians, the error is nan. ranks: number of ranks."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...results.file import provenance
 from ...results.file.creation import Plan
-from ...sweep.loop import RankWork
+from ...sweep.loop import RankStatistics
 from ...wording import counted, duration
 
 MAX_FAILURES_PRINTED = 3
@@ -20,13 +20,13 @@ MAX_FAILURES_PRINTED = 3
 class RunContribution:
     """Report of a rank to the first rank at the end of a run.
 
-    host: name of the machine. failures: text on one failed point for each distinct reason. work: statistics
-    of the rank's work.
+    host: name of the machine. failures: text on one failed point for each distinct reason. statistics:
+    numbers and times of the rank's points.
     """
 
     host: str
     failures: list[str]
-    work: RankWork
+    statistics: RankStatistics
 
 
 def last_run_attributes(plan: Plan) -> dict[str, Any]:
@@ -40,9 +40,9 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
     rank. contributions: reports of all ranks. mpi_library: name and version of the MPI library.
     """
     hosts = {contribution.host for contribution in contributions}
-    shares = [contribution.work for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
+    ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
     points, busy, idle = zip(
-        *((share.solved_points, share.busy_seconds, share.idle_seconds) for share in shares), strict=True
+        *((share.solved_points, share.busy_seconds, share.idle_seconds) for share in ranks), strict=True
     )
     numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
     return {

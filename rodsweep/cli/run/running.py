@@ -13,7 +13,7 @@ from ...results.file import provenance
 from ...results.file.store import Store
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_solvers, require_working_directory
-from ...sweep.loop import RankWork
+from ...sweep.loop import RankStatistics
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
@@ -22,10 +22,10 @@ from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_variables_from_config
-from .point_work import PointWork
 from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
 from .run_request import RunRequest
-from .sweep_wide_work import PendingSweepWideWork, SweepWideWork
+from .shard_solver import ShardSolver
+from .sweep_wide_computation import PendingSweepWideVariables, SweepWideComputation
 
 
 def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest) -> int:
@@ -66,7 +66,7 @@ class _RankRun:
         self.kernels = provenance.merged_blas_kernels(team.gather(blas_description()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
-        self.point_work = PointWork(
+        self.shard_solver = ShardSolver(
             team=team,
             job=job,
             solver=self.solver,
@@ -78,7 +78,7 @@ class _RankRun:
             point_text=self._point_text,
         )
         wide = self.solver.sweep_wide_solver
-        self.sweep_wide = wide and SweepWideWork(
+        self.sweep_wide = wide and SweepWideComputation(
             team, wide, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
@@ -92,7 +92,7 @@ class _RankRun:
                 return STOPPED_STATUS
             self.plan = plan
         missing = self.team.call_on_first_rank(self._open_store)
-        items, count = self.point_work.items_to_solve(missing)
+        items, count = self.shard_solver.items_to_solve(missing)
         if self.team.is_first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
@@ -103,15 +103,17 @@ class _RankRun:
         contributions: list[RunContribution] = []
         if count:
             self.team.call_on_first_rank(self._record_blas_kernels)
-            contributions = self.team.gather(self.point_work.solve(items, missing, count, self.prepare)) or []
+            contributions = (
+                self.team.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
+            )
         pending = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
-        shares: list[RankWork] = []
+        on_curves: list[RankStatistics] = []
         if self.sweep_wide and pending.work_items is not None:
-            title = None if self.request.quiet else self.job.name
-            shares = self.team.gather(self.sweep_wide.solve(pending.work_items, self.prepare, title)) or []
+            title = None if self.request.quiet else self.job.title
+            on_curves = self.team.gather(self.sweep_wide.solve(pending.work_items, self.prepare, title)) or []
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.call_on_first_rank(
-            lambda: self._finish(count, contributions, pending, shares, exceptions)
+            lambda: self._finish(count, contributions, pending, on_curves, exceptions)
         )
 
     def _lacks_sweep_wide_variables(self, missing: int) -> bool:
@@ -121,7 +123,7 @@ class _RankRun:
         """
         return not missing and "finished" not in self.store.attributes()
 
-    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideWork:
+    def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items. count: number of points to be solved in this run.
         contributions: reports of all ranks.
@@ -132,12 +134,12 @@ class _RankRun:
             started = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | started)
         if not self._lacks_sweep_wide_variables(index_count(self.store.missing())):
-            return PendingSweepWideWork(False)
+            return PendingSweepWideVariables(False)
         if not self.sweep_wide:
-            return PendingSweepWideWork(True)
+            return PendingSweepWideVariables(True)
         if not count:
             self._record_blas_kernels()
-        return PendingSweepWideWork(True, self.sweep_wide.solver.work_items(read_view(self.output)))
+        return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output)))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -148,7 +150,7 @@ class _RankRun:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
         self.store = Store(self.output, self.plan, self.request.fresh, self.request.extend)
         if self.sweep_wide and (self.request.fresh or not self._lacks_sweep_wide_variables(0)):
-            self.sweep_wide.item_results.drop()
+            self.sweep_wide.item_results.remove_all()
         self._print_store_notes()
         return self.store.missing()
 
@@ -172,7 +174,7 @@ class _RankRun:
     def _point_text(self, index: int) -> str:
         return parameters_text(self.job.points.values(index))
 
-    def _finish_file(self, pending: PendingSweepWideWork) -> bool:
+    def _finish_file(self, pending: PendingSweepWideVariables) -> bool:
         """Writes the variables that depend on all points into the file; returns whether these are still
         missing."""
         if not pending.is_missing:
@@ -183,7 +185,7 @@ class _RankRun:
             return True
         self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
         if self.sweep_wide:
-            self.sweep_wide.item_results.drop()
+            self.sweep_wide.item_results.remove_all()
         return False
 
     def _print_failures(self, contributions: list[RunContribution], exceptions: int) -> None:
@@ -206,20 +208,20 @@ class _RankRun:
         self,
         count: int,
         contributions: list[RunContribution],
-        pending: PendingSweepWideWork,
-        shares: list[RankWork],
+        pending: PendingSweepWideVariables,
+        on_curves: list[RankStatistics],
         exceptions: int,
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status. count: number of
-        points to be solved. contributions, shares: work of each rank on points and on half curves. pending:
-        variables that depend on all points. exceptions: number of unforeseen exceptions on all ranks."""
+        points to be solved. contributions: of each rank. on_curves: statistics of each rank on half curves.
+        pending: variables that depend on all points. exceptions: unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
         wide = self.sweep_wide
         missing = self.store.missing()
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self.point_work.items_to_solve(missing)[1]
+        left = self.shard_solver.items_to_solve(missing)[1]
         part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
         ending = RunEnd(
             ranks=self.team.size,
@@ -228,8 +230,8 @@ class _RankRun:
             stored_points=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
-            interrupted_points=sum(contribution.work.was_interrupted for contribution in contributions),
-            followed_pieces=sum(s.solved_points for s in shares) if pending.is_missing and wide else None,
+            interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
+            followed_pieces=sum(s.solved_points for s in on_curves) if pending.is_missing and wide else None,
             stored_pieces=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:

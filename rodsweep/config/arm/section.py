@@ -20,7 +20,7 @@ from ..values import StrictSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
 from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
 from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
-from .status import STATUS_OF_ERROR, UncoveredArm
+from .status import STATUS_OF_ERROR, ArmOutsideModel
 
 QuantityField = Field(
     description="a quantity with its unit (SI if the unit is omitted), or a list or a range of quantities"
@@ -182,7 +182,7 @@ class ArmSection(StrictSection):
         if forced and not (self.load or "F" in given_parameters):
             raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
-    def grid_axes(self) -> dict[str, Axis]:
+    def dimensionless_axes(self) -> dict[str, Axis]:
         """Axes of the dimensionless parameters of a grid of parameters, by name; without F if the arm has no
         load.
 
@@ -199,7 +199,7 @@ class ArmSection(StrictSection):
         return axes
 
     def grid_quantities(self) -> dict[str, Array]:
-        """Quantities and units of the arm by name, in a grid of parameters: (), or (n,) for n values."""
+        """Values of the arm's quantities and units by name: (), or (n,) along the parameter they change."""
         values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
@@ -236,7 +236,7 @@ class ArmSection(StrictSection):
         """The arm with the given quantities; ValueError for invalid values.
 
         values: quantities in SI units, by name. loaded: whether the load is included; a load relative to
-        flutter is always left out. Raises UncoveredArm if the rod model does not apply to the arm.
+        flutter is always left out. Raises ArmOutsideModel if the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
         has_load = loaded and self.load_key in LOADS
@@ -246,5 +246,5 @@ class ArmSection(StrictSection):
             return SlenderArm(**section, **self.material, drag=drag)
         except InputError as error:
             if type(error) in STATUS_OF_ERROR:
-                raise UncoveredArm(error) from None
+                raise ArmOutsideModel(error) from None
             raise ValueError(f"parameters.arm.{error}") from None

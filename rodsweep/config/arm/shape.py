@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.units import unit_of, value_in_unit
-from .status import UncoveredArm
+from .status import ArmOutsideModel
 
 if TYPE_CHECKING:
     from .section import ArmSection
@@ -74,7 +74,7 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
     section.
     """
     for values in arm.values_of_arms():
-        with suppress(UncoveredArm):
+        with suppress(ArmOutsideModel):
             yield arm.arm_of(values).build
 
 

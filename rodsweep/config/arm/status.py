@@ -13,7 +13,7 @@ STATUS_OF_ERROR = {NotSlender: NOT_SLENDER, BoreTooWide: NO_WALL}
 """Status code of a point by the class of the exception that its arm raises."""
 
 
-class UncoveredArm(ValueError):
+class ArmOutsideModel(ValueError):
     """The rod model does not apply to an arm; `status` is the status code of the arm's points."""
 
     def __init__(self, error: InputError):

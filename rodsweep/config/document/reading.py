@@ -109,7 +109,7 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
     in_diagram: whether the task is phase_diagram.
     """
     arm = ArmSection.model_validate(parameters["arm"])
-    made = arm.grid_axes() if in_diagram or arm.is_parameter_grid else {}
+    made = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
     return {
         name: value
         for name, value in parameters.items()

@@ -89,9 +89,11 @@ class LimitCycleConfig(Config):
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
-        meant = super().settings_of_results
-        options = meant[self.task]
-        return meant | {self.task: options | ({"along": self.chain_parameter} if "along" in options else {})}
+        settings = super().settings_of_results
+        options = settings[self.task]
+        return settings | {
+            self.task: options | ({"along": self.chain_parameter} if "along" in options else {})
+        }
 
     @model_validator(mode="after")
     def _refuse_unused_keys(self) -> "LimitCycleConfig":

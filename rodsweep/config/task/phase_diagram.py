@@ -111,7 +111,7 @@ class PhaseDiagramConfig(LinearConfig):
         if "gamma1" in self.parameters.constant_parameters:
             return self.parameters.constant_parameters["gamma1"]
         if self.parameters.arm is not None:
-            return float(self.parameters.arm.grid_axes()["gamma1"].array()[0])
+            return float(self.parameters.arm.dimensionless_axes()["gamma1"].array()[0])
         return DEFAULT_VALUES_OF_PARAMETERS["gamma1"]
 
     @property
@@ -123,29 +123,29 @@ class PhaseDiagramConfig(LinearConfig):
         """`Config.settings_of_results`, with the parameter values along a row and, for boundary curves, the
         names of the logarithmic axes.
         """
-        meant = super().settings_of_results
+        settings = super().settings_of_results
         axes = self.parameters.axes
         line = self.plane_parameters[0]
         asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
-        meant |= {"parameters": meant["parameters"] | asked}
+        settings |= {"parameters": settings["parameters"] | asked}
         # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
-        asked_of_curves = meant["phase_diagram"].pop("criticality")
-        meant["phase_diagram"].pop("bautin_along", None)
-        meant["parameters"].pop("gamma1", None)
+        asked_of_curves = settings["phase_diagram"].pop("criticality")
+        settings["phase_diagram"].pop("bautin_along", None)
+        settings["parameters"].pop("gamma1", None)
         if self.phase_diagram.cycles:
-            meant["phase_diagram"]["gamma1"] = self.gamma1
+            settings["phase_diagram"]["gamma1"] = self.gamma1
         if self.phase_diagram.curves:
-            meant |= {
+            settings |= {
                 "together": {
                     "logarithmic": [name for name in self.plane_parameters if axes[name].is_logarithmic]
                 }
             }
         if asked_of_curves:
-            meant["together"]["criticality"] = {"gamma1": self.gamma1}
+            settings["together"]["criticality"] = {"gamma1": self.gamma1}
         if self.phase_diagram.bautin_parameter is not None:
             name, axis = self.phase_diagram.bautin_parameter
-            meant["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.is_logarithmic}
-        return meant
+            settings["together"]["bautin_along"] = {name: axis.array().tolist(), "log": axis.is_logarithmic}
+        return settings
 
     @model_validator(mode="after")
     def _refuse_unused_curve_keys(self) -> "PhaseDiagramConfig":

@@ -71,10 +71,10 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
-        meant = super().settings_of_results
-        if "follow" in meant["spectrum"] and not self._could_follow:  # `follow` then has no effect
-            meant["spectrum"]["follow"] = True
-        return meant
+        settings = super().settings_of_results
+        if "follow" in settings["spectrum"] and not self._could_follow:  # `follow` then has no effect
+            settings["spectrum"]["follow"] = True
+        return settings
 
     @model_validator(mode="after")
     def _refuse_unused_keys(self) -> "SpectrumConfig":

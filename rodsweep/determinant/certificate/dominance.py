@@ -155,8 +155,9 @@ def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coeffic
 def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """Returns (length, change, discs). length: of the segment from `start` on which dominance is proved, at
-    most the argument `length`. change: of arg D over this segment. discs: number of examined discs.
+    """Returns (length, change, discs). length: length of the segment from `start` on which dominance is
+    proved, at most the argument `length`. change: change of arg D over this segment. discs: number of
+    examined discs.
 
     direction: unit vector of the segment.
     """

@@ -133,8 +133,8 @@ class Elements:
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
 
-        indices: of the points in the element. coordinates: of these points, from -1 to 1 along the element. A
-        point between two elements belongs to the right element.
+        indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
+        along the element. A point between two elements belongs to the right element.
         """
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):

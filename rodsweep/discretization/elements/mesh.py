@@ -94,17 +94,17 @@ def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
     return source.evaluation_matrix(target.node_positions)
 
 
-def shape_from_strains(grid: Mesh, strains: Array, clamp: Array) -> Array:
+def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
     """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains.
 
     strains: (h1, h2, Pi) at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at
     u = 0, (3,).
     """
-    points = grid.order + RECONSTRUCTION_SETTINGS.extra_points
-    state = np.empty((*strains.shape[:-1], grid.node_count + 1), strains.dtype)
+    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
+    state = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
-    for e, (element, length) in enumerate(zip(grid.node_ranges, grid.lengths, strict=True)):
-        values, angles, integrals, ends = shape_integration_matrices(grid.orders[e], points)
+    for e, (element, length) in enumerate(zip(mesh.node_ranges, mesh.lengths, strict=True)):
+        values, angles, integrals, ends = shape_integration_matrices(mesh.orders[e], points)
         h1, h2, Pi = (strain[..., element.start + e : element.stop + e] for strain in strains)
         theta = start[2] + length * (Pi @ angles)
         cos = np.cos(theta)

@@ -206,8 +206,8 @@ def _add_entries(F: float, local: Array, pieces: _MeshMatrices, A: Array) -> Non
 
 @compiled
 def _bending_block(slope: Array, factors: Array) -> Array:
-    """The block -slope^T diag(factors) slope, (p + 1, p + 1). slope: (p, p + 1). factors: at the Gauss
-    points, (p,).
+    """The block -slope^T diag(factors) slope, (p + 1, p + 1). slope: (p, p + 1). factors: values at the
+    Gauss points, (p,).
     """
     block = np.zeros((slope.shape[1], slope.shape[1]))
     for q in range(len(factors)):

@@ -67,6 +67,7 @@ class StraightElements:
         E = material.rest_strain[:, None]
         Sigma = material.tip_stress[:, None]
         WD, W = self._element_matrices
+        # Local unknowns: stresses at all nodes, then velocities; `half` components of each.
         half = len(self.components)
         nodes = np.arange(len(W))
         at_nodes = np.zeros((2 * half, 2 * half))
@@ -123,17 +124,17 @@ class StraightElements:
         """LU factorisation of A - shift M by static condensation."""
         numbering = self.numbering
         K = self.A - np.diag(shift * self.M).astype(complex)
-        condensed = K[np.ix_(numbering.interface_positions, numbering.interface_positions)]
-        inside = None
+        schur_complement = K[np.ix_(numbering.interface_positions, numbering.interface_positions)]
+        interior = None
         if numbering.interior_positions.size:
-            inside = _InteriorElimination.from_matrix(K, numbering)
-            condensed -= inside.K_ei @ inside.solved_K_ie
-        exists = numbering.is_unknown
-        whole = np.zeros((len(exists), len(exists)), complex)
+            interior = _InteriorElimination.from_matrix(K, numbering)
+            schur_complement -= interior.K_ei @ interior.solved_K_ie
+        is_unknown = numbering.is_unknown
+        assembled = np.zeros((len(is_unknown), len(is_unknown)), complex)
         for element in numbering.interface_indices:
-            whole[np.ix_(element, element)] += condensed
-        between = lu_factorisation(whole[np.ix_(exists, exists)])
-        return ElementFactors(elements=self, K=K, interior=inside, interface=between)
+            assembled[np.ix_(element, element)] += schur_complement
+        interface = lu_factorisation(assembled[np.ix_(is_unknown, is_unknown)])
+        return ElementFactors(elements=self, K=K, interior=interior, interface=interface)
 
 
 LU = tuple[Complex, NDArray[np.int32]]
@@ -142,11 +143,12 @@ LU = tuple[Complex, NDArray[np.int32]]
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _InteriorElimination:
-    """Elimination of the interior unknowns (index i) of an element with matrix K; unknowns at both ends have
-    the index e.
+    """Elimination of the interior unknowns of an element with the matrix K. K_ie, K_ei: coupling of the
+    interior unknowns (index i) and the unknowns at both ends (index e), (inside, ends) and (ends, inside).
 
-    interior_factors: LU factorisation of K_ii. K_ie: K_ie, (inside, ends). K_ei: K_ei, (ends, inside).
-    solved_K_ie: K_ii^-1 K_ie, (inside, ends). adjoint_solved_K_ei: K_ii^-H K_ei^H, (inside, ends)."""
+    interior_factors: LU factorisation of K_ii. solved_K_ie: K_ii^-1 K_ie, (inside, ends).
+    adjoint_solved_K_ei: K_ii^-H K_ei^H, (inside, ends).
+    """
 
     interior_factors: LU
     K_ie: Complex
@@ -160,12 +162,12 @@ class _InteriorElimination:
         inside = numbering.interior_positions
         ends = numbering.interface_positions
         factors = lu_factorisation(K[np.ix_(inside, inside)])
-        leaving = K[np.ix_(inside, ends)]
-        entering = K[np.ix_(ends, inside)]
-        right = solve_factorised(factors, leaving)
-        left = solve_factorised(factors, entering.conj().T, adjoint=True)
+        K_ie = K[np.ix_(inside, ends)]
+        K_ei = K[np.ix_(ends, inside)]
+        solved = solve_factorised(factors, K_ie)
+        adjoint = solve_factorised(factors, K_ei.conj().T, adjoint=True)
         return cls(
-            interior_factors=factors, K_ie=leaving, K_ei=entering, solved_K_ie=right, adjoint_solved_K_ei=left
+            interior_factors=factors, K_ie=K_ie, K_ei=K_ei, solved_K_ie=solved, adjoint_solved_K_ei=adjoint
         )
 
     def coupling_matrices(self, adjoint: bool) -> tuple[Complex, Complex]:
@@ -204,22 +206,24 @@ class ElementFactors:
     def _solve_unrefined(self, b: Values, adjoint: bool) -> Complex:
         """The solution of `solve` without the step of iterative refinement, (unknowns,)."""
         numbering = self.elements.numbering
-        inside = self.interior
-        within = numbering.state_indices[:, numbering.interior_positions]
+        elimination = self.interior
+        is_unknown = numbering.is_unknown
+        inside = numbering.state_indices[:, numbering.interior_positions]
         ends = numbering.state_indices[:, numbering.interface_positions]
-        right = np.zeros(len(numbering.is_unknown), complex)
-        between = np.zeros(len(numbering.is_unknown), complex)
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
-        right[numbering.interface_indices] = b[ends]
-        if inside is not None:
-            to_ends, from_ends = inside.coupling_matrices(adjoint)
-            alone = solve_factorised(inside.interior_factors, b[within].T, adjoint).T
-            np.subtract.at(right, numbering.interface_indices, alone @ to_ends.T)
-        between[numbering.is_unknown] = solve_factorised(self.interface, right[numbering.is_unknown], adjoint)
-        x[ends] = between[numbering.interface_indices]
-        if inside is not None:
-            x[within] = alone - between[numbering.interface_indices] @ from_ends.T
+        b_e = np.zeros(len(is_unknown), complex)
+        x_e = np.zeros(len(is_unknown), complex)
+        b_e[numbering.interface_indices] = b[ends]
+        if elimination is not None:
+            K_ei, solved_K_ie = elimination.coupling_matrices(adjoint)
+            solved_b_i = solve_factorised(elimination.interior_factors, b[inside].T, adjoint).T
+            np.subtract.at(b_e, numbering.interface_indices, solved_b_i @ K_ei.T)
+        x_e[is_unknown] = solve_factorised(self.interface, b_e[is_unknown], adjoint)
+        x[ends] = x_e[numbering.interface_indices]
+        if elimination is not None:
+            # x_i = K_ii^-1 (b_i - K_ie x_e)
+            x[inside] = solved_b_i - x_e[numbering.interface_indices] @ solved_K_ie.T
         return x[:-1]
 
 

@@ -224,12 +224,12 @@ def axial_field(values: Array) -> Array:
     return field
 
 
-def integral_to_tip(grid: Mesh, values: Array) -> Array:
+def integral_to_tip(mesh: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
     (nodes + 1,).
     """
-    total = np.zeros(grid.node_count + 1)
-    for nodes, order, length in zip(grid.node_ranges, grid.orders, grid.lengths, strict=True):
+    total = np.zeros(mesh.node_count + 1)
+    for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
         ends = shape_integration_matrices(order).angles_at_nodes
         total[nodes] = total[nodes.start] + length * (values[nodes] @ ends)
     return total[-1] - total

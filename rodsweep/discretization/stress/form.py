@@ -64,26 +64,28 @@ class StressForm(RodOnMesh):
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
 
-    def states_on_mesh(self, grid: Mesh, x: Array) -> Array:
-        """States x, (..., unknowns), interpolated to the mesh `grid`, (..., unknowns on grid)."""
+    def states_on_mesh(self, target: Mesh, x: Array) -> Array:
+        """States x, (..., unknowns), interpolated to the mesh `target`, (..., unknowns on target)."""
         if self.has_continuous_stresses:
-            return self.layout.interpolate(x, interpolation_matrix(self.mesh, grid))
-        return self._state_on_mesh(grid, self.stresses_on_mesh(grid, x), x)
+            return self.layout.interpolate(x, interpolation_matrix(self.mesh, target))
+        return self._state_on_mesh(target, self.stresses_on_mesh(target, x), x)
 
-    def changes_on_mesh(self, grid: Mesh, change: Array) -> Array:
-        """Changes of states, (..., unknowns), interpolated to the mesh `grid` by a linear map, (..., unknowns
-        on grid)."""
+    def changes_on_mesh(self, target: Mesh, change: Array) -> Array:
+        """Changes of states, (..., unknowns), interpolated to the mesh `target` by a linear map, (...,
+        unknowns on target)."""
         if self.has_continuous_stresses:
-            return self.states_on_mesh(grid, change)
-        return self._state_on_mesh(grid, self.stress_changes_on_mesh(grid, change), change)
+            return self.states_on_mesh(target, change)
+        return self._state_on_mesh(target, self.stress_changes_on_mesh(target, change), change)
 
-    def _state_on_mesh(self, grid: Mesh, S: Array, x: Array) -> Array:
-        """States on the mesh `grid`, (..., unknowns on grid), with the stresses S at all nodes of `grid`, (3,
-        ..., nodes of grid + 1), and the velocities of the states x, (..., unknowns)."""
+    def _state_on_mesh(self, target: Mesh, S: Array, x: Array) -> Array:
+        """States on the mesh `target`, (..., unknowns on target), with the stresses S at all nodes of
+        `target`, (3, ..., nodes of target + 1), and the velocities of the states x, (..., unknowns)."""
         # Velocities are continuous where stresses jump, so their interpolation needs no correction.
-        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], grid.node_count + 1))
-        V[list(self.unknown_velocities)] = self.layout.velocities(x) @ interpolation_matrix(self.mesh, grid).T
-        return plane_layout(grid.node_count, self.unknown_velocities).state(S, V)
+        V = np.zeros((PLANE_COMPONENT_COUNT, *x.shape[:-1], target.node_count + 1))
+        V[list(self.unknown_velocities)] = (
+            self.layout.velocities(x) @ interpolation_matrix(self.mesh, target).T
+        )
+        return plane_layout(target.node_count, self.unknown_velocities).state(S, V)
 
     def parameter_derivative(self, name: str) -> NodalRodDerivative:
         """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a

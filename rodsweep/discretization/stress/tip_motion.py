@@ -36,18 +36,18 @@ class TipMatrices(NamedTuple):
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def tip_matrices(grid: Elements) -> TipMatrices:
+def tip_matrices(mesh: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
-    points = grid.order + RECONSTRUCTION_SETTINGS.extra_points
-    each = [shape_integration_matrices(order, points) for order in grid.orders]
+    points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
+    each = [shape_integration_matrices(order, points) for order in mesh.orders]
     return TipMatrices(
         values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in each]),
         angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in each]),
         gauss_weights=np.ascontiguousarray(each[0].integrals_to_nodes[:, -1]),
         element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in each]),
-        element_lengths=np.ascontiguousarray(grid.lengths),
-        element_nodes=grid.element_nodes,
-        element_starts=np.append(0, np.cumsum([order + 1 for order in grid.orders])),
+        element_lengths=np.ascontiguousarray(mesh.lengths),
+        element_nodes=mesh.element_nodes,
+        element_starts=np.append(0, np.cumsum([order + 1 for order in mesh.orders])),
     )
 
 

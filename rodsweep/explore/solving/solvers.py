@@ -15,7 +15,7 @@ from tornado.ioloop import IOLoop
 
 from ..state import PageState
 from . import worker
-from .forks import FORK_SERVER, start_fork_server
+from .fork_server import FORK_SERVER, start_fork_server
 from .questions import Question, Reply
 
 Key = tuple[str, str]
@@ -112,7 +112,7 @@ class SolverProcess:
         if self.current_question is not None and self.current_question[0][0] == session:
             self._interrupt(self.question_number)
 
-    def drop(self, key: Key) -> None:
+    def cancel(self, key: Key) -> None:
         """Removes the question with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
         if self.current_question is not None and self.current_question[0] == key:
@@ -231,9 +231,9 @@ class Solvers:
         """
         self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
 
-    def drop(self, session: str, kind: str) -> None:
+    def cancel(self, session: str, kind: str) -> None:
         """Cancels the question of the given kind in a session."""
-        self.groups[PROCESS_GROUPS[kind]].drop((session, kind))
+        self.groups[PROCESS_GROUPS[kind]].cancel((session, kind))
 
     def cancel_session(self, session: str) -> None:
         """Cancels all questions of a session."""

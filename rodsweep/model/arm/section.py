@@ -13,13 +13,16 @@ class BoreTooWide(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A solid circular cross-section of radius a, in m. formula, shear_formula, face_formula: texts on area
-    and second moment, shear coefficient, and tip force under a pressure p, for reports."""
+    """A solid circular cross-section of radius a, in m.
+
+    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
+    coefficient, and on the tip force under a pressure p.
+    """
 
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"
     shear_formula: ClassVar[str] = "kappa = 6 (1 + nu)/(7 + 6 nu)"
-    face_formula: ClassVar[str] = "p A"
+    pressure_force_formula: ClassVar[str] = "p A"
 
     @property
     def area(self) -> float:
@@ -59,7 +62,7 @@ class Circle:
 @dataclass(frozen=True, slots=True)
 class Tube:
     """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
-    formula, shear_formula, face_formula: as in `Circle`."""
+    formula, shear_formula, pressure_force_formula: as in `Circle`."""
 
     radius: float
     inner_radius: float
@@ -67,7 +70,7 @@ class Tube:
     shear_formula: ClassVar[str] = (
         "kappa = 6 (1 + nu) (1 + m^2)^2/((7 + 6 nu) (1 + m^2)^2 + (20 + 12 nu) m^2), m = b/a"
     )
-    face_formula: ClassVar[str] = "p pi a^2 on the face of the closed tip"
+    pressure_force_formula: ClassVar[str] = "p pi a^2 on the face of the closed tip"
 
     @property
     def area(self) -> float:
@@ -111,13 +114,13 @@ class Tube:
 @dataclass(frozen=True, slots=True)
 class Rectangle:
     """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
-    formula, shear_formula, face_formula: as in `Circle`."""
+    formula, shear_formula, pressure_force_formula: as in `Circle`."""
 
     width: float
     height: float
     formula: ClassVar[str] = "A = w h, I = w h^3/12"
     shear_formula: ClassVar[str] = "kappa = 10 (1 + nu)/(12 + 11 nu)"
-    face_formula: ClassVar[str] = "p A"
+    pressure_force_formula: ClassVar[str] = "p A"
 
     @property
     def area(self) -> float:

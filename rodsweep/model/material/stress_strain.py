@@ -84,7 +84,7 @@ def stress_tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = at.nu + at.c1 * q1
     B, B1, B2 = _bending_factor(law, h)
-    stiffness = (1 + 2 / h**3) / 3
+    stiffness = (1 + 2 / h**3) / 3  # W''(h)
     coupling = B1 * q3
     return Tangent(stiffness + at.c1 * B2 * at.c3 * q3 * q3 / 2, coupling * at.c3, coupling * at.c1, B)
 
@@ -98,9 +98,10 @@ def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
     h = at.nu + at.c1 * q1
-    moved = change.nu + change.c1 * q1
+    moved = change.nu + change.c1 * q1  # change of h
     a = 1 / at.nu
     b = 1 / h
+    # Derivatives of the secant [W'(h) - W'(nu)]/(h - nu) with respect to nu and h.
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
     _, B1, B2 = _bending_factor(law, h)

@@ -91,26 +91,34 @@ def draw(
     *,
     look: FigureLook = DEFAULT_LOOK,
     shapes: ShapeFunction | None = None,
-    keep: Callable[[Figure], None] | None = None,
+    figure_callback: Callable[[Figure], None] | None = None,
     **choices: Unpack[FigureChoices],
 ) -> str:
     """Draws the figure of one or several result files to the file `output`; returns a sentence about the
     figure.
 
-    look: appearance. shapes: function that computes the shapes of cycles if the file has no shapes. keep:
-    callback for the finished figure; if given, no file is written. choices: content. Raises InputError for
-    options that do not fit the files and for files without a result that can be drawn, EnvironmentIncomplete
-    if `output` cannot be written or a program of the style, such as LaTeX, fails.
+    look: appearance. shapes: function that computes the shapes of cycles if the file has no shapes.
+    figure_callback: callback for the finished figure; if given, no file is written. choices: content. Raises
+    InputError for options that do not fit the files and for files without a result that can be drawn,
+    EnvironmentIncomplete if `output` cannot be written or a program of the style, such as LaTeX, fails.
     """
     views = [views] if isinstance(views, View) else views
     if look.width and choices.get("what") == "animation":
         raise InputError("--width is for printed figures, not for an animation; remove --width")
     if not look.title:
         views = [replace(view, attributes=view.attributes | {"title": ""}) for view in views]
-    taken = output.exists() and (
+    is_protected = output.exists() and (
         not output.is_file() or any(output.samefile(view.path) for view in views if view.path.exists())
     )
-    request = FigureRequest(views, output, is_taken=taken, look=look, shapes=shapes, keep=keep, **choices)
+    request = FigureRequest(
+        views,
+        output,
+        is_protected=is_protected,
+        look=look,
+        shapes=shapes,
+        figure_callback=figure_callback,
+        **choices,
+    )
     with _style_context(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
             shown = _draw_and_describe(request)

@@ -15,7 +15,7 @@ from ...results.layouts.variables import MISSING_STATUS
 from ...wording import count_of_total, counted, has_or_have, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter, stability_runs
 from ..crushing import uncrushed_ranges
-from ..parameter_ranges import ParameterRange
+from ..range_unions import ParameterRange
 from . import style
 from .cycle.selection import shared_and_own_of_points
 from .request import FigureRequest
@@ -157,7 +157,7 @@ def _draw_pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
-    neighbouring vertices, (n - 1,). colour, marker: of the curve, for matplotlib.
+    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib.
     """
     for vertices, kind in stability_runs(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)

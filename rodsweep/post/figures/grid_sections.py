@@ -15,7 +15,7 @@ from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import quantity_in_si
 from ...results.file.view import View
-from .lists import OTHER_DIMENSIONS
+from .point_lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
 """A value typed by the user selects the values of the file that differ by at most this relative amount."""

@@ -43,7 +43,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     view = _with_needed_variables(request, name)
     if name == "animation":
         request.require_output(*FILM_SUFFIXES)
-        if request.keep is not None:
+        if request.figure_callback is not None:
             raise InputError("an animation is not a single figure; save it as a .gif")
         return write_animation(view, points, request.output)
     request.require_output()

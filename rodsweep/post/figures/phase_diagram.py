@@ -40,7 +40,7 @@ from .style import number_in_tex as number_text
 
 @dataclass(frozen=True, slots=True)
 class ClassMap:
-    """What a map of classes shows. plane: the rectangle of the map. classes: class of the rod at each
+    """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
     computed point, (rows, columns). crushing_ratio: force divided by the force that crushes the rod, at every
     pixel, (pixels, pixels).
     """

@@ -108,12 +108,12 @@ class FigureRequest:
     roots: str | None = None
     what: str | None = None
     points: Sequence[int] = ()
-    is_taken: bool = False
+    is_protected: bool = False
     """Whether `output` is one of the files to draw, or exists and is not a regular file."""
     look: FigureLook = FigureLook()
     shapes: ShapeFunction | None = None
     """Function that computes the shapes of cycles if the file has no shapes."""
-    keep: Callable[[Figure], None] | None = None
+    figure_callback: Callable[[Figure], None] | None = None
     """Callback for the finished figure; if given, no file is written."""
 
     def only_view(self, *kinds: str) -> View:
@@ -152,12 +152,12 @@ class FigureRequest:
 
     def require_output(self, *suffixes: str) -> None:
         """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
-        images), or if `is_taken` is true.
+        images), or if `is_protected` is true.
         """
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
-        if self.is_taken:
+        if self.is_protected:
             raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
@@ -170,9 +170,9 @@ class FigureRequest:
         if not any(view.arm_axes for view in self.views):
             hatch_invalid_points(figure, self.views)
         adapt_to_dark_background(figure)
-        if self.keep is not None:
+        if self.figure_callback is not None:
             self.look.fit(figure, min_aspect)
-            self.keep(figure)
+            self.figure_callback(figure)
             return shown
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved

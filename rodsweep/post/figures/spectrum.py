@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file.view import View
 from .grid_sections import left_out_clause, section_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
-from .lists import as_grid_if_possible
+from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .spectra.eigenvalues import draw_eigenvalues, draw_list_of_spectra
 from .spectra.line import (

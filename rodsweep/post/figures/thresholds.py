@@ -12,7 +12,7 @@ from . import style
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
-from .lists import as_grid_if_possible
+from .point_lists import as_grid_if_possible
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT, draw_class_bars
 from .stability.threshold_lines import (

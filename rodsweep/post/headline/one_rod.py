@@ -9,7 +9,7 @@ from ...results.file.view import View
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
-from ..summary.ranges import error_text, number_and_error, rounded_text
+from ..summary.number_texts import error_text, number_and_error, rounded_text
 from ..tables.column import Column
 from ..tables.table_names import POINTS
 from ..tables.tables import Tables

@@ -20,26 +20,27 @@ CELL_DIGITS = 6
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """Cell of a table. text: rounded value. full: value with all digits; empty if `text` has all digits."""
+    """Cell of a table. text: rounded value. full_text: value with all digits; empty if `text` has all
+    digits."""
 
     text: str
-    full: str = ""
+    full_text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class PageTable:
     """Table on the page.
 
-    heads: (name, unit, meaning) of each shown column. rows: cells of the shown rows. total: number of rows of
-    the result, of which at most MAX_ROWS are shown. constant: (name, cell, unit, meaning) of each column with
-    equal values in all rows; these columns are listed outside the table.
+    column_heads: (name, unit, meaning) of each shown column. rows: cells of the shown rows. total_rows:
+    number of rows of the result, of which at most MAX_ROWS are shown. constant_columns: (name, cell, unit,
+    meaning) of each column with equal values in all rows; these columns are listed outside the table.
     """
 
     name: str
-    heads: tuple[tuple[str, str, str], ...]
+    column_heads: tuple[tuple[str, str, str], ...]
     rows: tuple[tuple[Cell, ...], ...]
-    total: int
-    constant: tuple[tuple[str, Cell, str, str], ...]
+    total_rows: int
+    constant_columns: tuple[tuple[str, Cell, str, str], ...]
 
 
 def page_tables(view: View) -> Iterator[PageTable]:
@@ -65,10 +66,10 @@ def _table_for_page(table: Table) -> PageTable:
     cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in shown]
     return PageTable(
         name=table.name,
-        heads=tuple((column.name, column.printed_unit, column.meaning) for column in shown),
+        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in shown),
         rows=tuple(zip(*cells, strict=True)),
-        total=table.rows,
-        constant=tuple(
+        total_rows=table.rows,
+        constant_columns=tuple(
             (column.name, _cells(column.rows(slice(0, 1)))[0], column.printed_unit, column.meaning)
             for column in alike
         ),

@@ -58,7 +58,7 @@ def pictures_of(views: Sequence[View], shapes: ShapeFunction | None, numbers: "c
             kept.append(figure)
 
         try:
-            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, keep=keep)
+            sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
         except InputError as error:
             refusal = refusal or str(error)
             continue

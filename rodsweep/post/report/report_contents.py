@@ -50,7 +50,7 @@ class ReportContents:
     tables: Sequence[PageTable]
     config: str
     """Config as the user typed it."""
-    complete: str
+    complete_config: str
     """Config with the defaults of all keys filled in."""
     versions: Sequence[tuple[str, str]]
     """(printed name, value) of the attributes in VERSION_WORDS."""
@@ -70,7 +70,7 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
         pictures=pictures,
         tables=list(page_tables(view)),
         config=str(a.get("config", "")).strip("\n"),
-        complete=tree_yaml(view.config).strip("\n"),
+        complete_config=tree_yaml(view.config).strip("\n"),
         versions=[(word, str(a[key])) for key, word in VERSION_WORDS.items() if str(a.get(key, ""))],
     )
 

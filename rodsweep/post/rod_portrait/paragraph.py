@@ -13,7 +13,7 @@ from ...wording import counted, is_or_are
 from ..branch_curves import StoredBranch
 from ..summary.branch import SPECIAL_POINT_WORDS
 from ..summary.criticality import CRITICALITY_WORDS
-from ..summary.ranges import rounded_text
+from ..summary.number_texts import rounded_text
 from ..summary.thresholds import ENDED_EARLY
 from .arm_sentences import arm_sentences, cycle_caveat
 from .results import RodResults

@@ -12,9 +12,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from ...model.arm.quantities import SCALE_NAME
 from ...results.file.view import View
 from ..figures import style
-from ..parameter_ranges import ParameterRange
+from ..range_unions import ParameterRange
 from ..summary.arm.arm import printing_unit
-from ..summary.ranges import ranges_text, rounded_text
+from ..summary.number_texts import ranges_text, rounded_text
 
 THRESHOLD_MARKS = {"onset": ("*", "onset"), "hopf": ("**", "flutter")}
 """(superscript of the symbol, word) of a threshold, by kind."""

@@ -9,9 +9,9 @@ from ...results.file.view import View
 from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, branch_ends, followed_parameter
 from ..crushing import uncrushed_ranges
-from ..parameter_ranges import ParameterRange
+from ..range_unions import ParameterRange
 from .errors import known_range_text
-from .ranges import number_with_error, ranges_text, rounded_text, span_text
+from .number_texts import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
 

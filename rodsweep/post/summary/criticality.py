@@ -10,7 +10,7 @@ from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
-from .ranges import number_and_error, rounded_text, span_text
+from .number_texts import number_and_error, rounded_text, span_text
 from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region_text
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 

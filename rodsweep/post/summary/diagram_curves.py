@@ -10,7 +10,7 @@ from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
-from .ranges import error_text, number_with_error, span_text
+from .number_texts import error_text, number_with_error, span_text
 
 CYCLE_CHANGE_WORDS = {
     "fold": "folds of cycles",
@@ -115,7 +115,7 @@ def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[n
     return list(dict.fromkeys(lines))
 
 
-def agreement_lines(view: View, line: str) -> list[str]:
+def curve_count_lines(view: View, line: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
     along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
     v = view.variables
@@ -137,7 +137,7 @@ def agreement_lines(view: View, line: str) -> list[str]:
     return lines
 
 
-def cut_lines(view: View, line: str, row: str) -> list[str]:
+def incomplete_curve_lines(view: View, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
     list was full. line, row: as in `curve_lines`.
     """

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .ranges import span_text
+from .number_texts import span_text
 
 EIGENVALUE_ERROR = 1e-9
 """Relative error of the straight rod's eigenvalue in results of limit cycles, equal to the tolerance of the

@@ -9,10 +9,10 @@ from ...results.file.view import View
 from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
-from ..hopf_points import StoredThresholds
+from ..located_thresholds import StoredThresholds
 from .arm.arm import region_of_arms
 from .errors import absolute_errors, known_range_text
-from .ranges import error_text, number_and_error, span_text
+from .number_texts import error_text, number_and_error, span_text
 from .stability import stability_lines
 from .summary_lines import (
     SummaryLines,

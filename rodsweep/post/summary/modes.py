@@ -5,7 +5,7 @@ import numpy as np
 from ...results.file.view import View
 from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
-from .ranges import NONE_TEXT, span_text
+from .number_texts import NONE_TEXT, span_text
 from .spectrum import (
     eigenvalue_table,
     error_lines,

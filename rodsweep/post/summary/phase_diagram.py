@@ -11,8 +11,14 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
-from .diagram_curves import CYCLE_CHANGE_WORDS, agreement_lines, criticality_lines, curve_lines, cut_lines
-from .ranges import axis_values_text, span_text
+from .diagram_curves import (
+    CYCLE_CHANGE_WORDS,
+    criticality_lines,
+    curve_count_lines,
+    curve_lines,
+    incomplete_curve_lines,
+)
+from .number_texts import axis_values_text, span_text
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -52,7 +58,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
-        reliability += [*agreement_lines(view, line), *cut_lines(view, line, row)]
+        reliability += [*curve_count_lines(view, line), *incomplete_curve_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
     return SummaryLines(answer, reliability, details, crossings_of_arms(view, done))

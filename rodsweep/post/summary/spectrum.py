@@ -6,8 +6,8 @@ from ...results.file.view import View
 from ...results.layouts.rods import estimates_counts, has_standard_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
-from ..hopf_points import StoredThresholds
-from .ranges import number_and_error, span_text
+from ..located_thresholds import StoredThresholds
+from .number_texts import number_and_error, span_text
 from .stability import stability_lines
 from .summary_lines import SummaryLines, TextTable, in_brackets, region_text
 

@@ -7,9 +7,9 @@ import numpy as np
 from ...results.file.view import View
 from ...sweep.points.points import ParameterLine, lines_along
 from ...wording import count_of_total, counted
-from ..hopf_points import BracketedThreshold, LocatedThreshold
+from ..located_thresholds import BracketedThreshold, LocatedThreshold
 from .arm.arm import thresholds_of_arm
-from .ranges import error_text, stated_error
+from .number_texts import error_text, stated_error
 
 MAX_LISTED_LINES = 3
 """The thresholds of up to this number of lines of points are listed one by one; for more lines the range is

@@ -8,7 +8,7 @@ import numpy as np
 from ...results.file.view import View
 from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
-from .ranges import axis_values_text
+from .number_texts import axis_values_text
 
 MAX_LISTED_ITEMS = 8
 """Largest number of rods, branches or points that are listed one by one."""

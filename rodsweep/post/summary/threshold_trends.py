@@ -14,7 +14,7 @@ TREND_ROUNDING = 1e-12
 
 
 class Trend(IntEnum):
-    """How a threshold changes along a line of rods; unknown with fewer than two known values."""
+    """Change of a threshold along a line of rods; `unknown` with fewer than two known values."""
 
     unknown = 0
     rises = 1

@@ -11,7 +11,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted, plural
 from .arm.arm import crossings_of_arm
-from .ranges import error_text, number_and_error, rounded_text, span_text
+from .number_texts import error_text, number_and_error, rounded_text, span_text
 from .stability import FORCE_THRESHOLD_WORDS
 from .summary_lines import SummaryLines, TextTable, in_brackets, point_text, proof_clause
 from .threshold_trends import monotony_lines

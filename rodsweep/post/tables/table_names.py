@@ -104,7 +104,7 @@ def table_contents_of(view: View) -> TableContents:
 
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
-    """Name of the table with the given dimensions. dimensions: without the dimensions of the points."""
+    """Name of the table with the given dimensions, without the dimensions of the points."""
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 

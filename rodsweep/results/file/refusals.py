@@ -9,7 +9,7 @@ from .combination.extension import extension_of
 from .combination.identity import config_change_text
 from .creation import Plan
 from .points import points_of_file
-from .validation import IncompleteFile, ResultHeader, is_rodsweep_file, read_header
+from .validation import InvalidResultFile, ResultHeader, is_rodsweep_file, read_header
 
 SPACE_FACTOR = 3
 """Disk space that a run needs (for the file, the journals and a new copy of the file), divided by the size of
@@ -37,7 +37,7 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
         raise InputError(f"{path} is not a file; choose another file with -o")
     try:
         return read_header(path)
-    except IncompleteFile as error:
+    except InvalidResultFile as error:
         ways = _remedies_clause(plan, journals)
         if not is_rodsweep_file(path) and not journals_with_fingerprint(journals, plan.fingerprint):
             ways = "choose another file with -o, or move this file away"

@@ -36,17 +36,18 @@ DAMAGE_EXCEPTIONS = (OSError, LookupError, ValueError, TypeError, RuntimeError, 
 """Exceptions that h5py, or the use of the data it reads, raises for a damaged file."""
 
 
-class IncompleteFile(InputError):
+class InvalidResultFile(InputError):
     """Raised for a file that is not a rodsweep result, is damaged, or was changed."""
 
 
 @contextmanager
 def damage_refusals(path: Path) -> Iterator[None]:
-    """Context that turns DAMAGE_EXCEPTIONS, which a damaged or foreign file raises, into IncompleteFile."""
+    """Context that turns DAMAGE_EXCEPTIONS, which a damaged file or a file of another kind raises, into
+    `InvalidResultFile`."""
     try:
         yield
     except DAMAGE_EXCEPTIONS as error:
-        raise IncompleteFile(
+        raise InvalidResultFile(
             f"{path} cannot be read as a result of rodsweep: {one_line_message(error)}"
         ) from None
 
@@ -63,7 +64,7 @@ class ResultHeader:
     """Description of a complete result file at `path`. attributes: attributes of the file. layout: its
     variables.
 
-    config: the resolved config. fingerprint: of config and points. points: number of points.
+    config: the resolved config. fingerprint: digest of config and points. points: number of points.
     """
 
     path: Path
@@ -83,7 +84,7 @@ def open_checked(path: Path, values: bool = True) -> tuple[h5py.File, ResultHead
     """
     refuse_absent(path)
     if path.suffix in CONFIG_SUFFIXES:
-        raise IncompleteFile(
+        raise InvalidResultFile(
             f"{path} is a config, not a result file; `rodsweep run` makes a result file from it"
         )
     with damage_refusals(path):

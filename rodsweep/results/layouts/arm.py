@@ -164,7 +164,7 @@ def si_variable(
     variable: Variable, values: Array, quantities: Mapping[str, Array], as_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: of the arm by name, () or (n,) each. as_force: whether the arm's load is a force."""
+    quantities: the arm's quantities by name, () or (n,) each. as_force: whether the load is a force."""
     si = si_unit_of(variable, as_force)
     made = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
     return made, values * si.scale(quantities)

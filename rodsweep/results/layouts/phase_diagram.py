@@ -168,7 +168,7 @@ def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> t
 
 def curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
-    rows, and reference values of filament and partial beam. line: along a row. row: between rows."""
+    rows, and reference values of filament and partial beam. line, row: parameters."""
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     force = PARAMETERS["F"].unit

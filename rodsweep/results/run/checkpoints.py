@@ -47,7 +47,8 @@ class ArrayStore:
     pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, head: bytes):
-        """directory: journal directory. fingerprint: of config and points. head: first line of each file."""
+        """directory: journal directory. fingerprint: digest of config and points. head: first line of each
+        file."""
         self.directory = directory
         self.header = head + fingerprint.encode() + b"\n"
 
@@ -133,7 +134,7 @@ class ItemResults(ArrayStore):
         found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
         return {item: arrays for item, arrays in found.items() if arrays is not None}
 
-    def drop(self) -> None:
+    def remove_all(self) -> None:
         """Deletes the results of all items."""
         delete_matching_files(self.directory, ITEM_RESULT_GLOB)
 

@@ -162,7 +162,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 def journalled_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points. fingerprint: of config and points.
+    points. fingerprint: digest of config and points.
     """
     has_points = journals_with_fingerprint(directory, fingerprint)
     return f"; finished points are kept in {directory}" if has_points else ""

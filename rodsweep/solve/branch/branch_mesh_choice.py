@@ -173,20 +173,21 @@ def solved_on_mesh(
 
 
 def with_errors_within_accuracy(
-    last: BranchCycle, points: Sequence[BranchCycle], accuracy: float, condition: BorderCondition | None
+    measured: BranchCycle, points: Sequence[BranchCycle], accuracy: float, condition: BorderCondition | None
 ) -> list[BranchCycle]:
-    """The cycles `points`, which follow the measured cycle `last`, all with errors within the accuracy;
-    raises Unsolvable.
+    """The cycles `points` of a branch, all with errors within the accuracy; raises Unsolvable. measured: the
+    cycle before `points`, whose errors were measured.
 
-    Errors are measured at the last cycle and interpolated at the cycles before. A cycle that is too
-    inaccurate is solved again on the mesh of the last cycle. condition: equation that defines the last cycle
-    on every mesh; by default the condition that its arc length is unchanged.
+    Errors are measured at the last cycle of `points`, and interpolated at the other cycles between `measured`
+    and this cycle. A cycle that is too inaccurate is solved again on the mesh of the last cycle. condition:
+    equation that defines the last cycle on every mesh; by default the condition that its arc length is
+    unchanged.
     """
     *between, end = points
     whole = end.arc_since_measured
     end = with_measured_errors(end, accuracy)
     known = [
-        _with_interpolated_errors(last, point, end, point.arc_since_measured / whole, accuracy)
+        _with_interpolated_errors(measured, point, end, point.arc_since_measured / whole, accuracy)
         for point in between
     ]
     # Only after the interpolation, because the interpolated errors belong to the old mesh.

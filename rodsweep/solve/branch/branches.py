@@ -37,7 +37,7 @@ class BranchSettings:
     min_coordinate_unit: float = 0.01
     """Smallest unit of the parameter coordinate in arc lengths, divided by the length of the range. With the
     coordinate itself as the unit, steps towards gamma3 = 0 become ever shorter and do not reach 0."""
-    max_row_cycles: int = 500
+    max_cycles_per_diagram_row: int = 500
     """Maximum number of cycles on all branches of one row of a phase diagram."""
 
 

@@ -91,7 +91,7 @@ def row_branches(
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,
-        cycles=BRANCH_SETTINGS.max_row_cycles,
+        cycles=BRANCH_SETTINGS.max_cycles_per_diagram_row,
         special=max_special_points,
     )
     return solve_branches(rod, asked, workspace)

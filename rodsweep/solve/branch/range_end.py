@@ -18,7 +18,7 @@ from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ALONG_PARAMETER
 from .branch_end_settings import BRANCH_END_SETTINGS
-from .special.segment import BranchSegment
+from .special.branch_segment import BranchSegment
 
 
 def range_end_condition(start: BranchCycle, limit: float) -> BorderCondition:

@@ -2,7 +2,7 @@
 exchanges of the leading eigenvalue.
 
 The crossings come from `determinant.certificate.covering`, or for nonuniform arms from `arm.crossings`; the
-exchanges come from `leading_eigenvalue`. Winding numbers confirm the numbers of unstable modes.
+exchanges come from `leader_exchanges`. Winding numbers confirm the numbers of unstable modes.
 """
 
 import math
@@ -16,7 +16,7 @@ from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
 from .kinds import Threshold, crossing_kind
-from .leading_eigenvalue import LeaderExchangeSearch
+from .leader_exchanges import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
 from .unstable_modes import ModeCounter
@@ -202,10 +202,10 @@ def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"
         raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")
-    zeros, left, examined = cover_with_boxes(boxes, path.origin, path.direction)
+    zeros, undecided, examined = cover_with_boxes(boxes, path.origin, path.direction)
     within = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
     hopfs = [_hopf_crossing(path, zero) for zero in within]
-    return AxisCrossings(path, hopfs, _undecided_intervals(path, left), SearchEnd(high), examined)
+    return AxisCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), examined)
 
 
 def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
@@ -238,10 +238,10 @@ def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
-def _undecided_intervals(path: Path, left: list[Box]) -> list[tuple[float, float]]:
-    """Disjoint intervals of the parameter covered by the undecided boxes `left`."""
+def _undecided_intervals(path: Path, undecided: list[Box]) -> list[tuple[float, float]]:
+    """Disjoint intervals of the parameter covered by the boxes `undecided`."""
     gaps: list[tuple[float, float]] = []
-    for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in left):
+    for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in undecided):
         if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.merge_distance):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:

@@ -1,7 +1,7 @@
 """Kinds of thresholds along a path of rods, and one threshold.
 
 At a threshold a pair of eigenvalues crosses the imaginary axis, or the leading eigenvalue changes between
-real and complex (an exchange). `crossing_kind` gives the kind of a crossing; `leading_eigenvalue` gives the
+real and complex (an exchange). `crossing_kind` gives the kind of a crossing; `leader_exchanges` gives the
 kind of an exchange, and `unstable_modes` finds which crossing is a restabilization.
 """
 

@@ -18,8 +18,8 @@ class CurveSearchProblem(Protocol[AnyCurve]):
     """Interface of `trace_all_curves` to the curves through seed points. A seed point is identified by its
     index."""
 
-    def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the seed point from which the next curve is traced, one of the indices `left`."""
+    def next_seed(self, untraced: Sequence[int]) -> int:
+        """Index of the seed point from which the next curve is traced, one of the indices `untraced`."""
 
     def missing_items(self, seed: int) -> list[int]:
         """Numbers of the work items (parts of a curve) whose results are missing for the curve through the
@@ -80,13 +80,13 @@ def trace_all_curves(
     lies on a curve if its distance, divided by the length of a row, is at most this number."""
     search: CurveSearch[AnyCurve] = CurveSearch(tolerance, dict.fromkeys(seeds, math.inf))
     tried: set[int] = set()
-    while left := [i for i, off in search.distances.items() if off > tolerance and i not in tried]:
-        seed = problem.next_seed(left)
+    while untraced := [i for i, off in search.distances.items() if off > tolerance and i not in tried]:
+        seed = problem.next_seed(untraced)
         search.missing_items = problem.missing_items(seed)
         if search.missing_items:
             # Idle processes may trace curves from these seeds meanwhile. Some seeds may lie on the missing
             # curve.
-            search.untried_seeds = [i for i in left if i != seed]
+            search.untried_seeds = [i for i in untraced if i != seed]
             break
         tried.add(seed)
         curve = problem.curve(seed)

@@ -33,8 +33,8 @@ from .marching_settings import MARCHING_SETTINGS
 from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance
 from .status import MarchedStatus
 from .straight_rod import straight_rod_stability
-from .transient.from_motion import collocation_states
 from .transient.motion_mesh import integrable_rod, motion_mesh
+from .transient.orbit_from_motion import collocation_states
 from .transient.returns import (
     RETURN_SETTINGS,
     not_settled_text,
@@ -53,10 +53,10 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
         return Cycle(status=MarchedStatus.failed, message=cause)
 
-    return outcome_or_failure(lambda: _MarchedMotion(rod, request).cycle(), failed)
+    return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
 
 
-class _MarchedMotion:
+class _IntegrationUntilSettled:
     """Integration of the motion of one rod until the motion settles, on successively finer meshes."""
 
     def __init__(self, rod: Rod, request: CycleRequest) -> None:

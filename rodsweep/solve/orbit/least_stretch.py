@@ -52,7 +52,7 @@ def least_stretch(path: "CyclePath", enough: float = inf) -> float:
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     form = path.orbit.form
-    grid = form.mesh
+    mesh = form.mesh
     c = path.strain_coefficients[:, 0]
 
     def least_of(coefficients: Complex) -> Array:
@@ -60,11 +60,11 @@ def least_stretch(path: "CyclePath", enough: float = inf) -> float:
         return -series_maxima(at, series_samples(at, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c)))
 
     def least(u: Array) -> Array:
-        return least_of(c @ grid.element_evaluation_matrix(u).T)
+        return least_of(c @ mesh.element_evaluation_matrix(u).T)
 
-    before = [index_before_jump(int(node), grid.element_nodes) for node in form.nodal_rod.jumps]
+    before = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
     at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
-    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(grid.node_positions))
+    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(mesh.node_positions))
     values = least(places)
     best = int(np.argmin(values))
     rough = min(float(values[best]), at_jumps)

@@ -23,12 +23,7 @@ from ...discretization.elements.periodic import (
 )
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
-from .compiled_measures import (
-    REFLECTION_SIGNS,
-    harmonic_sizes,
-    tip_path,
-    write_powers,
-)
+from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, tip_path, write_powers
 from .least_stretch import least_stretch_between_nodes
 from .orbit import Orbit
 
@@ -67,9 +62,9 @@ class CyclePath:
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
-        grid = orbit.form.mesh
+        mesh = orbit.form.mesh
         self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
-        matrices = tip_matrices(grid)
+        matrices = tip_matrices(mesh)
         self._path = tip_path(self._equidistant_states, orbit.period, orbit.semidiscrete_equations, matrices)
         self.tip_coefficients = self._path.tip_coefficients
         self.tip_samples = self._path.tip_samples
@@ -160,10 +155,10 @@ class CyclePath:
         """(x, y, theta) of the rod at `count` equidistant times of a period from `mean_crossing_time` and at
         `nodes` Lobatto nodes, (3, count, nodes)."""
         strains = self._series_from_mean_crossing(self.strain_coefficients, count).swapaxes(0, 1)
-        grid = self.orbit.form.mesh
+        mesh = self.orbit.form.mesh
         return shape_from_strains(
-            grid, np.ascontiguousarray(strains), np.zeros(3)
-        ) @ _matrix_to_lobatto_nodes(grid, nodes)
+            mesh, np.ascontiguousarray(strains), np.zeros(3)
+        ) @ _matrix_to_lobatto_nodes(mesh, nodes)
 
     def _series_from_mean_crossing(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `mean_crossing_time`,
@@ -173,10 +168,10 @@ class CyclePath:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _matrix_to_lobatto_nodes(grid: Mesh, nodes: int) -> Array:
-    """Matrix, (nodes of `grid`, nodes): values at all nodes of the mesh `grid` times this matrix are the
+def _matrix_to_lobatto_nodes(mesh: Mesh, nodes: int) -> Array:
+    """Matrix, (nodes of `mesh`, nodes): values at all nodes of the mesh `mesh` times this matrix are the
     values at `nodes` Lobatto nodes of the rod."""
-    return grid.evaluation_matrix(lobatto_points(nodes)).T
+    return mesh.evaluation_matrix(lobatto_points(nodes)).T
 
 
 def measures_of(path: CyclePath) -> Measures:
@@ -184,7 +179,6 @@ def measures_of(path: CyclePath) -> Measures:
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
     mean = orbit.means
-
     return Measures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,

@@ -42,7 +42,7 @@ class Orbit:
         cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int
     ) -> "Orbit":
         """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
-        n)."""
+        n). stages: number s of stages of an interval."""
         values = np.append(states.ravel(), period)
         return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
 
@@ -117,26 +117,26 @@ class Orbit:
         at: Array = time_evaluation_matrix((self.interval_count, self.stage_count), times) @ self.all_states
         return at
 
-    def on_mesh(self, grid: Mesh, intervals: int, stages: int) -> "Orbit":
-        """The orbit interpolated to the space mesh `grid` and to `intervals` time intervals with `stages`
+    def on_mesh(self, target: Mesh, intervals: int, stages: int) -> "Orbit":
+        """The orbit interpolated to the space mesh `target` and to `intervals` time intervals with `stages`
         stages each."""
         points = self._at_times_of(self.values, (intervals, stages))
-        if grid != self.form.mesh:
-            points = self.form.states_on_mesh(grid, points)
+        if target != self.form.mesh:
+            points = self.form.states_on_mesh(target, points)
         return replace(
             self,
-            form=replace(self.form, mesh=grid),
+            form=replace(self.form, mesh=target),
             interval_count=intervals,
             stage_count=stages,
             values=np.append(points.ravel(), self.period),
         )
 
-    def change_on_mesh(self, change: Array, grid: Mesh, intervals: int, stages: int) -> Array:
-        """The change `change` of the values, (N,), interpolated to the space mesh `grid` and to `intervals`
+    def change_on_mesh(self, change: Array, target: Mesh, intervals: int, stages: int) -> Array:
+        """The change `change` of the values, (N,), interpolated to the space mesh `target` and to `intervals`
         time intervals with `stages` stages each by a linear map, (N on this mesh,)."""
         points = self._at_times_of(change, (intervals, stages))
-        if grid != self.form.mesh:
-            points = self.form.changes_on_mesh(grid, points)
+        if target != self.form.mesh:
+            points = self.form.changes_on_mesh(target, points)
         return np.append(points.ravel(), change[-1])
 
     def _at_times_of(self, values: Array, target: tuple[int, int]) -> Array:

@@ -176,8 +176,8 @@ class OrbitMesh:
 
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
-    grid = orbit.form.mesh
-    return OrbitMesh(grid.edges, grid.order, orbit.interval_count, orbit.stage_count, grid.order_ratios)
+    mesh = orbit.form.mesh
+    return OrbitMesh(mesh.edges, mesh.order, orbit.interval_count, orbit.stage_count, mesh.order_ratios)
 
 
 def _ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:

@@ -124,7 +124,7 @@ def modes_at_lobatto_nodes(
 def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w.
 
-    w, error: of any equal shape. rod: the rod, or any rod of the path of these eigenvalues.
+    w, error: arrays of equal shape. rod: the rod, or any rod of the path of these eigenvalues.
     """
     rounding = (
         SPECTRUM_ERROR_SETTINGS.rounding

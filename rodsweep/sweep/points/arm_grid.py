@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.section import ArmSection
-from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, UncoveredArm
+from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, ArmOutsideModel
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
@@ -51,9 +51,9 @@ def grid_of_arms(
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
-    coverage = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
+    codes = np.broadcast_to(_along_dimension(0, statuses), shape).copy()
     if section.load_key in LOAD_OF_RATIO:
-        coverage = _with_flutter_codes(coverage, scale)
+        codes = _with_flutter_codes(codes, scale)
     if section.load:
         table["F"] = np.where(np.isinf(scale), np.nan, scale) * _along_dimension(1, loads)
         if section.load_key in LOAD_OF_RATIO:
@@ -65,16 +65,16 @@ def grid_of_arms(
         if builds:
             shares = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
         crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * shares, shape)
-        coverage[(coverage == SLENDER) & crushed] = CRUSHED
-    if (coverage != SLENDER).all():
-        _refuse_grid_without_rods(section, given_parameters, bool((coverage == NO_FLUTTER).any()), forces)
+        codes[(codes == SLENDER) & crushed] = CRUSHED
+    if (codes != SLENDER).all():
+        _refuse_grid_without_rods(section, given_parameters, bool((codes == NO_FLUTTER).any()), forces)
     axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
     over = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
-    at_points = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
-    codes = coverage.astype(np.int8).ravel()
-    failures = _search_failures(coverage, forces)
-    return Points(names, columns, False, over, at_points, builds=builds, coverage=codes, failures=failures)
+    units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
+    failures = _search_failures(codes, forces)
+    stored = codes.astype(np.int8).ravel()
+    return Points(names, columns, False, over, units, builds=builds, arm_statuses=stored, failures=failures)
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
@@ -90,7 +90,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
     """
     try:
         return section.arm_of(values), SLENDER
-    except UncoveredArm as error:
+    except ArmOutsideModel as error:
         return None, error.status
 
 
@@ -126,24 +126,24 @@ def _unit_load_force(
     return FlutterForce(1.0 / getattr(arm, SCALE_NAME[section.load]))
 
 
-def _with_flutter_codes(coverage: Array, flutter: Array) -> Array:
-    """Status codes `coverage`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
+def _with_flutter_codes(codes: Array, flutter: Array) -> Array:
+    """Status codes `codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
 
     flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
     loads, n).
     """
     found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    codes: Array = np.where(coverage == SLENDER, found, coverage)
-    return codes
+    result: Array = np.where(codes == SLENDER, found, codes)
+    return result
 
 
-def _search_failures(coverage: Array, forces: ForceArray) -> dict[int, str]:
+def _search_failures(codes: Array, forces: ForceArray) -> dict[int, str]:
     """Reasons why the search for flutter failed, by flat index of the point.
 
-    coverage: status codes, (arms, loads, combinations of replaced parameters).
+    codes: status codes, (arms, loads, combinations of replaced parameters).
     """
-    each = np.broadcast_to(forces, coverage.shape).ravel()
-    return {int(index): each[index].failure for index in np.flatnonzero(coverage == FLUTTER_UNKNOWN)}
+    each = np.broadcast_to(forces, codes.shape).ravel()
+    return {int(index): each[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
 
 
 def _refuse_grid_without_rods(

@@ -11,7 +11,7 @@ from math import inf, nan
 from typing import TypeAlias
 
 from ...config.arm.section import ArmSection
-from ...config.arm.status import UncoveredArm
+from ...config.arm.status import ArmOutsideModel
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import LOAD_OF_RATIO
@@ -63,7 +63,7 @@ def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
     for values in section.values_of_arms():
         try:
             yield section.arm_of(values)
-        except UncoveredArm:
+        except ArmOutsideModel:
             continue
         except ValueError as error:
             raise InputError(str(error)) from None

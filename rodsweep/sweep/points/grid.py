@@ -61,9 +61,9 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         except ValueError as error:
             raise InputError(str(error)) from None
     named = {name: axes[name] for name in config.parameter_names}
-    coverage = None if parameters.arm is None else _crushing_codes(named, config.build)
-    refuse_invalid_axes(axes, config.allows_crushed_rods or coverage is not None, config.build)
-    return Points(config.parameter_names, tuple(named.values()), is_grid=True, coverage=coverage)
+    arm_statuses = None if parameters.arm is None else _crushing_codes(named, config.build)
+    refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.build)
+    return Points(config.parameter_names, tuple(named.values()), is_grid=True, arm_statuses=arm_statuses)
 
 
 def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:

@@ -46,10 +46,9 @@ class Points:
     builds: tuple[Build, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
     points. Every arm has the same number of consecutive points. Empty if all points have `build`."""
-    coverage: NDArray[np.int8] | None = None
-    """Status code of each point of an arm, (points,): SLENDER if the point has a rod, else the code, from
-    `rodsweep.config.arm.axes`, of the reason why the rod model does not apply. None if every point has a
-    rod."""
+    arm_statuses: NDArray[np.int8] | None = None
+    """Status code of each point of an arm, (points,), from `rodsweep.config.arm.status`: SLENDER if the rod
+    model applies, else the code of the reason why it does not apply. None if every point has a rod."""
     failures: dict[int, str] = field(default_factory=dict)
     """Reason why the search for flutter failed at a point with a relative load, by flat index."""
 
@@ -82,13 +81,13 @@ class Points:
         """Values of each parameter by name, (n,) each, as in `columns`, without the points that have no
         rod.
         """
-        if self.coverage is None:
+        if self.arm_statuses is None:
             return self.columns_by_name
-        return self.values_of(np.flatnonzero(self.coverage == SLENDER))
+        return self.values_of(np.flatnonzero(self.arm_statuses == SLENDER))
 
     def has_rod(self, index: int) -> bool:
         """Whether the point at a flat index has a rod."""
-        return self.coverage is None or self.coverage[index] == SLENDER
+        return self.arm_statuses is None or self.arm_statuses[index] == SLENDER
 
     @property
     def columns_by_name(self) -> dict[str, Array]:
@@ -133,7 +132,7 @@ class Points:
         different = list(dict.fromkeys(self.builds)) or [self.build]
         of_arms = np.array([different.index(build) for build in self.builds] or [0])
         numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
-        return different, numbers if self.coverage is None else numbers[self.coverage == SLENDER]
+        return different, numbers if self.arm_statuses is None else numbers[self.arm_statuses == SLENDER]
 
     def build_of(self, index: int) -> Build:
         """Constitutive law and profile of the rod of the point at a flat index."""

@@ -152,13 +152,13 @@ class SkippingSolver:
     """A solver that skips the points to which the rod model does not apply, and gives these points fill
     values.
 
-    rod_solver: solver of the points with a rod. coverage: SLENDER for points with a rod, else a value of
+    rod_solver: solver of the points with a rod. arm_statuses: SLENDER for points with a rod, else a value of
     `NoRodStatus`, (points,). failures: additional messages by flat index of the point. layout: variables of a
     point.
     """
 
     rod_solver: Solver
-    coverage: NDArray[np.int8]
+    arm_statuses: NDArray[np.int8]
     failures: Mapping[int, str]
     layout: Layout
 
@@ -171,13 +171,13 @@ class SkippingSolver:
         )
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        if self.coverage[index] == SLENDER:
+        if self.arm_statuses[index] == SLENDER:
             return solve()
         return OutcomeWithoutRod(self._status(index), self.failures.get(index, "")), None
 
     def _status(self, index: int) -> NoRodStatus:
         """Status of a point without a rod."""
-        return next(status for status in NoRodStatus if status == self.coverage[index])
+        return next(status for status in NoRodStatus if status == self.arm_statuses[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, OutcomeWithoutRod):
@@ -192,14 +192,14 @@ class SkippingSolver:
     def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
         """Results for the points of a stretch at flat indices, (n,); only points with a rod are solved."""
         assert self.rod_solver.stretched is not None
-        coverage = self.coverage[indices]
-        places = np.flatnonzero(coverage == SLENDER)
+        arm_statuses = self.arm_statuses[indices]
+        places = np.flatnonzero(arm_statuses == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
-        values[STATUS.name][...] = coverage
+        values[STATUS.name][...] = arm_statuses
         found = self.rod_solver.stretched[1](indices[places]) if len(places) else None
         for name, column in found.values.items() if found else ():
             values[name][places] = column
-        solved = coverage != FLUTTER_UNKNOWN
+        solved = arm_statuses != FLUTTER_UNKNOWN
         if found:
             solved[places] = found.is_solved
         return StretchResult(values, solved)

@@ -164,8 +164,8 @@ class ArmValidity:
         found = []
         for first in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(first, first + self.points_per_arm)
-            if self.points.coverage is not None:
-                indices = indices[self.points.coverage[indices] == SLENDER]
+            if self.points.arm_statuses is not None:
+                indices = indices[self.points.arm_statuses[indices] == SLENDER]
             if len(indices):
                 nothing = ArmMotion(np.full(len(indices), np.nan))
                 found.append(self._validity_variables(self._arm_of(first), nothing, indices))

@@ -61,7 +61,7 @@ def view_in_memory(
     """
     coordinates, variables = stored_variables(plan, values, filled)
     return View(
-        Path(job.name),
+        Path(job.title),
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
         {name: array for name, (_, array, _) in (coordinates | variables).items()},
         plan.layout.parameters,

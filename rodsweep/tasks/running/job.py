@@ -59,7 +59,7 @@ class Job:
         return self.source if isinstance(self.source, str) else tree_yaml(self.source)
 
     @property
-    def name(self) -> str:
+    def title(self) -> str:
         """The title of the config; if the title is empty, the name of the config file."""
         return self.config.title or self.path.stem
 
@@ -76,10 +76,10 @@ class Job:
         if self.config.parameters.arm is None:
             return solver
         once = solver_with_outcome_cache(self._with_arm_results(solver), self.points, self.layout)
-        coverage = self.points.coverage
-        if coverage is None or not coverage.any():
+        arm_statuses = self.points.arm_statuses
+        if arm_statuses is None or not arm_statuses.any():
             return once
-        return SkippingSolver(once, coverage, self.points.failures, self.layout).solver_of_all_points()
+        return SkippingSolver(once, arm_statuses, self.points.failures, self.layout).solver_of_all_points()
 
     def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
@@ -208,7 +208,7 @@ def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> 
 
     attributes = {
         "Conventions": "CF-1.8",
-        "title": job.name,
+        "title": job.title,
         "task": job.config.task,
         "time_unit": "tau2 = gamma2 L^4/k3",
         "config": job.config_text,

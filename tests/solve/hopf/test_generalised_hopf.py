@@ -435,4 +435,4 @@ def test_the_default_drag_asks_for_the_same_and_an_arm_has_its_own(tmp_path):
         "phase_diagram: {criticality: true}\n"
     )
     config = job_of_file(path, ()).config
-    assert config.gamma1 == config.parameters.arm.grid_axes()["gamma1"].array()[0] != 1
+    assert config.gamma1 == config.parameters.arm.dimensionless_axes()["gamma1"].array()[0] != 1

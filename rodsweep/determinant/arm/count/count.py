@@ -48,10 +48,10 @@ class ContourTraversal(NamedTuple):
     """State of a traversal of the contour of a count: on side number `side_number` of the box, at
     `distance_on_side` from the start of this side.
 
-    phase_change: of arg D so far. node_count: number of nodes so far. last_node: the last node. reach_growth:
-    change of the reach per distance. next_distance: distance of the next node, 0 if not chosen yet.
-    required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf if the change of
-    phase is not determined.
+    phase_change: change of arg D so far. node_count: number of nodes so far. last_node: the last node.
+    reach_growth: change of the reach per distance. next_distance: distance of the next node, 0 if not chosen
+    yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf if the change
+    of phase is not determined.
     """
 
     side_number: int

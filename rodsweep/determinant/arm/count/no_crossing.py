@@ -128,8 +128,8 @@ def covered_height(
     line: float, start: float, top: float, radii: tuple[float, float], arms: ArmsOfInterval
 ) -> tuple[float, float]:
     """Returns (height, radius). height: no unknown eigenvalue lies on the line between Im w = `start` and
-    `height`, at any arm; at least `top` if discs cover the line up to `top`. radius: of the next disc; 0 if a
-    disc failed.
+    `height`, at any arm; at least `top` if discs cover the line up to `top`. radius: radius of the next disc;
+    0 if a disc failed.
 
     radii: radius of the first disc, and radius below which a disc fails.
     """

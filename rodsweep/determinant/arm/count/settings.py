@@ -101,7 +101,8 @@ class NoCrossingSettings(CompiledSettings):
     """A circle is not used if one of its points v has a known eigenvalue closer than this number times |v|:
     D and the divisor are then both inaccurate."""
     min_distance_in_errors: float = 1e3
-    """As `min_known_distance`, in errors of the known eigenvalue."""
+    """A circle is not used if one of its points is closer to a known eigenvalue than this number times the
+    error of this eigenvalue."""
     overlap: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
     min_fitting_fraction: float = 0.25

@@ -215,7 +215,7 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
     """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
     negligible.
 
-    terms: (LANES, MAX_TERMS, PADDED). rates: of the minors, (MINORS, STAGES, WIDTH). weights: Gauss weights.
+    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,).
     """
     end = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
     _add_end_integrals(weights, rates, end)

@@ -2,9 +2,9 @@
 minors.
 
 The equations are given in `rodsweep.determinant.arm.elements.collocation`. STAGES: number of Gauss points of
-an element. WIDTH: number of pairs (initial value, element). values, rates: of the minors at the Gauss points
-of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH). turning:
-`elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at the power w^0, else 0.
+an element. WIDTH: number of pairs (initial value, element). values, rates: values and rates of the minors at
+the Gauss points of some elements, (MINORS, STAGES, WIDTH). local: coefficients there, (6, STAGES, WIDTH).
+turning: `elimination_matrix` of each element, (STAGES, 1 + STAGES, WIDTH). start: 1 at the power w^0, else 0.
 """
 
 from ....arrays import Array

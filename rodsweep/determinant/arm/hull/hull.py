@@ -65,9 +65,10 @@ def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
 class HullSamples(NamedTuple):
     """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
 
-    F: forces, (n,). lengths: of the intervals between breaks, (pieces,). local: coefficients,
-    (6, n, pieces, points), with increasing u. averaged_regions: of each arm, (n, trials, 2), inf
-    for an arm that allows none; (n, 0, 2) for arms without jumps.
+    F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). local: coefficients,
+    (6, n, pieces, points), with increasing u. averaged_regions: constants (a, c) of the trial regions of each
+    arm from averaged weights, (n, trials, 2); inf if a trial gives no bound; (n, 0, 2) for arms without
+    jumps.
     """
 
     F: Array

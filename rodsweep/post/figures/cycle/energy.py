@@ -9,7 +9,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ....results.file.view import View
 from ...summary.errors import relative_power_error
-from ...summary.ranges import rounded_text
+from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK
 from ..style import BLUE, GREEN, VERMILION, legend_below
 from .selection import ENERGY_BUDGET_VARIABLES, StoredCycle, chosen_cycles, power_in_tex

@@ -22,7 +22,7 @@ from ....config.arm.axes import CHANGED_PARAMETER
 from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
-from ...hopf_points import LocatedThreshold, StoredThresholds
+from ...located_thresholds import LocatedThreshold, StoredThresholds
 from ..style import (
     LABELS,
     draw_coloured_cells,

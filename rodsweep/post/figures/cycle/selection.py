@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
-from ...summary.ranges import rounded_text
+from ...summary.number_texts import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
 from .units_and_labels import PLAIN_UNITS, REQUIRED_QUANTITIES, CycleUnits, units_at_points
@@ -35,9 +35,8 @@ the option `samples`."""
 
 @dataclass(frozen=True, slots=True)
 class StoredCycle:
-    """Limit cycle or transient at one point of a result file. parameters: of the point, by name. values:
-    variables in `units`, by name. period: NaN if there is no cycle.
-    """
+    """Limit cycle or transient at one point of a result file. parameters: parameters of the point, by
+    name. values: variables in `units`, by name. period: NaN if there is no cycle."""
 
     number: int
     """Number of the point in the file, from 1."""

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....results.file.view import View
-from ..lists import label_point_numbers, shared_parameters
+from ..point_lists import label_point_numbers, shared_parameters
 from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0

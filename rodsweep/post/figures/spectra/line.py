@@ -13,7 +13,7 @@ from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.points.points import lines_along
-from ...hopf_points import LocatedThreshold, StoredThresholds
+from ...located_thresholds import LocatedThreshold, StoredThresholds
 from ..arm.quantities import NO_BREAK
 from ..style import (
     BLUE,

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from ....results.file.view import View
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
-from ..lists import label_point_numbers, shared_parameters
+from ..point_lists import label_point_numbers, shared_parameters
 from ..style import (
     BLUE,
     GREEN,

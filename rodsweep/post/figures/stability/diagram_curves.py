@@ -44,15 +44,15 @@ DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
-def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, states: bool) -> list[Line2D]:
-    """Draws boundary curves and folds, or only Hopf curves if `states`; returns legend entries."""
+def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, hopf_only: bool) -> list[Line2D]:
+    """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
     v = view.variables
     sides = "curve_criticality" in v
     handles = _draw_criticality(axes, view, line, row) if sides else []
     looks = {0: DOUBLE_LOOK} if sides else CURVE_LOOKS
     for number, (word, width, style) in looks.items():
         of_kind = v["curve_kind"] == number
-        if states and number == 0:
+        if hopf_only and number == 0:
             continue
         curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][of_kind])]
         for one in curves:
@@ -67,7 +67,7 @@ def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, states: bo
             name, share = CURVE_SYMBOLS[number]
             if paths:
                 _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), share)
-    return handles if states else handles + _mark_curve_folds(axes, view, line, row)
+    return handles if hopf_only else handles + _mark_curve_folds(axes, view, line, row)
 
 
 def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:

@@ -17,10 +17,10 @@ from ....results.file.view import View
 from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import HERTZ, si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
-from ...hopf_points import LocatedThreshold
+from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_at_points
 from ..errors import absolute_errors, is_known
-from ..ranges import RANGE_DIGITS, rounded_text, span_text
+from ..number_texts import RANGE_DIGITS, rounded_text, span_text
 
 SI_LINE_WIDTH = 80
 """Largest length of a line with variables in SI units, in characters."""

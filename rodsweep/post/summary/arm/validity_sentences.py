@@ -31,10 +31,9 @@ def plane_lines(quantities: Mapping[str, np.ndarray]) -> list[str]:
 
 
 def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
-    """Sentence on the validity of the model for one arm, if the model does not apply, is doubtful, or this is
-    not known; empty if the model applies, and for a rod. variables: of a result with one point, by name, ()
-    or (1,) each.
-    """
+    """Sentence on the validity of the model for one arm, if the model does not apply, is doubtful, or this
+    is not known; empty if the model applies, and for a rod. variables: variables of a result with one
+    point, by name, () or (1,) each."""
     if any(variable.name not in variables for variable in VALIDITY_VARIABLES):
         return ""
     validity = {variable.name: np.ravel(variables[variable.name]) for variable in VALIDITY_VARIABLES}

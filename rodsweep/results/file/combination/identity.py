@@ -26,10 +26,10 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     columns: `Points.identifying_arrays`, (n,) each. Raises ValueError for an invalid config.
     """
     asked = config_from_resolved(config)
-    meant = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
+    identity = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
     if asked.parameters.arm_axes:
-        meant["over"] = asked.parameters.arm_axes
-    digest = sha256(json.dumps(meant, sort_keys=True).encode())
+        identity["over"] = asked.parameters.arm_axes
+    digest = sha256(json.dumps(identity, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
         # -0.0 becomes 0.0, so that equal values have equal bytes.

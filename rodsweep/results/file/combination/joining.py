@@ -114,12 +114,12 @@ def _point_text(points: Points, index: int) -> str:
 def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
-    meant = config_from_resolved(first.config).settings_of_results
+    settings = config_from_resolved(first.config).settings_of_results
     grids = [points_of_file(source.path, source.layout) for source in sources]
     for other, points in zip(others, grids[1:], strict=True):
         theirs = config_from_resolved(other.config).settings_of_results
         apart = config_difference(
-            meant | {"together": None}, theirs | {"together": None}, places=(first.path.name, other.path.name)
+            settings | {"together": None}, theirs | {"together": None}, "", (first.path.name, other.path.name)
         )
         if apart:
             raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
@@ -127,7 +127,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> Joine
             raise InputError(
                 f"{first.path} and {other.path} cannot be merged: one has a grid of points, the other a list"
             )
-    if "arm" in meant:
+    if "arm" in settings:
         raise InputError(
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
             "config; run --extend adds points to the file"
@@ -136,7 +136,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> Joine
         points, places = _joined_grid(grids)
     else:
         points, places = _joined_list(grids)
-    config = _joined_config(first, meant, points)
+    config = _joined_config(first, settings, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
     return JoinedFile(_with_attributes(plan, first, config), sources, places)
@@ -191,17 +191,17 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     ]
 
 
-def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
-    """Config of the first file, for grids with the axes of the joined points. meant:
-    `Config.settings_of_results` of the first file's config; its options of the task replace those of the
-    config."""
+def _joined_config(first: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
+    """Config of the joined file: the config of the first file, for a grid with the axes of the joined points.
+    settings: `Config.settings_of_results` of the first file's config. The task's options are taken from
+    `settings`, so that options without effect have their default values."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
         own = config_from_resolved(first.config).parameters.axes
         axes = {name: _axis_from_values(own[name], column) for name, column in points.columns_by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
-    return config_from_resolved(first.config | {"parameters": parameters, task: meant[task]})
+    return config_from_resolved(first.config | {"parameters": parameters, task: settings[task]})
 
 
 def _axis_from_values(own: Axis, values: Array) -> Axis:

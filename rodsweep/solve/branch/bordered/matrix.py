@@ -76,9 +76,9 @@ class BorderedMatrix:
         self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, residual: float) -> Array:
-        """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`, to
-        first order. border: last row of the matrix, (3,). residual: of the condition that closes the system,
-        as in `BorderCondition.residual`."""
+        """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`,
+        to first order. border: last row of the matrix, (3,). residual: residual of the condition that
+        closes the system, as in `BorderCondition.residual`."""
         return self.solve(border, np.append(self._right_sides, residual), self._stage_columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, residual: float) -> Array:

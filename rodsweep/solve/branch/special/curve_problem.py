@@ -211,12 +211,12 @@ class SpecialCurveProblem:
         Unsolvable. ends: values of this margin at `inner` and `outer`."""
         found: dict[float, SolvedPoint] = {1.0: outer}
 
-        def left(share: float) -> float:
+        def value(share: float) -> float:
             found[share] = self.point_near_chord(inner, outer, share)
             return float(self.margins(found[share])[margin])
 
         return found[
-            zero_along_step(left, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
+            zero_along_step(value, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
         ]
 
     def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:

@@ -24,7 +24,7 @@ from ..bordered.condition import moved_orbit
 from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
-from .segment import BranchSegment
+from .branch_segment import BranchSegment
 from .special_point import SPECIAL_POINT_SETTINGS, SpecialKind, SpecialPoint
 from .special_point_meshes import first_mesh, next_mesh
 

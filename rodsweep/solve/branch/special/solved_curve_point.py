@@ -244,6 +244,6 @@ def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
 
 
 def line_across(step: Array, one: SolvedPoint, other: SolvedPoint) -> SearchLine:
-    """Line across the curve beyond the points `one` and `other`, perpendicular to `step`, (4,), a step along
-    the curve."""
+    """Line on which the point of the curve after the successive points `one` and `other` is searched:
+    perpendicular to `step`, (4,), the predicted step from `other` along the curve."""
     return SearchLine(other.unit_normal(step), chord_slope(one, other))

@@ -108,9 +108,9 @@ class _CurvesOfKind:
     special_points: Sequence[RowSpecialPoint]
     results: Mapping[int, HalfCurveArrays]
 
-    def next_seed(self, left: Sequence[int]) -> int:
-        """Index, from `left`, of the median special point: both halves of its curve have similar lengths."""
-        return sorted(left, key=self._sort_key)[len(left) // 2]
+    def next_seed(self, untraced: Sequence[int]) -> int:
+        """The median of the special points `untraced`: both halves of its curve have similar lengths."""
+        return sorted(untraced, key=self._sort_key)[len(untraced) // 2]
 
     def missing_items(self, seed: int) -> list[int]:
         """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""

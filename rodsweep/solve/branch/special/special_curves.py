@@ -188,7 +188,7 @@ def with_generalised_hopf_ends(
     identical point, are unchanged.
     """
 
-    def located(end: HopfEnd | None) -> HopfEnd | None:
+    def at_generalised_hopf(end: HopfEnd | None) -> HopfEnd | None:
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known:
@@ -200,7 +200,7 @@ def with_generalised_hopf_ends(
                 return HopfEnd(*point.values, point.errors[0], 2 * np.pi / point.frequency)
         return end
 
-    first, last = map(located, curve.hopf_ends)
+    first, last = map(at_generalised_hopf, curve.hopf_ends)
     return replace(curve, hopf_ends=(first, last))
 
 

@@ -72,10 +72,10 @@ class _StabilityBoundaries:
     plane: Plane
     seeds: list[Seed]
 
-    def next_seed(self, left: Sequence[int]) -> int:
-        """Index of the threshold at which the next curve starts: the first in `left`, the thresholds on no
-        curve."""
-        return left[0]
+    def next_seed(self, untraced: Sequence[int]) -> int:
+        """Index of the threshold at which the next curve starts: the first in `untraced`, the thresholds
+        on no curve."""
+        return untraced[0]
 
     def missing_items(self, seed: int) -> list[int]:
         """No work items for the threshold with index `seed`: its curve is traced at once, in milliseconds."""

@@ -85,9 +85,11 @@ def squared_tail_growth(before: Array, after: Array) -> Array:
 def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
     """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
 
-    before, after: `error_indicators` of both orbits, (3,) each. The tail in time is the largest of all fields
-    and intervals, and may belong to a field on which the cycle hardly depends. The lost energy is the sum
-    over all fields and intervals. Between the time nodes, errors grow with the last harmonics of the path.
+    before, after: `error_indicators` of both orbits, (3,) each. Errors in time grow with the lost energy or
+    with the amplitude error due to this loss, whichever grows more; errors of extrema between the time nodes
+    grow with the last harmonics of the path. The lost energy is the sum over all fields and intervals. The
+    tail in time is not used, because the largest tail may belong to a field on which the cycle hardly
+    depends.
     """
     growth = after / before
     return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])

@@ -45,10 +45,11 @@ AMPLITUDE_EQUATION_SETTINGS = AmplitudeEquationSettings()
 class AmplitudeEquation:
     """Amplitude equation g = g0 - c |z|^2 of one rod, with c measured from returns of its motion.
 
-    g: growth of ln |z| per return. period: of the leading mode, in tau2. linear_growth_rate: exact linear
-    growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear growth
-    rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may add.
-    Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns)."""
+    g: growth of ln |z| per return. period: period of the leading mode, in tau2. linear_growth_rate: exact
+    linear growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear
+    growth rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may
+    add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
+    """
 
     def __init__(self, period: float, linear_growth_rate: float, growth_excess: float, noise: float) -> None:
         self.period = period

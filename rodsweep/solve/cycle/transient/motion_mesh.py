@@ -81,18 +81,18 @@ def accuracy_of_motion_mesh(is_stored: bool) -> float:
 def motion_meshes(rod: Rod, is_stored: bool) -> Iterator[Mesh]:
     """Yields the first mesh for the integration of the motion of `rod`, and then finer meshes. is_stored:
     whether the path of the motion is stored."""
-    grid = motion_mesh(rod, accuracy_of_motion_mesh(is_stored))
-    yield grid
+    mesh = motion_mesh(rod, accuracy_of_motion_mesh(is_stored))
+    yield mesh
     for _ in range(MOTION_MESH_SETTINGS.max_refinements):
-        order = ceil(MOTION_MESH_SETTINGS.order_refinement_factor * grid.order)
-        edges = grid.edges
+        order = ceil(MOTION_MESH_SETTINGS.order_refinement_factor * mesh.order)
+        edges = mesh.edges
         if order > RESOLUTION_SETTINGS.max_order:
             edges = halve_elements(edges)
             order = ceil(order / 2)
-        grid = mesh_with_edges(edges, order)
-        if grid.node_count > MOTION_MESH_SETTINGS.max_refined_nodes:
+        mesh = mesh_with_edges(edges, order)
+        if mesh.node_count > MOTION_MESH_SETTINGS.max_refined_nodes:
             return
-        yield grid
+        yield mesh
 
 
 def coarse_mesh_along_branch(rod: Rod) -> Mesh:

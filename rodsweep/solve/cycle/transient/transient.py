@@ -28,8 +28,8 @@ from ..cycle import CycleRequest
 from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
-from .from_motion import orbit_from_motion
 from .motion_mesh import integrable_rod
+from .orbit_from_motion import orbit_from_motion
 from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
@@ -136,7 +136,7 @@ class Transient:
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
-        times, states: of the returns, (k,) and (k, unknowns)."""
+        times, states: times and states of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
         moments = self.beam.layout.stress_field(states, "m3")

@@ -48,9 +48,12 @@ def follow_leading_eigenvalue(rod: Rod, near: Complex, accuracy: float) -> Leadi
     if rod.is_uniform_and_linear:
         return _follow_leader_of_uniform(rod, complex(near[0]), accuracy)
     if rod.is_uniform:
-        linear, rate = rod.equivalent_linear_rod
-        found = follow_leading_eigenvalue(linear, near / rate, accuracy)
-        return found and LeadingEigenvalue(rate * found.w, rate * found.error, rate * found.eigenvalues)
+        # The eigenvalues of the nonlinear rod are `rate` times the eigenvalues of an equivalent linear rod.
+        linear_rod, rate = rod.equivalent_linear_rod
+        leader = follow_leading_eigenvalue(linear_rod, near / rate, accuracy)
+        if leader is None:
+            return None
+        return LeadingEigenvalue(rate * leader.w, rate * leader.error, rate * leader.eigenvalues)
     try:
         return _follow_leader_of_arm(rod, near, accuracy)
     except FloatingPointError:  # D needs too many elements
@@ -66,8 +69,8 @@ def _follow_leader_of_uniform(rod: Rod, near: complex, accuracy: float) -> Leadi
     error, _, _ = root_error_and_scales(w, rod.coefficients)
     if not _matches_neighbour(w, error, near, accuracy):
         return None
-    number = 2 if w.imag else 1
-    leads = any(count_right_of(line, rod).number == number for line in _lines_for_count(w))
+    own_count = 2 if w.imag else 1  # a pair, or one real eigenvalue
+    leads = any(count_right_of(line, rod).number == own_count for line in _lines_for_count(w))
     return LeadingEigenvalue(w, error, np.array([w])) if leads else None
 
 
@@ -82,19 +85,21 @@ def _follow_leader_of_arm(rod: Rod, near: Complex, accuracy: float) -> LeadingEi
     if not isfinite(hull.a) or not np.isfinite(near).all():
         return None
     determinant = arm_determinant(rod)
-    first = complex(near[0])
-    size = largest_w_of_proof(line_for_proof(first, 0.0), hull, near)
-    if not isfinite(size):
-        size = largest_w_of_count(next(_lines_for_count(first)), determinant, hull)
-    determinant.propagators_for(size)  # the elements for the proof also serve the eigenvalues
-    found = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
-    w = np.array([root for root, _ in found])
-    error = np.array([error for _, error in found])
+    near_leader = complex(near[0])
+    largest_w = largest_w_of_proof(line_for_proof(near_leader, 0.0), hull, near)
+    if not isfinite(largest_w):
+        largest_w = largest_w_of_count(next(_lines_for_count(near_leader)), determinant, hull)
+    determinant.propagators_for(largest_w)  # the elements for the proof also serve the eigenvalues
+    roots = [refine_eigenvalue_and_error(value, determinant) for value in near.tolist()]
+    w = np.array([root for root, _ in roots])
+    error = np.array([error for _, error in roots])
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
     error = error[order]
     leader = complex(w[0])
-    if not _matches_neighbour(leader, float(error[0]), first, accuracy) or not are_distinct_roots(w, error):
+    if not _matches_neighbour(leader, float(error[0]), near_leader, accuracy) or not are_distinct_roots(
+        w, error
+    ):
         return None
     pairs = w.imag != 0
     known = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))

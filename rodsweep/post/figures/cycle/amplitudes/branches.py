@@ -10,7 +10,7 @@ from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from .....sweep.points.points import lines_along
-from ....hopf_points import LocatedThreshold, StoredThresholds
+from ....located_thresholds import LocatedThreshold, StoredThresholds
 from ..units_and_labels import PLAIN_UNITS, CycleUnits
 
 

@@ -7,8 +7,8 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from ....hopf_points import LocatedThreshold
-from ....summary.ranges import rounded_text
+from ....located_thresholds import LocatedThreshold
+from ....summary.number_texts import rounded_text
 from ...style import SYMBOLS
 from .square_root import SquareRootLaw
 

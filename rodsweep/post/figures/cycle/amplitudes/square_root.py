@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from .....arrays import Array
-from ....hopf_points import LocatedThreshold
+from ....located_thresholds import LocatedThreshold
 
 MAX_FITTED_DISTANCE = 0.1
 """Largest |F - F**|/|F**| of a cycle to which a law is fitted. At larger distances higher-order terms

@@ -29,7 +29,7 @@ from .run_end import RunContribution
 
 
 @dataclass(frozen=True, kw_only=True)
-class PointWork:
+class ShardSolver:
     """Solves the points of a shard of a job, and writes the results into journals next to the result file
     `output`.
 
@@ -89,7 +89,7 @@ class PointWork:
                 journal.append(int(index), solver.record(int(index), result), new)
 
         is_shown = self.team.is_first and not self.quiet
-        shown = ProgressReporter(count, self.job.name) if is_shown else SilentProgress()
+        shown = ProgressReporter(count, self.job.title) if is_shown else SilentProgress()
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
@@ -104,7 +104,7 @@ class PointWork:
         finally:
             shown.close()
         return RunContribution(
-            host=socket.gethostname(), failures=list(reasons.examples.values()), work=share
+            host=socket.gethostname(), failures=list(reasons.examples.values()), statistics=share
         )
 
     def _solve_item(

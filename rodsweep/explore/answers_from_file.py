@@ -32,7 +32,7 @@ CLICK_TOLERANCE = 0.25
 spacing of stored loads, is below this number."""
 
 
-class StoredAnswers:
+class AnswersFromFile:
     """Answers to questions of the page from a result file of rods or arms.
 
     data: content of the file `path`. state: state with which the page opens. diagram: answer to the question

@@ -12,7 +12,7 @@ from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
-from ...sweep.loop import Indices, RankWork, SweepCallbacks, sweep
+from ...sweep.loop import Indices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
@@ -24,16 +24,17 @@ HALF_CURVE_NOUN = "pieces of curves"
 
 
 @dataclass(frozen=True, slots=True)
-class PendingSweepWideWork:
+class PendingSweepWideVariables:
     """Variables that depend on all points. is_missing: whether the file lacks these variables. work_items:
-    the half curves to be followed; None if nothing is divided among the ranks.
+    the half curves to be followed, each from a special point in one direction; None if nothing is divided
+    among the ranks.
     """
 
     is_missing: bool
     work_items: WorkItems | None = None
 
 
-class SweepWideWork:
+class SweepWideComputation:
     """Computes the variables of a run that depend on all points, in work items (half curves) shared among the
     ranks.
     """
@@ -48,7 +49,7 @@ class SweepWideWork:
         stop: StopRequest,
     ):
         """solver: computes the variables. output: the result file. fingerprint: digest of config and points.
-        note: function called with every unforeseen exception; the half curve then stays empty.
+        note: function called with every unforeseen exception; the result of the work item is then empty.
         """
         self.team = team
         self.solver = solver
@@ -57,12 +58,12 @@ class SweepWideWork:
         self.stop = stop
         self.item_results = ItemResults(journal_directory(output), fingerprint)
         self.results: dict[int, NamedArrays] = {}
-        """Results of all finished half curves, by number, on the first rank only."""
+        """Results of all finished work items, by number, on the first rank only."""
 
-    def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankWork:
-        """Follows all half curves that are still missing, on all ranks; returns the work of this rank. items:
-        half curves, as in `PendingSweepWideWork`. prepare: function called before the first solve. title:
-        text of the progress display; None for no display."""
+    def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
+        """Solves all missing work items on all ranks; returns the statistics of this rank. items: as in
+        `PendingSweepWideVariables`. prepare: function called before the first solve. title: text of the
+        progress display; None for no display."""
         found: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
@@ -98,7 +99,7 @@ class SweepWideWork:
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again. items: half curves, as in `PendingSweepWideWork`.
+        these points again. items: as in `PendingSweepWideVariables`.
         """
         chosen = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
         for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, chosen)):
@@ -116,7 +117,7 @@ class SweepWideWork:
 
     def variables(self, items: WorkItems | None) -> Sequence[FilledVariable] | None:
         """The variables that depend on all points; called on the first rank. None if the run was stopped
-        before these variables were complete. items: half curves, as in `PendingSweepWideWork`.
+        before these variables were complete. items: as in `PendingSweepWideVariables`.
         """
         if items is not None and items.items_to_solve(self.results):
             return None
