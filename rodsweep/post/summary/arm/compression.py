@@ -6,7 +6,7 @@ from ....model.arm.neglected import COMPRESSION_LIMIT
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ...crushing import build_of_rods
-from .arm import load_kind, range_in_unit
+from .arm import range_in_unit
 from .extreme_loads import ANSWER_DIGITS
 
 
@@ -26,7 +26,7 @@ def compression_lines(view: View, rods: np.ndarray) -> list[str]:
     forces = largest.reshape(rods.shape)[rods]
     if not forces.min() < view.variables["F"].max():
         return []
-    kind = load_kind(view)
+    kind = view.load_kind
     loads = forces * np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
     text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
     return [f"above {text} compression exceeds its limit, and the model does not apply"]

@@ -4,7 +4,7 @@ import numpy as np
 
 from ....model.arm.quantities import SCALE_NAME
 from ....results.file.view import View
-from .arm import load_kind, range_in_unit, region_of_arms
+from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
@@ -17,7 +17,7 @@ def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
     forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
-    if load_kind(view) == "force" or not np.isfinite(forces).any():
+    if view.load_kind == "force" or not np.isfinite(forces).any():
         return []
     extremes = extreme_arms_text(view, rods, forces, "smallest")
     text = range_in_unit(view, forces, "N", 0.0, ANSWER_DIGITS)
