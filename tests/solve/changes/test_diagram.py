@@ -203,7 +203,7 @@ def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
 
 def test_a_row_without_a_bound_fails_with_its_reason():
     row = solve_row(
-        Rod(F=0.0, k1=1e4, k2=10.0, gamma3=0.0), RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9)
+        Rod(F=0.0, k1=1e4, k2=10.0, gamma3=0.0), RowRequest("F", np.linspace(-50.0, -20.0, 8), 1e-9, True, 9)
     )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
