@@ -77,11 +77,14 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
         loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        names = [n for n in ArmSection.model_fields if n not in LOAD_OF_RATIO and (loaded or n not in LOADS)]
+        left_out = (*LOAD_OF_RATIO, "load_kind", *(() if loaded else LOADS))
+        names = [name for name in ArmSection.model_fields if name not in left_out]
         known = with_load_in_si(arm) if loaded else arm
         given = {name: getattr(known, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
             given[name] = None if given[name] == default else given[name]
+        if not loaded and arm.load == "force":  # thresholds have the unit of the load that the arm would take
+            given["load_kind"] = arm.load
         parameters["arm"] = {name: plain_value(value) for name, value in given.items() if value is not None}
 
 

@@ -182,7 +182,7 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
     section["allOf"] = [
         {"oneOf": [circle, rectangle, pieces]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},
-        *({"not": all_keys_given(pair)} for pair in combinations(LOAD_KEYS, 2)),
+        *({"not": all_keys_given(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
     ]
 
 

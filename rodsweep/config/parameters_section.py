@@ -15,6 +15,7 @@ from ..model.parameters import (
 )
 from ..wording import enumeration
 from .arm.axes import MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
+from .arm.conflicts import refuse_conflicting_keys
 from .arm.section import ArmSection
 from .axis import Axis, ParameterAxis
 from .values import Number, StrictSection, Text
@@ -156,7 +157,7 @@ class Axes(LinearAxes):
         forced: whether F is a parameter of the task.
         """
         arm.require_allowed_values()
-        arm.refuse_conflicting_keys(forced, self.given_axes)
+        refuse_conflicting_keys(arm, forced, self.given_axes)
         varied = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
         count = arm.grid_point_count(math.prod(axis.size for axis in varied.values()))
         if self.arm_axes and count > MAX_ARM_GRID_POINTS:

@@ -31,6 +31,13 @@ class Range:
         finite number above 0."""
         return f"{self.description} {self.remark}" if self.remark and 0 < value < inf else self.description
 
+    def finite_description_for(self, value: float) -> str:
+        """`description_for`, for a value that may not be inf even where the range contains inf."""
+        described = self.description.partition(", or inf")[0]
+        if "finite" not in described:
+            described = described.replace("a number", "a finite number")
+        return described + self.description_for(value).removeprefix(self.description)
+
     def first_outside(self, values: Iterable[float]) -> float | None:
         """The first number in `values` that lies outside the range; None if the range contains all values."""
         return next((value for value in map(float, values) if not self.contains(value)), None)

@@ -10,9 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from ..errors import EnvironmentIncomplete
 from ..results.file.benchmark_file import Table
 from .figures.style import BLUE, FIGURE_STYLE, GREEN, VERMILION
+from .output_files import save_figure
 
 GROUP_COLOURS = (BLUE, VERMILION, GREEN, "black", "0.55")
 """Colours of the groups of methods, in order of appearance."""
@@ -64,10 +64,7 @@ def draw_work_precision(measured: Table, xlabel: str, target: float | None, outp
         figure.supylabel("relative error")
         handles = [Line2D([], [], label=method, **look) for method, look in looks.items()]
         figure.legend(handles=handles, loc="outside right center", frameon=False, fontsize=9)
-        try:
-            figure.savefig(output)
-        except OSError as error:
-            raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror}") from error
+        save_figure(figure, output)
 
 
 def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:

@@ -27,6 +27,21 @@ def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
     assert "\nArm(length='15 cm', young='100 kPa'" in str(answer)
 
 
+def test_thresholds_of_an_arm_with_a_force_are_forces():
+    """Also where the force is relative to flutter, and in the list of crossings; a pressure stays in Pa."""
+    by_pressure = rs.Arm(**THICK, pressure="1 kPa").thresholds()
+    assert by_pressure.units["pressure_hopf"] == "Pa"
+    area = math.pi * 5e-3**2
+    for force in ("0.1 N", "0.5 of flutter"):
+        answer = rs.Arm(**THICK, force=force).thresholds()
+        assert answer.units["force_hopf"] == answer.units["crossing_force"] == "N"
+        assert not any("pressure" in str(name) for name in answer.data.data_vars)
+        assert answer.force_hopf == pytest.approx(by_pressure.pressure_hopf * area, rel=1e-12)
+        assert re.search(r"flutter from force = 0\.0\d+ N", " ".join(str(answer).split()))
+    branch = rs.Arm(**THICK, force="0.1 N").branch(stop=32, accuracy=1e-3)
+    assert branch.units["branch_force"] == branch.units["special_at_si"] == "N"
+
+
 @pytest.mark.parametrize(
     "viscosity, density_difference, first",
     [

@@ -313,3 +313,27 @@ def test_who_is_left_out_is_said_for_every_study_with_peers():
 def test_a_benchmark_names_its_processor():
     """By words, as /proc/cpuinfo or else the platform has it, and not by the number of a core."""
     assert re.search("[A-Za-z]{2}", machine_attributes()["processor"])
+
+
+def test_a_figure_that_the_disk_refuses_leaves_the_old_figure(tmp_path):
+    """A limit on the size of files fails in `write` as a full disk does."""
+    output = tmp_path / "a.png"
+    output.write_bytes(b"old")
+    code = f"""
+import resource, signal
+from pathlib import Path
+from rodsweep.errors import EnvironmentIncomplete
+from rodsweep.post.work_precision import draw_work_precision
+table = dict(case=["a"], method=["b"], group=["c"], seconds=[1.0], error=[1e-3])
+draw_work_precision(table, "ms", None, Path({str(tmp_path / "whole.png")!r}))
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+try:
+    draw_work_precision(table, "ms", None, Path({str(output)!r}))
+except EnvironmentIncomplete as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "a.png cannot be written: File too large" in done.stdout
+    assert output.read_bytes() == b"old"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "whole.png"]

@@ -171,6 +171,11 @@ REFUSED_BY_TASK = [
         "task is missing; it should be spectrum, thresholds, phase_diagram, modes, limit_cycle, "
         "criticality or branch",
     ),
+    (
+        "task: spectrum\nparameters: {arm: {length: 0.1, radius: 5.0e-3, young: 1.0e+5, viscosity: 1, "
+        "pressure: 100, load_kind: force}}",
+        "parameters.arm.load_kind is given, but parameters.arm.pressure is given too; remove one of them",
+    ),
     ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
     (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),
     (config("modes") + "thresholds: {}", "thresholds is given but the task is modes; remove it"),

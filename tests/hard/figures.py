@@ -28,7 +28,7 @@ from .straight_figures import (
 
 
 def second_scales(d, view):
-    """The check of scales opposite to an axis: pressures of forces, times in tau1."""
+    """The check of scales opposite to an axis: pressures of forces, times in tau1, Poisson's ratios of k2."""
     found = []
     for axes in d.figure.axes:
         for second in axes.child_axes:
@@ -38,7 +38,13 @@ def second_scales(d, view):
             shown = np.array(getattr(second, f"get_{which}lim")())
             if not label:
                 continue
-            if label.endswith("tau1"):
+            if label == "Poisson's ratio":
+                axis = getattr(second, f"{which}axis")
+                ratios = [float(plain(text.get_text())) for text in axis.get_majorticklabels()]
+                known = np.argsort(np.ravel(view.variables["poisson"]))
+                k2 = np.interp(ratios, *(np.ravel(view.variables[n])[known] for n in ("poisson", "k2")))
+                right = np.allclose(axis.get_majorticklocs(), k2, rtol=2e-2)
+            elif label.endswith("tau1"):
                 tau1 = view.point_columns["gamma3"] / view.point_columns["k2"]
                 right = np.isclose(shown[1] / first[1], 1 / tau1, rtol=1e-6).any()
             else:
@@ -51,12 +57,14 @@ def second_scales(d, view):
 def validity_told(d, view):
     """The check of hatches and words where the model does not apply to an arm, in figures of rods."""
     found = []
-    for line, match in read(d.page, r"the model does not apply(?: at NUMBER of NUMBER points)?"):
-        outside = np.ravel(view.variables["model_applies"]) == Validity.does_not_apply
-        numbers = [int(text) for text in match.groups() if text]
+    word = r"the model (does not apply|is doubtful)(?: at NUMBER of NUMBER points)?"
+    for line, match in read(d.page, word):
+        worst = Validity.doubtful if match.group(1) == "is doubtful" else Validity.does_not_apply
+        outside = np.ravel(view.variables["model_applies"]) == worst
+        numbers = [int(text) for text in match.groups()[1:] if text]
         right = numbers == [outside.sum(), outside.size] if numbers else outside.any()
         found.append((line, "" if right else f"it is {outside.sum()} of {outside.size}"))
-    if any("hatched: the model does not apply" in line for line in d.page):
+    if any(": the model " in line for line in d.page):
         d.left = {mark: of for mark, of in d.left.items() if not getattr(mark, "get_hatch", lambda: "")()}
     return found
 

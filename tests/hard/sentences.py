@@ -998,10 +998,11 @@ def _state_sentences(view, page, fine, row):
     for words, kind in CHANGES_OF_CYCLES.items():
         where[words] = (kinds == kind).any(axis=1), at[kinds == kind]
     for words, (there, places) in where.items():
-        found += counts(page, rf"^{words}: on NUMBER of NUMBER row", there.sum(), len(rows))
+        on = "at grid points of" if "stable" in words else "on"
+        found += counts(page, rf"^{words}: {on} NUMBER of NUMBER row", there.sum(), len(rows))
         if there.any():
             found += ranges(
-                page, rf"^{words}: on \d+ of \d+ rows?, F = RANGE, {row} = RANGE", places, rows[there]
+                page, rf"^{words}: {on} \d+ of \d+ rows?, F = RANGE, {row} = RANGE", places, rows[there]
             )
     for line, match in read(
         page,

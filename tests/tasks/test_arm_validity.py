@@ -35,6 +35,13 @@ thresholds: {crossings: 8}
 """
 HEAVY = MAP.replace("viscosity: 4 Pa s", "viscosity: 400 Pa s, density_difference: 200 kg/m^3")
 
+DIAGRAM_OVER_POISSON = """
+task: phase_diagram
+parameters:
+  arm: {length: 14 cm, radius: 4 mm, young: 100 kPa, viscosity: 5 Pa s, density_difference: 8 kg/m^3,
+        poisson: [0, 0.2, 0.5], pressure: {start: 0 kPa, stop: 1 kPa, num: 5}}
+"""
+
 
 def arm_at(data, **more):
     """The arm of one point of a Dataset."""
@@ -375,11 +382,30 @@ def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, draw
     figure = figure_of(drawn, command.directory / "a.h5", command.directory / "f.png")
     data = rs.open(command.directory / "a.h5")
     outside = data.F.values[(data.model_applies == Validity.does_not_apply).values.ravel()]
-    hatched = [patch for patch in figure.axes[0].patches if patch.get_hatch()]
-    assert len(hatched) == len(outside) > 0
-    for patch, F in zip(hatched, outside, strict=True):
-        assert patch.get_x() < F <= patch.get_x() + patch.get_width()
-    assert "hatched: the model does not apply" in figure.get_suptitle()
+    doubtful = data.F.values[(data.model_applies == Validity.doubtful).values.ravel()]
+    for pattern, forces in (("////", outside), ("...", doubtful)):
+        hatched = [patch for patch in figure.axes[0].patches if patch.get_hatch() == pattern]
+        assert len(hatched) == len(forces) > 0
+        for patch, F in zip(hatched, forces, strict=True):
+            assert patch.get_x() < F <= patch.get_x() + patch.get_width()
+    assert "hatched: the model does not apply\ndotted: the model is doubtful" in figure.get_suptitle()
+
+
+def test_a_diagram_over_poissons_ratio_has_the_arm_a_scale_of_the_ratio_and_dots(command, drawn):
+    command.write("d.yaml", DIAGRAM_OVER_POISSON)
+    command.solved("d.yaml")
+    figure = figure_of(drawn, command.directory / "d.h5", command.directory / "f.png")
+    title = figure.get_suptitle().replace("\xa0", " ")
+    assert "length 14 cm, radius 4 mm, Young's modulus 100 kPa, viscosity 5 Pa s" in title
+    assert title.endswith("\ndotted: the model is doubtful")
+    (axes,) = (axes for axes in figure.axes if axes.patches)
+    assert {patch.get_hatch() for patch in axes.patches} == {"..."}
+    (scale,) = (child for child in axes.child_axes if child.get_ylabel() == "Poisson's ratio")
+    texts = [label.get_text() for label in scale.get_yticklabels()]
+    assert len(texts) >= 3
+    for text, k2 in zip(texts, scale.get_yticks(), strict=True):
+        arm = SlenderArm(length=0.14, radius=4e-3, young=1e5, viscosity=5, poisson=float(text))
+        assert k2 == pytest.approx(arm.k2, rel=1e-9)
 
 
 def test_roots_are_drawn_over_the_points_of_a_grid_with_what_varies(command, drawn):

@@ -1,9 +1,9 @@
 """The section `parameters.arm` of a config: an arm in SI units, and the parameter axes computed from it."""
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import product
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -77,6 +77,10 @@ class ArmSection(StrictSection):
     force_over_flutter: Annotated[ParameterAxis | None, RelativeLoadField] = None
     """Force divided by the flutter force at the likeliest drag: 1.2 is `force: 1.2 of flutter`."""
 
+    load_kind: Annotated[Literal["pressure", "force"] | None, Field(description="pressure or force")] = None
+    """Kind of the loads in the results of an arm without a load, by default pressure: thresholds are stored
+    in Pa, with force in N."""
+
     @model_validator(mode="before")
     @classmethod
     def _with_relative_load_and_length(cls, given: Any) -> Any:
@@ -133,7 +137,8 @@ class ArmSection(StrictSection):
         keys, by name; None for a quantity that varies between points."""
         varied = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
         numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
-        return numbers | {name: list(v) if name == "segments" else v for name, v in self.material.items()}
+        kind = {} if self.load_kind is None else {"load_kind": self.load_kind}
+        return numbers | {n: list(v) if n == "segments" else v for n, v in self.material.items()} | kind
 
     @property
     def is_parameter_grid(self) -> bool:
@@ -157,30 +162,6 @@ class ArmSection(StrictSection):
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0{solid}")
         if self.is_parameter_grid:
             self.arm_of(self.first_values, loaded=True)
-
-    def refuse_conflicting_keys(self, forced: bool, given_parameters: Collection[str]) -> None:
-        """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
-        Poisson's ratio.
-
-        forced: whether F is a parameter of the task. given_parameters: names of the parameters that replace
-        the arm's values.
-        """
-        loads = ["parameters.F"] if "F" in given_parameters else []
-        loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(self, name) is not None]
-        if loads[1:]:
-            raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
-        if "poisson" in self.varying_quantities and "k2" in given_parameters:
-            raise ValueError(
-                "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
-                "too; give one of them"
-            )
-        if self.load and not forced:
-            raise ValueError(
-                f"parameters.arm.{self.load} is given, but the task solves for the load; remove it, and set "
-                "the end of the search by F_max (for the task branch, by branch.stop)"
-            )
-        if forced and not (self.load or "F" in given_parameters):
-            raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")
 
     def dimensionless_axes(self) -> dict[str, Axis]:
         """Axes of the dimensionless parameters of a grid of parameters, by name; without F if the arm has no

@@ -47,12 +47,9 @@ class BranchOptions(StrictSection):
         for key, value in (("start", self.start), ("stop", self.stop)):
             if not allowed.contains(value) or not isfinite(value):
                 # Stiffnesses may be infinite, the ends of a branch may not.
-                described = allowed.description.partition(", or inf")[0]
-                if "finite" not in described:
-                    described = described.replace("a number", "a finite number")
-                described += allowed.description_for(value).removeprefix(allowed.description)
                 raise ValueError(
-                    f"{key} = {value:g} is not allowed along {self.along}; it should be {described}"
+                    f"{key} = {value:g} is not allowed along {self.along}; it should be "
+                    f"{allowed.finite_description_for(value)}"
                 )
         if not self.start < self.stop:
             raise ValueError(f"start = {self.start:g} is not below stop = {self.stop:g}")

@@ -2,7 +2,7 @@
 them."""
 
 from collections.abc import Sequence
-from math import inf
+from math import inf, isfinite
 from typing import Annotated, Any, ClassVar, Literal
 
 import numpy as np
@@ -66,13 +66,9 @@ class PhaseDiagramOptions(StrictSection):
             raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
         name = given[0]
         axis = getattr(self.bautin_along, given[0])
-        allowed = PARAMETERS[name].allowed
-        values = axis.array()
-        if axis.size < 2 or not (values < inf).all() or not all(map(allowed.contains, values)):
-            raise ValueError(
-                f"bautin_along.{name} needs at least two values, all {allowed.description} and none of them "
-                "inf"
-            )
+        if axis.size < 2:
+            raise ValueError(f"bautin_along.{name} has a single value; give at least two")
+        _require_finite_values(name, axis.array().tolist())
         if not self.criticality:
             raise ValueError("bautin_along is given but criticality is false; set criticality: true")
         return self
@@ -217,6 +213,17 @@ class PhaseDiagramConfig(LinearConfig):
                 f"first value is {value[0]:g}"
             )
         return self
+
+
+def _require_finite_values(name: str, values: Sequence[float]) -> None:
+    """Raises ValueError for the first of the `values` of the parameter `name` in bautin_along that is
+    infinite or outside the range of the parameter."""
+    allowed = PARAMETERS[name].allowed
+    bad = next((value for value in values if not allowed.contains(value) or not isfinite(value)), None)
+    if bad is not None:
+        raise ValueError(
+            f"bautin_along.{name} = {bad:g} is not allowed; it must be {allowed.finite_description_for(bad)}"
+        )
 
 
 def _axis_count_refusal(long: Sequence[str]) -> str:

@@ -17,6 +17,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
+from .arm.quantities import constant_quantities_text
 from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -90,7 +91,9 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
     handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
     legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
+    figure.suptitle(
+        heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
+    )
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite = left_out_clause(view.parameter_values, [row])
@@ -156,7 +159,9 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
     legend_below(figure, palette.legend_entries(table), columns=3)
-    figure.suptitle(heading_text(view, _constant_parameters_text(view, line, row)))
+    figure.suptitle(
+        heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
+    )
     return figure
 
 

@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.units import quantity_in_si
 from ...results.file.view import View
 from ..output_files import save_figure
-from .arm.axes import add_si_scales
+from .arm.axes import add_arm_scales
 from .arm.validity_hatches import hatch_invalid_points
 from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout
@@ -161,11 +161,11 @@ class FigureRequest:
             raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
     def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with a second scale in SI units and hatches for an arm; returns `shown`, the
+        """Writes the figure, with second scales and hatches for an arm; returns `shown`, the
         description of the figure. min_aspect: smallest ratio of height to width of a panel.
 
         """
-        add_si_scales(figure, self.views)
+        add_arm_scales(figure, self.views)
         # Figures over an arm's quantities show the validity themselves.
         if not any(view.arm_axes for view in self.views):
             hatch_invalid_points(figure, self.views)

@@ -4,33 +4,22 @@ import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
-from ...results.layouts.branch import SPECIAL_KINDS
-from ...results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
+from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
 from .diagram_curves import (
-    CYCLE_CHANGE_WORDS,
     criticality_lines,
     curve_count_lines,
     curve_lines,
     incomplete_curve_lines,
 )
 from .number_texts import axis_values_text, span_text
+from .stable_states import state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
-
-STABLE_STATE_WORDS = {
-    "neither_known": "no stable state known",
-    "straight": "straight rod only",
-    "cycle": "cycle only",
-    "both": "straight rod and cycle",
-}
-"""Phrase for the stable states of a rod, by name; other names are printed as they are."""
-LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
-"""Values of `stable_states` whose regions are listed, by the phrase in the summary."""
 
 CROSSING_REMARKS = {
     "onset": " of oscillations",
@@ -91,37 +80,6 @@ def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
         f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
         f"{float(f'{uniform / max(solves + boxes, 1):.1g}'):g} times as many"
     ]
-
-
-def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
-    points of cycles. done: mask of the computed rows, (...,). line: parameter along a row. row: parameter
-    constant on a row.
-    """
-    v = view.variables
-    of_row = view.point_columns[row].reshape(done.shape)
-    states = v["stable_states"]
-    kinds = v["cycle_special_kind"]
-    at = v[f"cycle_special_{line}"]
-    shares = ((100 * float((states[done] == value).mean()), word) for value, word in STABLE_STATES)
-    parts = ", ".join(
-        f"{share:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for share, word in shares if share
-    )
-    lines = [f"stable states, in % of the grid points: {parts}"]
-    found_on = {}
-    for words, state in LISTED_STATES.items():
-        there = (states == flag_number(state, STABLE_STATES)) & done[..., np.newaxis]
-        found_on[words] = there.any(axis=-1), np.broadcast_to(v[line], there.shape)[there]
-    for kind, words in CYCLE_CHANGE_WORDS.items():
-        of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
-        found_on[words] = of_kind.any(axis=-1), at[of_kind]
-    for words, (rows, where) in found_on.items():
-        if rows.any():
-            lines.append(
-                f"{words}: on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
-                f"{row} = {axis_values_text(of_row[rows])}"
-            )
-    return lines
 
 
 def class_share_lines(found: np.ndarray) -> list[str]:

@@ -92,7 +92,7 @@ def si_columns(
     else:
         at = {name: values[0] for name, values in at.items() if np.ptp(values) == 0}
     by_name = {column.name: column for column in columns}
-    as_force = "force" in view.quantities  # not in `at` if the force varies and the list is of the whole file
+    as_force = view.load_kind == "force"
     for declared in variables:
         column = by_name[declared.name]
         # The position of a crossing along a row over F is a force.

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import PARAMETERS
+from ..layouts.si_units import load_kind_of
 from ..layouts.variables import TYPED_UNIT
 from .content_digests import is_user_added
 from .current_state import insert_records, journalled_points, journalled_reasons, read_file_and_journals
@@ -103,6 +104,11 @@ class View:
         of a grid over quantities.
         """
         return {name: self.variables[name] for name in ALL_QUANTITIES if name in self.variables}
+
+    @property
+    def load_kind(self) -> str:
+        """Kind of the loads of an arm in the file: "force" or "pressure"."""
+        return load_kind_of(self.config.get("parameters", {}).get("arm") or {})
 
     @property
     def as_list(self) -> "View":

@@ -8,8 +8,7 @@ pressure_scale, are coordinates: single numbers, or arrays along a parameter or 
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
-from math import prod
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,51 +21,16 @@ from ...config.parameters_section import Axes
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity
-from ...model.arm.quantities import ALL_QUANTITIES, LOAD_OF_RATIO, LOADS, SCALE_NAME, UNITS
+from ...model.arm.quantities import ALL_QUANTITIES, UNITS
 from ...model.parameters import PARAMETERS
 from ...sweep.points.points import Points
-from .variables import ANGULAR_UNIT, DIMENSIONS, FilledVariable, Layout, Variable, real, word
+from .si_units import FORCE_UNITS, HERTZ, NO_UNIT, SI_UNIT_BY_DIMENSIONLESS_UNIT, SIUnit, load_kind_of
+from .variables import DIMENSIONS, FilledVariable, Layout, Variable, real, word
 
 SI_SUFFIX = "_si"
 """Suffix of the name of a variable in SI units."""
 HERTZ_SUFFIX = "_hz"
 """Suffix of the name of a frequency in Hz."""
-HERTZ = "Hz"
-"""Unit of frequencies, cycles per second, as experiments count them. Radians per second are not used."""
-
-
-class SIUnit(NamedTuple):
-    """SI unit of a result. The dimensionless unit is the product of the arm's quantities in `factors` divided
-    by the product of the quantities in `divisors`.
-
-    Dimensionless frequencies are angular; the conversion to Hz contains 2 pi.
-    """
-
-    unit: str = ""
-    factors: tuple[str, ...] = ()
-    divisors: tuple[str, ...] = ()
-
-    def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
-        """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
-        or (n,) each.
-        """
-        up, down = (prod(quantities[name] for name in names) for names in (self.factors, self.divisors))
-        return np.asarray(up / (2 * np.pi * down if self.unit == HERTZ else down))
-
-
-NO_UNIT = SIUnit()
-"""Used for variables that are not stored in SI units."""
-SI_UNIT_BY_DIMENSIONLESS_UNIT = {
-    "tau2": SIUnit("s", ("tau2",)),
-    "1/tau2": SIUnit("1/s", (), ("tau2",)),
-    ANGULAR_UNIT: SIUnit(HERTZ, (), ("tau2",)),
-    "L": SIUnit("m", ("length",)),
-    "k3/L": SIUnit("J", ("force_scale", "length")),
-    "k3/(L tau2)": SIUnit("W", ("force_scale", "length"), ("tau2",)),
-}
-"""SI units of the dimensionless units of time, length, energy and power."""
-FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOADS}
-"""SI unit in which the follower force is stored, by name of the arm's load, "pressure" or "force"."""
 LOAD_OF_UNIT = {each.unit: load for load, each in FORCE_UNITS.items()}
 """Name of the load, "pressure" or "force", by its SI unit."""
 EVENT_FREQUENCIES = {f"{event}_frequency": f"frequency_{event}_hz" for event in ("hopf", "restabilization")}
@@ -118,7 +82,7 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
     variable.
     """
-    as_force = any(LOAD_OF_RATIO.get(name, name) == "force" for name in config["parameters"]["arm"])
+    as_force = load_kind_of(config["parameters"]["arm"]) == "force"
     units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
 
@@ -231,15 +195,17 @@ def si_values(
     index: int | NDArray[np.int64],
     layout: Layout,
     quantities: Mapping[str, NDArray[Any]],
+    as_force: bool,
 ) -> dict[str, Any]:
     """Values of the SI variables, by name, of one point or of n points.
 
     record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
-    (n,). quantities: the arm's quantities by name, () or (points,) each.
+    (n,). quantities: the arm's quantities by name, () or (points,) each. as_force: whether the load is a
+    force.
     """
     found = {}
     for variable in layout.variables:
-        si = _stored_si_unit(variable, "force" in quantities)
+        si = _stored_si_unit(variable, as_force)
         if si.unit:
             used = {name: quantities[name] for name in (*si.factors, *si.divisors)}
             at_index = {name: array[index] if np.ndim(array) else array for name, array in used.items()}

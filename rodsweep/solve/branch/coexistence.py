@@ -62,8 +62,10 @@ def solve_coexistence(
     `solve_branches`.
     """
     row = solve_row(rod, request)
-    branches = row_branches(rod, request, max_special_points, workspace)
+    start = _first_searched_value(row, request)
+    branches = _branches_from(start, rod, request, max_special_points, workspace)
     cycles = stable_cycles_at(request.values, branches, request.certify)
+    cycles[request.values < start] = -1
     forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
     cycles[forces == 0] = 0
@@ -85,9 +87,31 @@ def row_branches(
 ) -> BranchesOfRod:
     """All branches of cycles that start at Hopf points of a row. max_special_points: maximum number of stored
     special points. workspace: memory of Newton's matrices, as in `solve_branches`."""
+    start = float(request.values[0])
+    if request.parameter_name == "F" and start < 0:
+        start = _first_searched_value(solve_row(rod, request), request)
+    return _branches_from(start, rod, request, max_special_points, workspace)
+
+
+def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
+    """Value of the parameter from which a row was searched for thresholds: later than the first value if no
+    a-priori bound or no mesh covers a strong pull."""
+    first = row.thresholds.search_result.searched_interval[0]
+    begins_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
+    return float(first if begins_late else request.values[0])
+
+
+def _branches_from(
+    start: float,
+    rod: Rod,
+    request: RowRequest,
+    max_special_points: int,
+    workspace: NewtonWorkspace | None,
+) -> BranchesOfRod:
+    """`row_branches` from the parameter value `start` on."""
     asked = BranchRequest(
         along=request.parameter_name,
-        start=float(request.values[0]),
+        start=start,
         stop=float(request.values[-1]),
         accuracy=request.cycle_accuracy,
         certify=request.certify,

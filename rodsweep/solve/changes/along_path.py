@@ -44,7 +44,8 @@ class ThresholdSearchResult:
     searched_interval: tuple[float, float] = (math.nan, math.nan)
     """Searched interval of the parameter; all other fields refer to this interval."""
     ended_early: bool = False
-    """Whether the searched interval is shorter than the requested interval; the reason is in `doubt_text`."""
+    """Whether the searched interval is shorter than the requested interval, at its end or, in a row of a
+    diagram, at its start; the reason is in `doubt_text`."""
     open_range: tuple[float, float] = (math.nan, math.nan)
     """Smallest interval that contains all possible further crossings; (nan, nan) if there are none."""
     unstable_at_start: int = -1

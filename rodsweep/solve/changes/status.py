@@ -27,7 +27,7 @@ class ThresholdStatus(PointStatus):
     failed = 5, "the search failed and nothing is stored; the message says why"
     ended_early = (
         9,
-        "the search stopped before the end of the requested range, at a rod whose unstable modes could not "
-        "be counted, or because the list was full; thresholds beyond this rod are not known; the message "
-        "says why",
+        "only a part of the requested range is searched: the search ends, or on a row of a diagram begins, "
+        "at a rod beyond which unstable modes could not be counted, or ends because the list was full; "
+        "thresholds beyond this rod are not known; the message says why",
     )

@@ -11,6 +11,7 @@ from ...discretization.elements.elements import element_orders, halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
+from .matrix.workspace import WORKSPACE_SETTINGS, factors_size
 from .orbit import Orbit
 from .order_ratios import order_ratios
 from .tails import tails_of
@@ -155,9 +156,13 @@ class OrbitMesh:
 
     @property
     def is_allowed(self) -> bool:
+        """Whether unknowns and time intervals are within `ORBIT_MESH_SETTINGS`, and the memory of Newton's
+        matrix is within `WORKSPACE_SETTINGS`."""
         return (
             self.unknown_count <= ORBIT_MESH_SETTINGS.max_unknowns
             and self.interval_count <= ORBIT_MESH_SETTINGS.max_intervals
+            and factors_size(self.interval_count, self.stage_count, self.unknown_count)
+            <= WORKSPACE_SETTINGS.max_buffer_size
         )
 
     @property

@@ -16,6 +16,7 @@ from ...results.file import provenance
 from ...results.file.creation import Plan
 from ...results.layouts import LAYOUT_MAKERS, layout_of
 from ...results.layouts.arm import arm_variables, quantities_at_points, si_values
+from ...results.layouts.si_units import load_kind_of
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -87,12 +88,13 @@ class Job:
         """
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = quantities_at_points(self.quantities, self.points)
+        as_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return (
                 values
-                | si_values(values, index, layout, quantities)
+                | si_values(values, index, layout, quantities, as_force)
                 | validity.variables_of_points(values, index)
             )
 

@@ -210,7 +210,9 @@ def test_a_diagram_classes_the_plane_and_continues_the_folds(diagram):
 
 def test_it_is_told_and_drawn(diagram):
     told = " ".join(diagram("show", "c.h5").stdout.split())
-    assert "straight rod and cycle both stable: on 1 of 2 rows, F = 90.5 to 91, k1 = 152" in told
+    assert (
+        "straight rod and cycle both stable: at grid points of 1 of 2 rows, F = 90.5 to 91, k1 = 152" in told
+    )
     assert "folds of cycles: on 1 of 2 rows" in told
     start = r"from k1 = 149.616892, F = 84.4786266\d* \(\+- \de-\d+\) \(Hopf point, where"
     assert re.search(f"curve of folds of cycles: {start}", told)
@@ -288,3 +290,26 @@ def test_axial_drag_without_cycles_is_refused(tmp_path):
     )
     with pytest.raises(InputError, match=r"phase_diagram\.cycles: true"):
         job_of_file(path, ())
+
+
+def test_two_stable_states_between_two_grid_points_are_told(command):
+    """At k1 = 160 from the restabilization at F = 104.353 to the fold at 111.212, at 200 from 155.6 on."""
+    command.write(
+        "c.yaml",
+        "task: phase_diagram\nparameters: {F: [0, 60, 100, 120, 180], k1: [160, 200], k2: 1.0e+4, "
+        "gamma3: 1.0e-4}\nphase_diagram: {cycles: true, curves: false}\n",
+    )
+    command.solved("c.yaml")
+    told = command("show", "c.h5").stdout
+    both = "straight rod and cycle both stable"
+    assert f"{both}: at grid points of 1 of 2 rows, F = 180, k1 = 200\n" in told
+    assert f"{both}: only between grid points on 1 row, k1 = 160\n" in told
+
+
+def test_states_of_a_row_are_known_from_the_pull_on_from_which_it_is_searched():
+    rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4)
+    row = solve_coexistence(rod, request(np.array([-1e6, -1e3, 0.0, 39.0])), 8)
+    assert row.status == CoexistenceStatus.ended_early
+    assert "the search begins at F = -1000: from F = -1000000 on, no a-priori bound" in row.message
+    names = [StableStates(state).name for state in row.stable_states]
+    assert names == ["undecided", "straight", "straight", "cycle"]

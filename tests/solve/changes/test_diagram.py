@@ -1,5 +1,6 @@
 """Curves through folds against known ones, and rows and curves against each other."""
 
+import re
 from dataclasses import replace
 from math import inf, log
 
@@ -202,7 +203,7 @@ def test_a_value_on_a_boundary_is_undecided_and_its_neighbours_are_not():
 
 def test_a_row_without_a_bound_fails_with_its_reason():
     row = solve_row(
-        Rod(F=0.0, k1=1e4, k2=10.0, gamma3=0.0), RowRequest("F", np.linspace(-50.0, 20.0, 8), 1e-9, True, 9)
+        Rod(F=0.0, k1=1e4, k2=10.0, gamma3=0.0), RowRequest("F", np.linspace(-50.0, -20.0, 8), 1e-9, True, 9)
     )
     assert row.status == ThresholdStatus.failed
     assert "bound" in row.message
@@ -245,3 +246,24 @@ def test_a_force_that_is_k1_but_for_rounding_is_crushed(off):
     values = np.array([0.5 * k1, k1 * (1 + off), 2 * k1])
     row = solve_row(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), RowRequest("F", values, 1e-9, True, 9))
     assert [RodClass(motion).name for motion in row.rod_class] == ["flutter", "crushed", "crushed"]
+
+
+@pytest.mark.parametrize(
+    ("k", "values", "undecided", "reason"),
+    [
+        (1e4, [-1e6, -1e4, -1e3, 0.0, 40.0], 1, "from F = -1000000 on, no a-priori bound"),
+        # The search from -5e3 ends within the pulls.
+        (1e8, [-5e3, -1e3, -100.0, 40.0], 1, "from F = -5000 on, .*the winding number counts"),
+    ],
+)
+def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, values, undecided, reason):
+    rod = Rod(F=0.0, k1=k, k2=k, gamma3=1e-4 if k == 1e4 else 1e-3)
+    row = solve_row(rod, RowRequest("F", np.array(values), 1e-8, True, 9))
+    assert row.status == ThresholdStatus.ended_early
+    assert re.match(f"the search begins at F = {values[undecided]:.12g}: {reason}", row.message)
+    pushed = solve_row(rod, RowRequest("F", np.array([0.0, 40.0]), 1e-8, True, 9)).thresholds.thresholds
+    found = [c.value for c in row.thresholds.thresholds]
+    assert found == pytest.approx([c.value for c in pushed], rel=1e-8)
+    assert (row.rod_class == RodClass.undecided).tolist() == [n < undecided for n in range(len(values))]
+    assert row.rod_class[undecided] == RodClass.monotone
+    assert row.rod_class[-1] == RodClass.flutter

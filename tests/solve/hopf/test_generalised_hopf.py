@@ -365,8 +365,15 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
         ("bautin_along: {k2: [1, 20]}", "bautin_along is given but criticality is false"),
         ("criticality: true, bautin_along: {k2: [10, 20]}", "bautin_along.k2 is from 10 to 20"),
         ("criticality: true, bautin_along: {k1: [8, 20]}", "bautin_along.k1 is from 8 to 20"),
-        ("criticality: true, bautin_along: {k2: 9}", "needs at least two values"),
-        ("criticality: true, bautin_along: {k2: [1, inf]}", "none of them inf"),
+        ("criticality: true, bautin_along: {k2: 9}", "bautin_along.k2 has a single value; give at least two"),
+        (
+            "criticality: true, bautin_along: {k2: [1, inf]}",
+            "bautin_along.k2 = inf is not allowed; it must be a finite number above 0$",
+        ),
+        (
+            "criticality: true, bautin_along: {k1: [1.0e-320, 10]}",
+            r"bautin_along.k1 = \S+e-321 is not allowed; .* a finite number above 0 \(1/k1 overflows\)$",
+        ),
         ("criticality: true, bautin_along: {}", "has 0 parameters; give one"),
         ("criticality: true, bautin_along: {gamma1: [1, 2]}", "bautin_along.gamma1"),
         ("criticality: true, bautin_along: {k2: [8, 20], taper: [0.5, 1]}", "has 2 parameters; give one"),

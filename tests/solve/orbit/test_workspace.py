@@ -2,6 +2,7 @@
 
 import gc
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,8 +20,9 @@ from rodsweep.solve.orbit.matrix.workspace import (
     block_count,
 )
 from rodsweep.solve.orbit.orbit import Orbit
+from rodsweep.solve.orbit.orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh
 from rodsweep.solve.orbit.symmetry import REFLECTION
-from rodsweep.solve.unsolvable import WorkLimitReached
+from rodsweep.solve.unsolvable import Unsolvable, WorkLimitReached
 
 INTERVALS, PERIOD = 4, 0.02
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.7)
@@ -155,3 +157,15 @@ def test_no_matrix_takes_more_than_its_share_of_the_work():
     workspace.limit_work(one / WORKSPACE_SETTINGS.max_matrix_share * 0.99)
     with pytest.raises(WorkLimitReached):
         MatrixMemory(workspace, 4, 3, 10)
+
+
+def test_a_matrix_of_more_memory_than_allowed_is_refused_before_it_is_allocated():
+    """Five stages with the most intervals and unknowns allowed by themselves would need 4.6 GB."""
+    with pytest.raises(Unsolvable, match=r"needs 4\.6 GB, more than the 2\.1 GB allowed"):
+        MatrixMemory(
+            NewtonWorkspace(), ORBIT_MESH_SETTINGS.max_intervals, 5, ORBIT_MESH_SETTINGS.max_unknowns
+        )
+    mesh = OrbitMesh((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), 26, ORBIT_MESH_SETTINGS.max_intervals, 3)
+    assert mesh.is_allowed
+    assert not replace(mesh, stage_count=5).is_allowed
+    assert replace(mesh, stage_count=5, interval_count=100).is_allowed

@@ -20,14 +20,13 @@ from ....arrays import Array
 from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
 from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.neglected import Validity
-from ....model.arm.quantities import ARM_SCALES
 from ....results.file.view import View
 from ...summary.arm.arm import quantity_words
 from .. import style
 from ..cycle.point_map import cell_edges
 from ..request import FigureRequest
 from .panels import PANEL_MAKERS, Panel
-from .quantities import NO_BREAK, in_typed_unit, quantity_text
+from .quantities import NO_BREAK, constant_quantities_text, in_typed_unit, quantity_text
 
 MAP_KINDS = ("map", "maps")
 """Values of `--what` that request this figure."""
@@ -85,7 +84,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
     style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     banded = [DRAG_AXIS] if not y and DRAG_AXIS in first and len(view.variables[DRAG_AXIS]) > 1 else []
-    figure.suptitle(style.heading_text(view, _constant_quantities_text(view, axes + banded)))
+    figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + banded)))
     labels = " and ".join(panel.label for panel in panels)
     cut = _section_text(view, {name: at for name, at in first.items() if name not in banded})
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{cut}")
@@ -213,18 +212,3 @@ def _cover_invalid_cells(
     axes.set_xlim(across[0], across[-1])
     axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
     return handles
-
-
-def _constant_quantities_text(view: View, drawn: list[str]) -> str:
-    """Constant quantities of the arm with their values, as text. drawn: names of the quantities on axes."""
-    texts = []
-    for name, values in view.quantities.items():
-        if name in drawn or name in ARM_SCALES:
-            continue
-        if (
-            np.size(values) > 1 and name not in view.arm_axes
-        ):  # varies with another quantity, as a relative load
-            continue
-        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
-        texts.append(quantity_text(view, name, float(np.min(values))) + more)
-    return ", ".join(texts)

@@ -36,7 +36,7 @@ def _threshold_panels(view: View) -> list[Panel]:
     restabilization), and frequency at flutter.
     """
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
-    load, si, typed = ("force", "N", "force") if "force" in view.quantities else ("pressure", "Pa", "young")
+    load, si, typed = ("force", "N", "force") if view.load_kind == "force" else ("pressure", "Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
         lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(

@@ -1,12 +1,13 @@
 """Text of the quantities of an arm in figures: names, and values in the units typed by the user."""
 
+from collections.abc import Mapping, Sequence
 from math import isclose
 from typing import Any
 
 import numpy as np
 
 from ....arrays import Array
-from ....config.arm.axes import PARAMETER_STORED_ALONG
+from ....config.arm.axes import NON_LOAD_KEYS, PARAMETER_STORED_ALONG
 from ....config.arm.shape import MATERIAL_KEYS
 from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAG_NAMES
@@ -47,6 +48,22 @@ def given_quantities(view: View) -> list[str]:
     return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
 
 
+def constant_quantities_text(view: View, drawn: Sequence[str] = ()) -> str:
+    """Constant quantities of the arm with their values, as text; empty without an arm. drawn: names of the
+    quantities on axes."""
+    texts = []
+    for name, values in view.quantities.items():
+        if name in drawn or name in ARM_SCALES:
+            continue
+        if (
+            np.size(values) > 1 and name not in view.arm_axes
+        ):  # varies with another quantity, as a relative load
+            continue
+        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
+        texts.append(quantity_text(view, name, float(np.min(values))) + more)
+    return ", ".join(texts)
+
+
 def quantity_at_point(view: View, name: str, number: int) -> float:
     """Value of the quantity `name` at a point of the file. number: number of the point, from 1."""
     values = np.asarray(view.variables[name])
@@ -60,6 +77,22 @@ def quantity_at_point(view: View, name: str, number: int) -> float:
     return float(values.ravel()[number - 1])
 
 
+def shear_stiffness(view: View, poisson: float) -> float:
+    """The dimensionless k2 of the arm of a file with the Poisson's ratio `poisson`; only this ratio, a load
+    and the drag may vary in the file."""
+    given: dict[str, Any] = {
+        name: float(np.ravel(view.quantities[name])[0]) for name in NON_LOAD_KEYS if name in view.quantities
+    }
+    given.pop("drag", None)
+    return float(_arm_of(view, given | {"poisson": poisson}).k2)
+
+
+def _arm_of(view: View, given: Mapping[str, Any]) -> SlenderArm:
+    """The arm of a file with the quantities `given`, in SI units."""
+    arm = view.config.get("parameters", {}).get("arm") or {}
+    return SlenderArm(**given, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None})
+
+
 def replaced_parameters(view: View, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
@@ -67,8 +100,7 @@ def replaced_parameters(view: View, number: int) -> dict[str, float]:
     given: dict[str, Any] = {name: quantity_at_point(view, name, number) for name in given_quantities(view)}
     if "drag" in given:
         given["drag"] = DRAG_NAMES[int(given["drag"])]
-    arm = view.config.get("parameters", {}).get("arm") or {}
-    own = SlenderArm(**given, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None})
+    own = _arm_of(view, given)
     at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
     if own.load:
         at.pop("F", None)

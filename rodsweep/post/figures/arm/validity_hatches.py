@@ -1,5 +1,5 @@
-"""Hatches, with a note, where the model does not apply, in figures of an arm over dimensionless
-parameters.
+"""Hatches where the model does not apply and dots where it is doubtful, with notes, in figures of an arm
+over dimensionless parameters.
 """
 
 from collections.abc import Sequence
@@ -15,33 +15,51 @@ from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
-VALIDITY_HATCH: dict[str, Any] = {"fc": "none", "ec": "0.6", "hatch": "////", "lw": 0}
-"""Look of the hatches where the model does not apply."""
+HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
+"""Hatches of points by validity of the model; other points have none."""
+HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6", "lw": 0}
+"""Look of all hatches."""
+NOTES = {
+    Validity.does_not_apply: ("hatched", "the model does not apply"),
+    Validity.doubtful: ("dotted", "the model is doubtful"),
+}
+"""(word for the hatches, sentence) by validity of the model, for the title."""
 
 
 def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
-    """Hatches a figure where the model does not apply to the arm, if the axes are parameters of the file, and
-    adds a note to the title. Without such points, the figure is unchanged.
+    """Hatches a figure where the model does not apply to the arm, and dots it where the model is doubtful, if
+    the axes are parameters of the file; adds notes to the title. Without such points, the figure is
+    unchanged.
     """
     judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
-    outside = [np.asarray(values == Validity.does_not_apply) for values in judged]
+    notes = [_hatched_note(figure, views, judged, validity) for validity in HATCHES]
+    figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *notes))))
+
+
+def _hatched_note(
+    figure: Figure, views: Sequence[View], judged: Sequence[np.ndarray], validity: Validity
+) -> str:
+    """Hatches the points of a figure with a validity of the model, and returns the note for the title; empty
+    if there is no such point. judged: validities of all points of each file."""
+    outside = [np.asarray(values == validity) for values in judged]
     number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
     if not number:
-        return
+        return ""
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
     along = (
         [name for name in views[0].parameters if len(views[0].parameter_values[name]) > 1] if is_alone else []
     )
-    hatched = bool(along) and _hatch_points(figure, views[0], along, outside[0])
-    where = "" if number == count else f" at {number} of {count} points"
-    note = "hatched: the model does not apply" if hatched else f"the model does not apply{where}"
-    figure.suptitle(f"{figure.get_suptitle()}\n{note}".strip())
+    word, sentence = NOTES[validity]
+    if along and _hatch_points(figure, views[0], along, outside[0], HATCHES[validity]):
+        return f"{word}: {sentence}"
+    return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 
-def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndarray) -> bool:
+def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndarray, hatch: str) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
-    parameters `along`; returns whether any panel has these axes.
+    parameters `along`; returns whether any panel has these axes. hatch: matplotlib's pattern.
     """
+    look = HATCH_LOOK | {"hatch": hatch}
     cells = np.squeeze(outside)
     edges = [cell_edges(view.parameter_values[name]) for name in along]
     done = False
@@ -49,10 +67,10 @@ def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndar
         labels = [_axis_label(axes, which) for which in "xy"]
         for which, label in zip("xy", labels, strict=True):
             if len(along) == 1 and label == LABELS[along[0]]:
-                _hatch_intervals(axes, which, edges[0], cells)
+                _hatch_intervals(axes, which, edges[0], cells, look)
                 done = True
         if len(along) == 2 and labels == [LABELS[name] for name in along]:
-            _hatch_map_cells(axes, edges, cells)
+            _hatch_map_cells(axes, edges, cells, look)
             done = True
     return done
 
@@ -64,25 +82,25 @@ def _axis_label(axes: Axes, which: str) -> str:
     return next(filter(None, labels), "")
 
 
-def _hatch_intervals(axes: Axes, which: str, edges: Array, there: np.ndarray) -> None:
+def _hatch_intervals(axes: Axes, which: str, edges: Array, there: np.ndarray, look: dict[str, Any]) -> None:
     """Hatches intervals of the axis `which` over the whole panel. edges: edges of the intervals. there: mask
-    of the hatched intervals.
+    of the hatched intervals. look: matplotlib's keywords of the hatches.
     """
     limits = axes.get_xlim() if which == "x" else axes.get_ylim()
     hatch = axes.axvspan if which == "x" else axes.axhspan
     low, high = sorted(limits)
     for i in np.flatnonzero(there):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, zorder=0 if which == "x" else 3, **VALIDITY_HATCH)
+        hatch(left, right, zorder=0 if which == "x" else 3, **look)
     axes.set(**{f"{which}lim": limits})
 
 
-def _hatch_map_cells(axes: Axes, edges: list[Array], there: np.ndarray) -> None:
+def _hatch_map_cells(axes: Axes, edges: list[Array], there: np.ndarray, look: dict[str, Any]) -> None:
     """Hatches cells of a map. edges: edges of the cells along x and along y. there: mask of the hatched
-    cells, (nx, ny).
+    cells, (nx, ny). look: matplotlib's keywords of the hatches.
     """
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(there):
-        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **VALIDITY_HATCH)
+        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **look)
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

@@ -12,7 +12,7 @@ from ....results.file.view import View
 from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
-from .arm import errors_in_si, load_kind, range_in_unit
+from .arm import errors_in_si, range_in_unit
 from .drag_range import arms_of_drags, drag_lines
 from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
 from .validity_sentences import plane_lines, validity_sentence
@@ -67,7 +67,7 @@ def range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | flo
 
 def load_range_text(view: View, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
-    return range_text(view, loads, UNITS[load_kind(view)][0])
+    return range_text(view, loads, UNITS[view.load_kind][0])
 
 
 def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
@@ -89,7 +89,7 @@ def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]
 def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
     to stability). rods: mask of the points with a result."""
-    load = load_kind(view)
+    load = view.load_kind
     v = view.variables
     hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
     lines = [*_extreme_arm_lines(view, rods, hopf), *flutter_force_line(view, rods)]
@@ -121,7 +121,7 @@ def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines
 def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the points."""
     v = view.variables
-    load = load_kind(view)
+    load = view.load_kind
     end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
     loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
     return _flutter_lines(view, loads, end, frequency), []
@@ -205,7 +205,7 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
 
 def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies of cycles on branches, []). rods: mask of the points."""
-    loads = view.variables[f"branch_{load_kind(view)}"][rods]
+    loads = view.variables[f"branch_{view.load_kind}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
     frequency = 1 / view.variables["period_si"][rods]
@@ -216,7 +216,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
 def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
-    scale = np.broadcast_to(v[SCALE_NAME[load_kind(view)]], rods.shape)[rods]
+    scale = np.broadcast_to(v[SCALE_NAME[view.load_kind]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
     last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
     return _flutter_lines(view, forces * scale, last * scale, frequency), []

@@ -15,7 +15,8 @@ from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import View
 from ....results.layouts import LAYOUT_MAKERS
-from ....results.layouts.arm import HERTZ, si_variables_of
+from ....results.layouts.arm import si_variables_of
+from ....results.layouts.si_units import HERTZ
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_at_points
@@ -185,16 +186,11 @@ def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndar
     return np.asarray(np.abs(scale) * absolute_errors(v, own))
 
 
-def load_kind(view: View) -> str:
-    """Kind of the load of an arm: "force" or "pressure"."""
-    return "force" if "force" in view.quantities else "pressure"
-
-
 def load_range_text(view: View, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,).
     """
-    load = load_kind(view)
+    load = view.load_kind
     return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
 
 

@@ -8,7 +8,7 @@ from ....model.arm.neglected import COMPRESSION_LIMIT
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ...crushing import build_of_rods
-from .arm import load_kind, range_in_unit, region_of_arms
+from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
@@ -21,7 +21,7 @@ def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
     Of two arms with tips of different size, the larger flutter pressure may be the smaller force.
     """
     forces = (view.variables["F_hopf"] * view.variables[SCALE_NAME["force"]])[rods]
-    if load_kind(view) == "force" or not np.isfinite(forces).any():
+    if view.load_kind == "force" or not np.isfinite(forces).any():
         return []
     extremes = extreme_arms_text(view, rods, forces, "smallest")
     text = range_in_unit(view, forces, "N", 0.0, ANSWER_DIGITS)
@@ -55,7 +55,7 @@ def compression_lines(view: View, rods: np.ndarray) -> list[str]:
     forces = largest.reshape(rods.shape)[rods]
     if not forces.min() < view.variables["F"].max():
         return []
-    kind = load_kind(view)
+    kind = view.load_kind
     loads = forces * np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
     text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
     return [f"above {text} compression exceeds its limit, and the model does not apply"]

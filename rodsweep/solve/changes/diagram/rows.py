@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import Array
-from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...point_outcome import outcome_or_failure
-from ..along_path import ThresholdSearchResult, find_thresholds
+from ..along_path import ThresholdSearchResult
 from ..search_range import CRUSHING_END_SETTINGS
 from ..status import ThresholdStatus
 from ..thresholds import Thresholds, empty_thresholds, thresholds_with_status
+from .solvable_part import thresholds_of_solvable_part
 
 
 class RodClass(IntEnum):
@@ -106,7 +106,9 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
         stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin)
     if name == "k1" and not uncrushed.all():
         start = rod.F / (share * (1 - CRUSHING_END_SETTINGS.crushing_margin)) if rod.F > 0 else start
-    found = find_thresholds(Path(rod.with_values(**{name: start}), name), start, stop, request.certify)
+    found = thresholds_of_solvable_part(
+        rod, name, values[(values > start) & (values < stop)], (start, stop), request.certify
+    )
     classes, unstable = classes_and_unstable_counts(found, values)
     # Nearly crushed rods lie outside the searched range.
     classes[crushed] = RodClass.crushed
@@ -133,7 +135,7 @@ def classes_and_unstable_counts(
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
     the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
-    the open range, beyond the end of a search that ended early, and where the number is unknown."""
+    the open range, outside the searched part of the range, and where the number is unknown."""
     oscillates = np.full(len(values), found.oscillates_at_start)
     unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
     blurred = np.zeros(len(values), dtype=bool)

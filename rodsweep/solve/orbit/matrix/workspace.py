@@ -6,14 +6,14 @@ are needed.
 """
 
 from dataclasses import dataclass
-from math import inf, prod
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ...unsolvable import WorkLimitReached
+from ...unsolvable import Unsolvable, WorkLimitReached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,6 +23,9 @@ class WorkspaceSettings:
     max_kept_buffer_size: int = 2**23
     """Largest size of a buffer that is not freed between rods, in double-precision numbers: 64 MB, enough for
     most rods."""
+    max_buffer_size: int = 2**28
+    """Largest size of a buffer, in double-precision numbers: 2.1 GB. The mesh with the most time intervals,
+    unknowns and stages would need more than twice as much, more than many machines have for one rank."""
     max_matrix_share: float = 0.125
     """Largest work of a single matrix, divided by the limit of the work on a rod. Several matrices are needed
     for one cycle or special point; a matrix of a larger share would use up the limit, and the memory of the
@@ -52,6 +55,11 @@ def start_block(a: int) -> int:
 def stage_block(i: int, j: int, s: int) -> int:
     """Number of the block in row i and column j of the later stages, 2 <= i, j < s. s: stages."""
     return s + (i - 2) * (s - 2) + j - 2
+
+
+def factors_size(intervals: int, stages: int, unknowns: int) -> int:
+    """Size of the factors of a Newton matrix, in double-precision numbers."""
+    return intervals * block_count(stages) * unknowns**2
 
 
 class NewtonFactors(NamedTuple):
@@ -96,7 +104,13 @@ class NewtonWorkspace:
 
     def reserve(self, size: int) -> int:
         """Starts a new reservation of the buffer, ends earlier reservations, and returns the number of the
-        new reservation. size: required size of the buffer."""
+        new reservation. size: required size of the buffer. Raises Unsolvable beyond `max_buffer_size`."""
+        if size > WORKSPACE_SETTINGS.max_buffer_size:
+            needed, allowed = (8e-9 * each for each in (size, WORKSPACE_SETTINGS.max_buffer_size))
+            raise Unsolvable(
+                f"Newton's matrix on a mesh that is fine enough needs {needed:.1f} GB, more than the "
+                f"{allowed:.1f} GB allowed"
+            )
         if len(self._buffer) < size:
             self._buffer = np.empty(0)  # frees the old buffer before the new one is allocated
             self._buffer = np.empty(size)
@@ -126,8 +140,9 @@ class MatrixMemory:
     def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
         self.workspace = workspace
         self._shape = (intervals, block_count(stages), unknowns, unknowns)
+        self._size = factors_size(intervals, stages, unknowns)
         workspace.add_work(float(intervals * stages**2) * float(unknowns) ** 3)
-        self._reservation = workspace.reserve(prod(self._shape))
+        self._reservation = workspace.reserve(self._size)
         self.propagator = np.zeros((unknowns, unknowns))
         """P, (n, n), which stays valid when the workspace is used again."""
         self._inverse = np.zeros((unknowns + 1, unknowns + 1))
@@ -135,5 +150,5 @@ class MatrixMemory:
     @property
     def factors(self) -> NewtonFactors:
         """The factors; raises RuntimeError if another matrix was assembled in the workspace."""
-        blocks = self.workspace.buffer(self._reservation)[: prod(self._shape)].reshape(self._shape)
+        blocks = self.workspace.buffer(self._reservation)[: self._size].reshape(self._shape)
         return NewtonFactors(blocks, self.propagator, self._inverse)

@@ -1,0 +1,39 @@
+"""Keys of an arm in a config that exclude each other, or do not suit the task."""
+
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from .axes import LOAD_KEYS
+
+if TYPE_CHECKING:
+    from .section import ArmSection
+
+
+def refuse_conflicting_keys(arm: "ArmSection", forced: bool, given_parameters: Collection[str]) -> None:
+    """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
+    Poisson's ratio.
+
+    arm: section of the config. forced: whether F is a parameter of the task. given_parameters: names of the
+    parameters that replace the arm's values.
+    """
+    loads = ["parameters.F"] if "F" in given_parameters else []
+    loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(arm, name) is not None]
+    if loads[1:]:
+        raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
+    if arm.load and arm.load_kind:
+        raise ValueError(
+            f"parameters.arm.load_kind is given, but parameters.arm.{arm.load} is given too; remove one "
+            "of them"
+        )
+    if "poisson" in arm.varying_quantities and "k2" in given_parameters:
+        raise ValueError(
+            "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
+            "too; give one of them"
+        )
+    if arm.load and not forced:
+        raise ValueError(
+            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it, and set "
+            "the end of the search by F_max (for the task branch, by branch.stop)"
+        )
+    if forced and not (arm.load or "F" in given_parameters):
+        raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")

@@ -1,0 +1,78 @@
+"""Thresholds of the part of a row that can be searched, for rows that begin at a strong pull.
+
+Under a strong pull no a-priori bound may apply, or no mesh may resolve the leading eigenvalues. The search of
+a row along F then begins at a smaller pull.
+"""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from ....arrays import Array
+from ....determinant.parameter_path import Path
+from ....model.rod import Rod
+from ...unsolvable import Unsolvable
+from ..along_path import ThresholdSearchResult, find_thresholds
+
+
+class Attempt(NamedTuple):
+    """Search of a row from one value on. found: result; None if nothing could be searched. failure: why the
+    search does not go beyond the pulls; empty if it does."""
+
+    found: ThresholdSearchResult | None
+    failure: str = ""
+
+
+def thresholds_of_solvable_part(
+    rod: Rod, name: str, between: Array, ends: tuple[float, float], certify: bool
+) -> ThresholdSearchResult:
+    """Thresholds along a row between the values `ends` of the parameter `name`.
+
+    If a row along F cannot be searched from its first pull on, the search begins at the first value of the
+    row from which it can, or at F = 0. between: increasing values of the row between its ends, (n,). certify:
+    whether a proof is requested. Raises Unsolvable if the row cannot be searched from F = 0 on either.
+    """
+    start, stop = ends
+    first = _attempt(rod, name, ends, certify)
+    if not first.failure and first.found is not None:
+        return first.found
+    later = [*between[between < 0].tolist(), *([0.0] if start < 0 < stop else [])] if name == "F" else []
+    last = _attempt(rod, name, (later[-1], stop), certify) if later else first
+    if last.found is None:
+        raise Unsolvable(last.failure)
+    if not later:
+        return last.found
+    # Bisection for the first value from which the row can be searched; a search from starts[high] succeeds.
+    starts = [start, *later]
+    failure = first.failure
+    low = 0
+    high = len(later)
+    while high - low > 1:
+        middle = (low + high) // 2
+        tried = _attempt(rod, name, (starts[middle], stop), certify)
+        if tried.failure:
+            low = middle
+            failure = tried.failure
+        else:
+            high = middle
+            last = tried
+    return _with_late_start(last.found or first.found, (starts[low], starts[high]), failure)
+
+
+def _attempt(rod: Rod, name: str, ends: tuple[float, float], certify: bool) -> Attempt:
+    """Search along a row between `ends`; a row along F must be searched beyond its pulls."""
+    try:
+        found = find_thresholds(Path(rod.with_values(**{name: ends[0]}), name), *ends, certify)
+    except Unsolvable as failure:
+        return Attempt(None, str(failure))
+    ends_at_pull = name == "F" and found.ended_early and found.searched_interval[1] < min(ends[1], 0)
+    return Attempt(found, found.doubt_text if ends_at_pull else "")
+
+
+def _with_late_start(
+    found: ThresholdSearchResult | None, pulls: tuple[float, float], failure: str
+) -> ThresholdSearchResult:
+    """The result `found` with the reason for its late start. pulls: last force from which the search failed,
+    first force from which it succeeded. failure: why it failed."""
+    assert found is not None
+    late = f"the search begins at F = {pulls[1]:.12g}: from F = {pulls[0]:.12g} on, {failure}"
+    return replace(found, ended_early=True, doubt_text="; ".join(filter(None, (late, found.doubt_text))))
