@@ -26,7 +26,8 @@ from benchmarks.limit_cycle.continuation import (
 from benchmarks.limit_cycle.integrators import CVODE, CVODE_SKIPPED, installed_families
 from rodsweep.bench.limit_cycle.default_integrator import DEFAULT_INTEGRATOR, IntegrationTask
 from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
-from rodsweep.bench.limit_cycle.sweeping import ACCURACY, RODS, AccurateCycle
+from rodsweep.bench.limit_cycle.sweeping import ACCURACY, AccurateCycle
+from rodsweep.bench.limit_cycle.swept_rods import RODS
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,

@@ -20,7 +20,8 @@ from ..study import (
 )
 from .default_integrator import DEFAULT_INTEGRATOR
 from .settling import compare_settling
-from .sweeping import QUICK_RODS, RODS, measure_sweep_points, sweep_introduction, sweep_table
+from .sweeping import measure_sweep_points, sweep_introduction, sweep_table
+from .swept_rods import QUICK_RODS, RODS
 from .tracking import (
     CYCLE_FORCE,
     CYCLE_ORDER,

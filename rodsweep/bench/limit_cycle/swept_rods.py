@@ -1,0 +1,37 @@
+"""Rods whose cycles are solved in the benchmark of sweeps, and their labels."""
+
+from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.profile import Profile
+from ...model.rod import Rod
+
+TWO_SEGMENT_PROFILE = Profile(
+    (0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))
+)
+"""Profile of an arm whose outer 0.6 of the length has 0.6 of the radius."""
+RODS = (
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=0.5),
+    Rod(F=30.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=100.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0),
+    Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
+    Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
+    Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=TWO_SEGMENT_PROFILE)),
+)
+"""Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
+as far from its Hopf point as the first rod, the first rod made of rubber, and an arm of two segments."""
+QUICK_RODS = (RODS[2],)  # for a quick run
+
+
+def rod_label(point: Rod) -> str:
+    """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, number of segments, law and section if
+    not the default."""
+    further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
+    segments = len(point.build.breaks) - 1
+    further += [] if segments == 1 else [f"{segments} segments"]
+    linear = (point.build.law, point.build.section) == (DEFAULT_BUILD.law, DEFAULT_BUILD.section)
+    further += [] if linear else [point.build.law, point.build.section]
+    values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
+    return ", ".join([*(f"{value:g}" for value in values), *further])
