@@ -14,13 +14,12 @@ from typing import Any
 import numpy as np
 
 from rodsweep.bench.limit_cycle.sweeping import (
-    RODS,
     TIMED_POINT_COUNT,
     AccurateCycle,
-    rod_label,
     solve_from_neighbour,
     swept_rod,
 )
+from rodsweep.bench.limit_cycle.swept_rods import RODS, rod_label
 from rodsweep.bench.limit_cycle.tracking import (
     REFERENCE_INTERVALS,
     REFERENCE_NEWTON_TOLERANCE,

@@ -19,14 +19,13 @@ from rodsweep.bench.limit_cycle.study import (
 )
 from rodsweep.bench.limit_cycle.sweeping import (
     ACCURACY,
-    QUICK_RODS,
-    RODS,
     AccurateCycle,
     SweptRod,
     measure_sweep_points,
     solve_from_neighbour,
     sweep_table,
 )
+from rodsweep.bench.limit_cycle.swept_rods import QUICK_RODS, RODS
 from rodsweep.bench.limit_cycle.tracking import (
     FOLLOWED_PERIODS,
     PERIOD_MAP,
