@@ -125,7 +125,9 @@ def test_elements_of_unequal_orders_are_exact_for_polynomials_of_these_orders():
     for piece, nodes in zip(pieces, grid.node_ranges, strict=True):
         inner = slice(nodes.start + 1, nodes.stop - 1)
         assert np.abs(slopes[inner] - piece.deriv()(grid.node_positions[inner])).max() < 1e-10
-    assert pickle.loads(pickle.dumps(grid)) is grid
+    sent = pickle.loads(pickle.dumps(grid))
+    assert sent == grid
+    assert sent.matrices.D.tobytes() == grid.matrices.D.tobytes()
 
 
 @pytest.mark.parametrize("grid", [uniform_mesh(1, 15), uniform_mesh(3, 6), UNEQUAL_ORDERS])
