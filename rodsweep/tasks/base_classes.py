@@ -41,7 +41,7 @@ class CertifiedTask(Task):
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
         arrays of any shape.
         """
-        return self.points.rod_values | self.searched_limits() | self.coordinates()
+        return self.points.rod_values | self.searched_ranges() | self.coordinates()
 
     def arms_line(self) -> str:
         return arms_line(self.config, self.parameter_values, self.first_mesh)
@@ -49,7 +49,7 @@ class CertifiedTask(Task):
     def first_mesh(self) -> Elements | None:
         """The finest of the initial meshes of all points; None if the rod model applies to no point.
 
-        By default the mesh of a search, along the parameter in `searched_limits`, for eigenvalues on the
+        By default the mesh of a search, along the parameter in `searched_ranges`, for eigenvalues on the
         imaginary axis.
         """
         accuracy = mesh_accuracy(SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, vectors=False)
@@ -57,9 +57,9 @@ class CertifiedTask(Task):
         def mesh_of(rod: Rod) -> Elements:
             return spectrum_mesh(rod, SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, accuracy)
 
-        return largest_first_mesh(self.points, mesh_of, self.searched_limits())
+        return largest_first_mesh(self.points, mesh_of, self.searched_ranges())
 
-    def searched_limits(self) -> dict[str, np.ndarray]:
+    def searched_ranges(self) -> dict[str, np.ndarray]:
         """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
         search.
         """

@@ -47,7 +47,7 @@ class BranchTask(HopfPointTask):
             ("cycles on other branches", False, "task: limit_cycle finds stable cycles from a motion"),
         ]
 
-    def searched_limits(self) -> dict[str, np.ndarray]:
+    def searched_ranges(self) -> dict[str, np.ndarray]:
         """Smallest and largest value of the followed parameter, (2,), by its name."""
         options = self.config.branch
         return {options.along: np.array([options.start, options.stop])}

@@ -36,7 +36,7 @@ class CriticalityTask(HopfPointTask):
             ("cycles", False, "only to third order in the amplitude; task: limit_cycle computes cycles"),
         ]
 
-    def searched_limits(self) -> dict[str, np.ndarray]:
+    def searched_ranges(self) -> dict[str, np.ndarray]:
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.criticality.F_max])}
 

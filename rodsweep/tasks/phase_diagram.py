@@ -73,7 +73,7 @@ class PhaseDiagramTask(CertifiedTask):
             ("stable states, with cycles", options.cycles, cycles),
         ]
 
-    def searched_limits(self) -> dict[str, np.ndarray]:
+    def searched_ranges(self) -> dict[str, np.ndarray]:
         """First and last value of the parameter that varies along the rows, (2,), by its name."""
         return {self.config.plane_parameters[0]: self.line_values[[0, -1]]}
 

@@ -45,7 +45,7 @@ class ThresholdsTask(CertifiedTask):
             ("all other crossings", True, f"at most {most} are stored for each point"),
         ]
 
-    def searched_limits(self) -> dict[str, np.ndarray]:
+    def searched_ranges(self) -> dict[str, np.ndarray]:
         """The largest F of the search, (1,), by the name of the parameter."""
         return {"F": np.array([self.config.thresholds.F_max])}
 

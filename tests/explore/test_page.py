@@ -49,7 +49,7 @@ class ImmediateSolvers:
         except Refusal as refusal:
             done(Reply("refused", {"sentence": str(refusal)}, 0.0))
 
-    def drop(self, session, kind):
+    def cancel(self, session, kind):
         pass
 
     def cancel_session(self, session):
@@ -272,15 +272,15 @@ def test_cells_join_neighbours_of_equal_count_and_fill_the_rows():
 
 def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
     class Halfway(ImmediateSolvers):
-        dropped: list[str] = []
+        cancelled: list[str] = []
 
         def ask(self, session, question, done, progress=None):
             super().ask(session, question, done)
             if question.kind == "cycles":
                 progress(Reply("progress", {"words": "curve 1 of <2>", "completed_fraction": 0.5}, 1.0))
 
-        def drop(self, session, kind):
-            self.dropped.append(kind)
+        def cancel(self, session, kind):
+            self.cancelled.append(kind)
 
     solvers = Halfway()
     page = page_with(solvers)
@@ -293,7 +293,7 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
     assert page.contents.sign.text == "solving folds and torus points (curve 1 of &lt;2&gt;, 50%) ..."
     assert sign.is_stoppable
     page.stop()
-    assert (sign.text, sign.is_stoppable, solvers.dropped) == ("", False, ["cycles"])
+    assert (sign.text, sign.is_stoppable, solvers.cancelled) == ("", False, ["cycles"])
 
 
 def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():

@@ -207,7 +207,7 @@ def _seconds_used(solver: SolverProcess) -> float:
     return used / os.sysconf("SC_CLK_TCK")
 
 
-def test_a_long_solve_sends_its_progress_until_it_is_dropped(solver):
+def test_a_long_solve_sends_its_progress_until_it_is_cancelled(solver):
     replies: list[Reply] = []
     places: list[Reply] = []
     solver.ask(("page", "branch"), SLOW, replies.append, places.append)

@@ -148,10 +148,10 @@ def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegr
 
 
 def integration_matrix(nodes: Array, ends: Array) -> Array:
-    """Matrix (m, n) from values at `nodes`, (n,), to half the integral of the interpolating polynomial from
-    -1 to each of `ends`, (m,).
+    """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
+    element of length 1, from its start to each of `ends`, (m,).
 
-    All nodes and ends lie in [-1, 1].
+    Nodes and ends are coordinates in [-1, 1] of the element.
     """
     points, weights = gauss_legendre_rule(len(nodes))
     return np.array(

@@ -111,7 +111,7 @@ def branch_corners(own: Array, extent: Array) -> dict[int, Array]:
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
-        rises = [_relative_rise(x, column) for column in own[window].T]
+        rises = [_jump_polynomial(x, column) for column in own[window].T]
         for root in rises[1].roots():
             angles = [float(rise.deriv()(root.real)) for rise in rises]
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
@@ -132,7 +132,7 @@ def branch_corners(own: Array, extent: Array) -> dict[int, Array]:
     }
 
 
-def _relative_rise(x: Array, values: Array) -> Polynomial:
+def _jump_polynomial(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
     the slope of the steepest chord. x, values: (m,) each.
     """

@@ -145,7 +145,8 @@ MESH_VARIABLES = (
 def outcome_values(
     variables: Iterable[Variable], *outcomes: Any, prefix: str = "", names: Mapping[str, str] = NO_NAMES
 ) -> dict[str, Any]:
-    """Values of variables by name, from fields of solver outcomes: of the first outcome that has the field.
+    """Values of variables by name, from fields of solver outcomes; each from the first outcome that has the
+    field.
 
     A field has the name of its variable without `prefix`, or the name in `names`; x_real and x_imag are the
     parts of a complex field x. Raises AttributeError if no outcome has a field.
