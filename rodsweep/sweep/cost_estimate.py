@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import expected_unstable_count, most_amplified_wave
+from ..model.dispersion import expected_unstable_count, most_amplified_wave, sampled_arm
 from ..model.rod import Rod
 from .points.points import Points
 from .points.stretches import Stretches
@@ -64,6 +64,9 @@ MAX_SQUARED_WAVE_NUMBER = 1e8
 resolves it."""
 COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
+UNCOUNTED_SHARE = 0.05
+"""Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
+divided by the additional time by roots of D; three rods."""
 FINER_MESH_RATIO = 4 / 3
 """Number of unknowns of the second mesh divided by the number of unknowns of the first mesh, in a spectrum by
 Krylov-Schur."""
@@ -138,8 +141,11 @@ def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate
     accuracy: relative accuracy.
     """
     alone = spectra_cost(points, modes, accuracy, certify=False)
+    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
+    seconds = COST_OF_TWO_MESHES * (alone.seconds - hard) + UNCOUNTED_SHARE * hard
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH_RATIO * alone.unknowns[1]))
-    return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
+    return replace(alone, seconds=seconds, unknowns=unknowns)
 
 
 def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
@@ -166,11 +172,13 @@ def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> 
 
 
 def _soft_or_pulled_rod_ms(rod: Rod) -> float:
-    """Additional time of the spectrum of a uniform rod with many unstable modes, or with thin layers under a
-    strong pull, in ms; 0 for any other rod."""
-    if not rod.is_uniform_and_linear:
-        return 0.0
-    squared_wave_number = rod.F * rod.g
+    """Additional time of the spectrum of a uniform rod with many unstable modes, or of any rod with thin
+    layers under a strong pull, in ms; 0 for all other rods."""
+    if rod.is_uniform_and_linear:
+        squared_wave_number = rod.F * rod.g
+    else:  # the unstable modes of arms are counted in `spectra_cost`
+        local = sampled_arm(rod).local
+        squared_wave_number = min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
     wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
     if squared_wave_number > 0:
         modes = wave_number / math.pi

@@ -26,6 +26,8 @@ def test_cost_of_thresholds_is_finite_without_a_warning(F_max):
         ("spectrum", {"F": 100.0, "k2": 1e-2}, 2.8),
         ("spectrum", {"F": 100.0, "k2": 1e-3}, 100.0),
         ("spectrum", {"F": 2000.0, "k2": 1e4}, 0.009),
+        ("spectrum", {"F": -5e3, "k2": 1e4, "taper": 0.5}, 0.31),
+        ("spectrum", {"F": [-1e4, -1e3, 100], "k2": 1e2, "method": "krylov_schur"}, 0.16),
         ("thresholds", {"k2": [0.01, 0.1], "F_max": 45}, 3.4),
         ("thresholds", {"k2": [1, 100], "taper": 0.5, "F_max": 45}, 21.5),
         ("criticality", {"k2": [0.1, 1], "F_max": 45}, 0.65),
