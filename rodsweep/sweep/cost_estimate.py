@@ -77,6 +77,11 @@ GROWTH_MS = 20.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
 """Time of a limit cycle computed from the leading mode, in s, similar to the benchmark."""
+MIN_PULL_OF_SLOW_MOTION = 500.0
+"""Pull, in k3/L^2, from which on the motion of a rod returns to the straight state so slowly that it is
+followed to its end: at 100 it takes 0.1 s, at 1000 7 s."""
+PULLED_MOTION_SECONDS = 8.0
+"""Time of the motion of a rod under such a pull, in s: 6.5 to 9 s for pulls of 1e3 to 1e4."""
 CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
@@ -204,6 +209,16 @@ def sampled_points(points: Points) -> NDArray[np.int64]:
         np.linspace(0, points.count - 1, min(MAX_SAMPLED_POINTS, points.count)).astype(np.int64)
     )
     return indices[[points.has_rod(int(index)) for index in indices]]
+
+
+def cycles_cost(points: Points, first: int) -> CostEstimate:
+    """Estimated cost of the limit cycles of `points`, of which `first` are computed from the leading mode and
+    the others from a neighbour's cycle."""
+    indices = sampled_points(points)
+    F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
+    pulled = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
+    seconds = first * CYCLE_SECONDS + (points.count - first) * CHAINED_CYCLE_SECONDS
+    return CostEstimate(seconds + pulled * PULLED_MOTION_SECONDS)
 
 
 def marched_cycles_cost(count: int, accuracy: float) -> CostEstimate:

@@ -33,6 +33,8 @@ def test_cost_of_thresholds_is_finite_without_a_warning(F_max):
         ("criticality", {"k2": [0.1, 1], "F_max": 45}, 0.65),
         ("phase_diagram", {"F": [0, 20, 40], "k1": [1e3, 1e4], "k2": 0.1}, 0.85),
         ("phase_diagram", {"F": [-1e4, 0, 100], "k1": [3e4, 1e5], "k2": 1e4}, 0.88),
+        ("limit_cycle", {"F": -1e4, "k2": 1e4}, 6.5),
+        ("limit_cycle", {"F": -100, "k2": 1e4}, 0.1),
         ("limit_cycle", {"F": [30, 40, 60], "k2": 100, "gamma3": 1e-2, "method": "integration"}, 5.2),
     ],
 )
