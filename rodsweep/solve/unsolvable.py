@@ -6,5 +6,9 @@ class Unsolvable(Exception):
     cause."""
 
 
+class MeshLimitReached(Unsolvable):
+    """No mesh of allowed size reaches the requested accuracy."""
+
+
 class WorkLimitReached(Unsolvable):
     """The next matrix would exceed the requested limit of the work on a rod."""

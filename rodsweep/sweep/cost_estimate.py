@@ -4,7 +4,6 @@ Times are for a single core like the core described in docs/performance.md.
 """
 
 import math
-import sys
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
-from ..model.dispersion import expected_unstable_count, most_amplified_wave
+from ..model.dispersion import expected_unstable_count, most_amplified_wave, sampled_arm
 from ..model.rod import Rod
 from .points.points import Points
 from .points.stretches import Stretches
@@ -48,33 +47,26 @@ FOLLOWED_POINT_MS = 0.006
 FOLLOWED_ARM_POINT_MS = 0.15
 """Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
 random arms."""
-THRESHOLD_SEARCH_MS = 24.0
-"""Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
-four times as long."""
-SEARCH_CERTIFICATE_MS = 16.0
-"""Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
-SOFT_SEARCH_MS = 0.014
-"""Time to search one uniform rod for exchanges of the leading eigenvalue, divided by F^2/k2, in ms. F:
-largest force of the search. The number of exchanges grows with F^2/k2: 30 rods with k2 from 0.3 to 3 took 0.8
-to 3 times this time, for F up to 200."""
-ARM_SEARCH_MS = 200.0
-"""Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
-half take 40 ms and a few soft arms 2000 ms."""
-CURVES_OF_ARMS_SECONDS = 4.5
-"""Time of the stability boundaries in a phase diagram of arms that are not uniform, with about 100 boundary
-points, in s: 3.3, 4.6 and 5.3 were measured for cones, rubber and rubber segments. The time hardly depends on
-the number of rows."""
-CRITICALITY_OF_ARMS_SECONDS = 2.5
-"""Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform, in s: 0.7
-to 3.8 s were measured for about 50 points."""
-HOPF_SEARCH_MS = 25.0
-"""Time to search one rod for Hopf points, in ms: mean over 90 rods."""
-HOPF_CERTIFICATE_MS = 3.0
-"""Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods."""
-HOPF_POINTS_MS = 18.0
-"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
+MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD = 0.02
+"""Time of a spectrum of a uniform rod with N unstable modes, divided by N^2 (1 + (N/
+MODES_OF_SLOW_SPECTRUM)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable modes, up to
+0.1 for rods with ten."""
+MODES_OF_SLOW_SPECTRUM = 500.0
+"""Number of unstable modes at which the time of a spectrum begins to grow with their fourth power."""
+PULLED_MS_PER_WAVE_NUMBER = 0.4
+"""Time of a spectrum of a pulled rod, divided by the wave number of the layers at its ends, in ms L: 0.2 to
+0.8 for nine rods under pulls of 1e3 to 1e6, some of which no mesh resolves; 0.02 for a rod without
+compliances under 1e3."""
+MIN_WAVE_NUMBER_OF_LAYERS = 25.0
+"""Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
+MAX_SQUARED_WAVE_NUMBER = 1e8
+"""Squared wave number, in 1/L^2, above which a spectrum takes no longer, because no mesh of allowed size
+resolves it."""
 COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
+UNCOUNTED_SHARE = 0.05
+"""Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
+divided by the additional time by roots of D; three rods."""
 FINER_MESH_RATIO = 4 / 3
 """Number of unknowns of the second mesh divided by the number of unknowns of the first mesh, in a spectrum by
 Krylov-Schur."""
@@ -85,10 +77,20 @@ GROWTH_MS = 20.0
 """Time of the transient growth of one rod, in ms: mean over the 24 rods."""
 CYCLE_SECONDS = 0.1
 """Time of a limit cycle computed from the leading mode, in s, similar to the benchmark."""
+MIN_PULL_OF_SLOW_MOTION = 500.0
+"""Pull, in k3/L^2, from which on the motion of a rod returns to the straight state so slowly that it is
+followed to its end: at 100 it takes 0.1 s, at 1000 7 s."""
+PULLED_MOTION_SECONDS = 8.0
+"""Time of the motion of a rod under such a pull, in s: 6.5 to 9 s for pulls of 1e3 to 1e4."""
 CHAINED_CYCLE_SECONDS = 0.01
 """Time of a limit cycle computed from the cycle of a neighbouring point, in s, similar to the benchmark."""
 MARCHED_CYCLE_SECONDS = 0.25
 """Time of a limit cycle by time integration to a relative accuracy of 1e-5, in s: mean over 40 rods."""
+MARCHED_ACCURACY = 1e-5
+"""Relative accuracy at which MARCHED_CYCLE_SECONDS was measured."""
+MARCHED_ACCURACY_EXPONENT = 0.35
+"""Exponent of MARCHED_ACCURACY/accuracy in the time of a limit cycle by time integration, for smaller
+accuracies: three rods took nine times as long at 1e-8."""
 MEMORY_PER_UNKNOWN = 40_000
 """Memory of a rank per unknown of its largest mesh, in bytes."""
 BASE_MEMORY = 200_000_000
@@ -111,50 +113,6 @@ class CostEstimate:
     doubt: str = ""
     """Kind of rods whose time and memory may be many times as large as estimated; empty if the estimate is
     expected to hold within a factor of about two."""
-
-
-def searches_cost(lines: int, certify: bool, of_arms: bool) -> CostEstimate:
-    """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
-
-    certify: whether each search is certified. of_arms: whether any arm is not uniform.
-    """
-    uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
-    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
-
-
-def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) -> CostEstimate:
-    """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
-    whether each list is certified. of_arms: whether any arm is not uniform.
-    """
-    lines = searches_cost(points.count, certify, of_arms)
-    indices = sampled_points(points)
-    if of_arms or not indices.size:
-        return lines
-    values = points.values_of(indices)
-    with np.errstate(over="ignore"):
-        exchanges = np.minimum(F_max, values["k1"]) ** 2 / np.asarray(values["k2"])
-        more = points.count * 1e-3 * SOFT_SEARCH_MS * float(np.mean(exchanges))
-    return replace(lines, seconds=min(lines.seconds + more, sys.float_info.max))
-
-
-def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:
-    """Estimated cost of a phase diagram of `rows` rows, without limit cycles.
-
-    certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
-    whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
-    """
-    lines = searches_cost(rows, certify, of_arms)
-    more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
-    return replace(lines, seconds=lines.seconds + more * of_arms)
-
-
-def criticality_cost(rods: int, certify: bool, of_arms: bool) -> CostEstimate:
-    """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
-    certified. of_arms: whether any rod is not uniform.
-    """
-    search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
-    return CostEstimate(rods * 1e-3 * each)
 
 
 def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> CostEstimate:
@@ -188,8 +146,11 @@ def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate
     accuracy: relative accuracy.
     """
     alone = spectra_cost(points, modes, accuracy, certify=False)
+    rods = [points.rod(int(index)) for index in sampled_points(points)]
+    hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
+    seconds = COST_OF_TWO_MESHES * (alone.seconds - hard) + UNCOUNTED_SHARE * hard
     unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH_RATIO * alone.unknowns[1]))
-    return replace(alone, seconds=COST_OF_TWO_MESHES * alone.seconds, unknowns=unknowns)
+    return replace(alone, seconds=seconds, unknowns=unknowns)
 
 
 def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
@@ -209,9 +170,25 @@ def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> 
     )
     growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
+    each += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
     return CostEstimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
+
+
+def _soft_or_pulled_rod_ms(rod: Rod) -> float:
+    """Additional time of the spectrum of a uniform rod with many unstable modes, or of any rod with thin
+    layers under a strong pull, in ms; 0 for all other rods."""
+    if rod.is_uniform_and_linear:
+        squared_wave_number = rod.F * rod.g
+    else:  # the unstable modes of arms are counted in `spectra_cost`
+        local = sampled_arm(rod).local
+        squared_wave_number = min(rod.F, 0.0) * float(np.max(local.c3 * np.maximum(local.g, 0.0)))
+    wave_number = math.sqrt(min(abs(squared_wave_number), MAX_SQUARED_WAVE_NUMBER))
+    if squared_wave_number > 0:
+        modes = wave_number / math.pi
+        return MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD * modes**2 * (1 + (modes / MODES_OF_SLOW_SPECTRUM) ** 2)
+    return PULLED_MS_PER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
 
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
@@ -232,3 +209,19 @@ def sampled_points(points: Points) -> NDArray[np.int64]:
         np.linspace(0, points.count - 1, min(MAX_SAMPLED_POINTS, points.count)).astype(np.int64)
     )
     return indices[[points.has_rod(int(index)) for index in indices]]
+
+
+def cycles_cost(points: Points, first: int) -> CostEstimate:
+    """Estimated cost of the limit cycles of `points`, of which `first` are computed from the leading mode and
+    the others from a neighbour's cycle."""
+    indices = sampled_points(points)
+    F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
+    pulled = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
+    seconds = first * CYCLE_SECONDS + (points.count - first) * CHAINED_CYCLE_SECONDS
+    return CostEstimate(seconds + pulled * PULLED_MOTION_SECONDS)
+
+
+def marched_cycles_cost(count: int, accuracy: float) -> CostEstimate:
+    """Estimated cost of `count` limit cycles by time integration to a relative accuracy."""
+    tighter = max(1.0, MARCHED_ACCURACY / accuracy) ** MARCHED_ACCURACY_EXPONENT
+    return CostEstimate(count * MARCHED_CYCLE_SECONDS * tighter)

@@ -1,6 +1,6 @@
 """The task criticality: the normal form of every Hopf point of every rod."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -8,7 +8,8 @@ import numpy as np
 from ..config.task.criticality import CriticalityConfig
 from ..results.layouts.criticality import ABSENT_FROM_HOPF_SEARCH, NORMAL_FORM_VARIABLES
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import CostEstimate, criticality_cost
+from ..sweep.cost_estimate import CostEstimate
+from ..sweep.search_cost import criticality_cost, soft_searches_seconds
 from .base_classes import HopfPointTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver
@@ -42,7 +43,9 @@ class CriticalityTask(HopfPointTask):
 
     def cost(self) -> CostEstimate:
         of_arms = not self.config.is_uniform_and_linear
-        return criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
+        found = criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
+        more = soft_searches_seconds(self.points, (0.0, self.config.criticality.F_max), of_arms)
+        return replace(found, seconds=found.seconds + more)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up

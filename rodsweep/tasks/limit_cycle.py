@@ -23,7 +23,7 @@ from ..results.layouts.limit_cycle import (
 )
 from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
-from ..sweep.cost_estimate import CHAINED_CYCLE_SECONDS, CYCLE_SECONDS, MARCHED_CYCLE_SECONDS, CostEstimate
+from ..sweep.cost_estimate import CostEstimate, cycles_cost, marched_cycles_cost
 from ..sweep.first_mesh import largest_first_mesh
 from ..sweep.points.chains import ChainedWork, Chains
 from ..sweep.points.grid import require_in_range
@@ -164,10 +164,9 @@ class LimitCycleTask(Task):
 
     def cost(self) -> CostEstimate:
         if self.config.limit_cycle.method == "integration":
-            return CostEstimate(self.points.count * MARCHED_CYCLE_SECONDS)
+            return marched_cycles_cost(self.points.count, self.config.accuracy)
         first = self.chains.count if self.chains else self.points.count
-        rest = self.points.count - first
-        return CostEstimate(first * CYCLE_SECONDS + rest * CHAINED_CYCLE_SECONDS)
+        return cycles_cost(self.points, first)
 
     def solver(self) -> Solver:
         from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle

@@ -9,7 +9,8 @@ from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
-from ..sweep.cost_estimate import CostEstimate, diagram_cost
+from ..sweep.cost_estimate import CostEstimate
+from ..sweep.search_cost import diagram_cost, soft_searches_seconds
 from .base_classes import CertifiedTask
 from .diagram.curve_variables import cycles_record
 from .diagram.curves import DiagramCurves
@@ -92,9 +93,11 @@ class PhaseDiagramTask(CertifiedTask):
         of_arms = not self.config.is_uniform_and_linear
         asked = options.certify, of_arms, options.curves, options.criticality
         lines = diagram_cost(self.points.count, *asked)
+        reach = (float(self.line_values[0]), float(self.line_values[-1]))
+        if self.config.plane_parameters[0] == "F":
+            lines = replace(lines, seconds=lines.seconds + soft_searches_seconds(self.points, reach, of_arms))
         if not options.cycles:
             return lines
-        reach = (float(self.line_values[0]), float(self.line_values[-1]))
         branches = branches_cost(self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy)
         return replace(branches, seconds=lines.seconds + branches.seconds)
 

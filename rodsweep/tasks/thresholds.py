@@ -10,7 +10,8 @@ import numpy as np
 from ..config.task.thresholds import ThresholdsConfig
 from ..results.layouts.thresholds import CROSSING_KINDS, crossing_variables
 from ..results.layouts.variables import outcome_values, value_lists
-from ..sweep.cost_estimate import CostEstimate, thresholds_cost
+from ..sweep.cost_estimate import CostEstimate
+from ..sweep.search_cost import thresholds_cost
 from .base_classes import CertifiedTask
 from .check_rows import crushing_clause, points_clause
 from .protocol import CheckRow, Solver

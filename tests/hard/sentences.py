@@ -1004,6 +1004,16 @@ def _state_sentences(view, page, fine, row):
             found += ranges(
                 page, rf"^{words}: {on} \d+ of \d+ rows?, F = RANGE, {row} = RANGE", places, rows[there]
             )
+    hidden = rf"^straight rod and cycle both stable: only between grid points on NUMBER rows?, {row} = RANGE"
+    for line, match in read(page, hidden):
+        # Such a row has a Hopf point and a special point of cycles between two neighbouring grid points.
+        hopfs, specials = (
+            np.apply_along_axis(lambda x: np.histogram(x[np.isfinite(x)], v["F"])[0], 1, places)
+            for places in (np.where(kinds == 1, at, np.nan), np.where(kinds > 1, at, np.nan))
+        )
+        possible = ~both & ((hopfs > 0) & (specials > 0)).any(axis=1)
+        right = 0 < int(match.group(1)) <= possible.sum()
+        found.append((line, "" if right else f"{possible.sum()} rows have both changes in an interval"))
     for line, match in read(
         page,
         rf"^curve of (folds|torus points) of cycles: "

@@ -26,10 +26,17 @@ class StressFormSettings:
     Division by a smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7
     at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long.
     """
+    min_eliminated_axial_drag: float = 1e-4
+    """The axial velocity v1 is eliminated if the axial drag is at least this; with a smaller drag v1 is an
+    unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
+    the axial drag, because an error of the axial force is divided by the drag: no cycle was found from
+    motions at a drag of 1e-5, and none near a Hopf point at 1e-10."""
 
 
 STRESS_FORM_SETTINGS = StressFormSettings()
 
+AXIAL_COMPONENT = (0,)
+"""Index of the axial velocity v1 among the components of V, as a tuple."""
 OMEGA_COMPONENT = (2,)
 """Index of the angular velocity Omega among the components of V, as a tuple."""
 
@@ -45,7 +52,8 @@ class StressForm(RodOnMesh):
 
     A state x has the shape (..., unknowns). It contains n1 + F and n2 in k3/L^2, and m3 in k3/L, of a linear
     rod with the same strain, at every node except the tip, where all three stresses are 0; then, for small
-    gamma3, the angular velocity Omega in 1/tau2 at all nodes.
+    gamma1, the axial velocity v1 in L/tau2, and for small gamma3 the angular velocity Omega in 1/tau2, at all
+    nodes.
     """
 
     keeps_omega: bool = False
@@ -59,7 +67,8 @@ class StressForm(RodOnMesh):
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
-        return OMEGA_COMPONENT if self.is_omega_unknown else ()
+        axial = AXIAL_COMPONENT if self.rod.gamma1 < STRESS_FORM_SETTINGS.min_eliminated_axial_drag else ()
+        return (*axial, *(OMEGA_COMPONENT if self.is_omega_unknown else ()))
 
     def stresses(self, x: Array) -> Array:
         return self.layout.stresses(x)
@@ -96,7 +105,7 @@ class StressForm(RodOnMesh):
 
     @cached_property
     def mass_diagonal(self) -> Array:
-        """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for Omega."""
+        """Diagonal of the mass matrix, (unknowns,): W C for stresses, 0 for v1 and Omega."""
         return self.mass_diagonal_of(self.nodal_rod)
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:

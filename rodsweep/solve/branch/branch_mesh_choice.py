@@ -13,8 +13,8 @@ from ..cycle.accuracy.refinement import (
     newton_tolerance,
 )
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
-from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_of
-from ..unsolvable import Unsolvable
+from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_limit, mesh_of
+from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
@@ -143,9 +143,11 @@ def solve_on_sufficient_mesh(
             finest = True
             planned = finer_mesh(known.mesh, planned)
         if not planned.is_allowed:
-            break
+            raise mesh_limit()
         point = solved_on_mesh(point, planned, condition, accuracy)
-    raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
+    raise MeshLimitReached(
+        f"none of {BRANCH_MESH_SETTINGS.max_meshes} finer and finer meshes reaches the requested accuracy"
+    )
 
 
 def solved_on_mesh(

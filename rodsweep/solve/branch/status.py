@@ -16,9 +16,10 @@ class BranchStatus(PointStatus):
     )
     stopped = (
         1,
-        "a branch was not followed to its end, because no further cycle was found or the limit on the work "
-        "was reached; the message says where; all other branches are complete; raise the option `work` if "
-        "the limit was reached, use a smaller or larger number for the accuracy, or shorten the range",
+        "a branch was not followed to its end, because no further cycle was found, the next cycles need a "
+        "finer mesh than allowed, or the limit on the work was reached; the message says where; all other "
+        "branches are complete; raise the option `work` if the limit was reached, use a larger number for "
+        "the accuracy if no mesh reaches it, otherwise a smaller or larger number, or shorten the range",
     )
     list_full = (
         2,

@@ -27,51 +27,9 @@ from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from ..unsolvable import Unsolvable
 from .along_parameter import orbit_in_steps, predictor_from
+from .hopf_start_settings import HOPF_START_SETTINGS, normal_form_accuracy
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import coarse_mesh_along_branch
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class HopfStartSettings:
-    """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
-
-    force_scan_ratio: float = 0.07
-    """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
-    min_force: float = 1e-2
-    """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
-    because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
-    hopf_tolerance: float = 1e-6
-    """A Hopf point is accepted if |Re w| and |Im w - frequency| <= hopf_tolerance |w|; w: leading eigenvalue
-    at this point. Bisection ends at this relative width of the interval of the force."""
-    max_newton_steps: int = 15
-    """Maximum number of Newton steps to a Hopf point."""
-    converged_growth_in_errors: float = 4.0
-    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth_in_errors times the
-    error estimate of w."""
-    converged_force_step: float = 1e-15
-    """Newton's method for the Hopf point has also converged if |step of F| <= converged_force_step |F|."""
-    normal_form_accuracy: float = 1e-3
-    """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
-    larger."""
-    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
-    """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
-    form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
-    normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
-    squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
-    """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
-    y of the normal form."""
-    max_direct_force_distance: float = 1e-2
-    """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
-    form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
-    coarse_intervals: int = 8
-    """Number of time intervals of the coarse mesh, over half a period."""
-    coarse_stages: int = 3
-    """Number of collocation stages per interval of the coarse mesh."""
-    intermediate_orbit_tolerance: float = 3e-3
-    """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
-
-
-HOPF_START_SETTINGS = HopfStartSettings()
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +167,7 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
 
 def _normal_form(form: StressForm, w: complex) -> NormalForm:
     """Normal form of the rod in `form`, with the exact eigenvalue `w` instead of the mesh's eigenvalue."""
-    normal = normal_form_by_mesh_rule(form.rod, w, HOPF_START_SETTINGS.normal_form_accuracy)
+    normal = normal_form_by_mesh_rule(form.rod, w, normal_form_accuracy(form.rod))
     return replace(normal, w=w)
 
 

@@ -175,9 +175,9 @@ def cycle_from_neighbour(
     """
     if form.rod.build != neighbour.predictor.orbit.form.rod.build:
         raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
-    if form.is_omega_unknown != neighbour.predictor.orbit.form.is_omega_unknown:
+    if form.unknown_velocities != neighbour.predictor.orbit.form.unknown_velocities:
         raise Unsolvable(
-            "the rods have different unknowns: Omega is an unknown only at small rotational drag"
+            "the rods have different unknowns: velocities are unknowns only at small axial or rotational drag"
         )
     found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
     path = CyclePath(found.orbit)

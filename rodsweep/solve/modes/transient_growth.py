@@ -141,8 +141,12 @@ def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
 def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
     """Largest growth from the propagator `fine`; the error is estimated with the propagator `coarse` of a
     coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa. accuracy: requested relative
-    accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN or the mesh has an eigenvalue with Re w >= 0."""
+    accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN, if the mesh has an eigenvalue with Re w >= 0, or if
+    rounding hides all modes beside the leading modes, as under a strong pull."""
+    leading_count = 2 if fine.w[0].imag else 1
     if isnan(abscissa) or not fine.w[0].real < 0:  # a spurious eigenvalue of the mesh
+        return UNKNOWN_GROWTH
+    if min(len(fine.w), len(coarse.w)) <= leading_count:
         return UNKNOWN_GROWTH
     patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_exponent
     tolerance = max(GROWTH_SETTINGS.search_tolerance_ratio * accuracy, GROWTH_SETTINGS.min_search_tolerance)

@@ -11,6 +11,7 @@ from ...discretization.elements.elements import element_orders, halve_elements
 from ...discretization.elements.mesh import Mesh, mesh_with_edges
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
+from ..unsolvable import MeshLimitReached
 from .matrix.workspace import WORKSPACE_SETTINGS, factors_size
 from .orbit import Orbit
 from .order_ratios import order_ratios
@@ -67,6 +68,15 @@ class OrbitMeshSettings:
 
 
 ORBIT_MESH_SETTINGS = OrbitMeshSettings()
+
+
+def mesh_limit() -> MeshLimitReached:
+    """The exception for a cycle that needs a mesh of more than the allowed size; names the limits."""
+    return MeshLimitReached(
+        f"no mesh of at most {ORBIT_MESH_SETTINGS.max_unknowns} unknowns and "
+        f"{ORBIT_MESH_SETTINGS.max_intervals} time intervals, with at most "
+        f"{8e-9 * WORKSPACE_SETTINGS.max_buffer_size:.1f} GB for its matrix, reaches the requested accuracy"
+    )
 
 
 @dataclass(frozen=True, slots=True)

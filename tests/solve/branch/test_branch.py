@@ -31,6 +31,7 @@ from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.orbit import orbit_mesh
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variation_sides
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
@@ -364,3 +365,13 @@ def test_two_cycles_lie_behind_a_corner_before_the_end_of_the_range():
     (branch,) = solve_branches(rod, request, NewtonWorkspace()).curves
     sizes = [point.measures.tip_y_max for point in branch.points[-4:]]
     assert np.diff(sizes) == pytest.approx([-0.0083, 0.011, 0.026], abs=1e-3)
+
+
+def test_a_branch_that_needs_too_fine_a_mesh_ends_with_the_limits_of_meshes(monkeypatch):
+    smaller = replace(orbit_mesh.ORBIT_MESH_SETTINGS, max_unknowns=45)
+    monkeypatch.setattr(orbit_mesh, "ORBIT_MESH_SETTINGS", smaller)
+    rod = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
+    found = solve_branches(rod, BranchRequest("F", 0.0, 80.0, 1e-6, True, 99, 9))
+    assert found.status == BranchStatus.stopped
+    limits = "no mesh of at most 45 unknowns and 256 time intervals, with at most 2.1 GB for its matrix"
+    assert f"{limits}, reaches the requested accuracy at F = " in found.message

@@ -723,6 +723,16 @@ def test_growth_lies_between_one_and_what_the_abscissa_allows():
         assert result.growth.transient_time == 0 or result.growth.numerical_abscissa > 0
 
 
+def test_growth_under_a_strong_pull_is_not_known():
+    """The leading eigenvalue is -4e-38: rounding hides all others in the inverse of the operator."""
+    request = ModesRequest(4, 1e-8, 9, computes_growth=True)
+    result = solve_modes(Rod(F=-1e4, k1=1e4, k2=1e4, gamma3=1e-4), request)
+    assert result.status == SpectrumStatus.accuracy_not_reached
+    assert "no digit of the transient growth is known" in result.message
+    assert np.isnan(result.growth.transient_growth)
+    assert -1e-37 < result.spectrum.eigenvalues[0].real < 0
+
+
 def test_growth_is_computed_only_where_asked_for():
     result = solve_modes(rod_of(*FIG_2A), SHAPES)
     assert result.status == SpectrumStatus.ok

@@ -95,11 +95,12 @@ class BorderCondition:
 def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
     """Raises Unsolvable if the states of `form` have other unknowns than the states of `orbit`: then they
     cannot be compared."""
-    if form.is_omega_unknown != orbit.form.is_omega_unknown:
-        limit = STRESS_FORM_SETTINGS.min_eliminated_drag
+    if form.unknown_velocities != orbit.form.unknown_velocities:
+        settings = STRESS_FORM_SETTINGS
         raise Unsolvable(
-            f"the solver changes its unknowns at a rotational drag of {limit:.0e} gamma2 L^2, which lies "
-            "between the two cycles"
+            f"the solver changes its unknowns at a rotational drag of {settings.min_eliminated_drag:.0e} "
+            f"gamma2 L^2 and at an axial drag of {settings.min_eliminated_axial_drag:.0e} gamma2, and one of "
+            "them lies between the two cycles"
         )
 
 

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_of
+from ...orbit.orbit_mesh import mesh_limit, mesh_of
 from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
@@ -134,4 +134,4 @@ class CycleFamily:
                 errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
                 return replace(last, measured_error=errors)
             last = fine
-        raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
+        raise mesh_limit()

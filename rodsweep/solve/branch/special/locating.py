@@ -17,7 +17,7 @@ from ...orbit.least_stretch import least_stretch
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_of
+from ...orbit.orbit_mesh import mesh_limit, mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
@@ -111,7 +111,7 @@ def special_point_between(
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
-            raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
+            raise mesh_limit()
     except Unsolvable as why:
         return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
     return point

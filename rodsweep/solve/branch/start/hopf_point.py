@@ -9,7 +9,7 @@ from ....determinant.parameter_path import Path
 from ....model.rod import Rod
 from ...changes.arm.path import path_problem
 from ...changes.kinds import Threshold
-from ...cycle.hopf_start import HOPF_START_SETTINGS
+from ...cycle.hopf_start_settings import HOPF_START_SETTINGS, normal_form_accuracy
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule
 from ..special.special_point import SpecialKind, SpecialPoint
@@ -106,7 +106,7 @@ def hopf_branch_start(
     w = complex(0.0, crossing.frequency)
     at = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
-    normal = normal_form_by_mesh_rule(at, w, HOPF_START_SETTINGS.normal_form_accuracy)
+    normal = normal_form_by_mesh_rule(at, w, normal_form_accuracy(at))
     return HopfBranchStart(
         crossing=crossing,
         rod=at,

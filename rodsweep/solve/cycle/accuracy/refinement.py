@@ -22,7 +22,7 @@ from ...orbit.newton import (
     with_matrix_within_distance,
 )
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails
+from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails, mesh_limit
 from ...unsolvable import Unsolvable
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
@@ -177,7 +177,7 @@ def cycle_with_measured_errors(
             break
         found = _solve_on_mesh(finer, found, accuracy, parameter)
     if best is None:
-        raise Unsolvable("no mesh of allowed size reaches the requested accuracy")
+        raise mesh_limit()
     return best
 
 

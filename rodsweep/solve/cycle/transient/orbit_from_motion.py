@@ -77,7 +77,7 @@ def collocation_states(beam: Beam, form: StressForm, z: Array) -> Array:
     S = beam.stresses(z)
     V = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
-    if form.is_omega_unknown:
+    if form.unknown_velocities:
         for k, state in enumerate(beam.layout.state(S, S)):
             velocity = np.empty(G.shape)
             write_balance(state, velocity, G, beam.nodal_rod, beam.mesh.matrices)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ...unsolvable import Unsolvable, WorkLimitReached
+from ...unsolvable import MeshLimitReached, WorkLimitReached
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,10 +104,11 @@ class NewtonWorkspace:
 
     def reserve(self, size: int) -> int:
         """Starts a new reservation of the buffer, ends earlier reservations, and returns the number of the
-        new reservation. size: required size of the buffer. Raises Unsolvable beyond `max_buffer_size`."""
+        new reservation. size: required size of the buffer. Raises MeshLimitReached beyond
+        `max_buffer_size`."""
         if size > WORKSPACE_SETTINGS.max_buffer_size:
             needed, allowed = (8e-9 * each for each in (size, WORKSPACE_SETTINGS.max_buffer_size))
-            raise Unsolvable(
+            raise MeshLimitReached(
                 f"Newton's matrix on a mesh that is fine enough needs {needed:.1f} GB, more than the "
                 f"{allowed:.1f} GB allowed"
             )

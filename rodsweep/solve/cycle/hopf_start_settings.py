@@ -1,0 +1,62 @@
+"""Settings for the start of a branch of cycles from the normal form of a Hopf point."""
+
+from dataclasses import dataclass
+
+from ...model.rod import Rod
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HopfStartSettings:
+    """Settings for the search for the Hopf point below a force, and for Newton's method from this point."""
+
+    force_scan_ratio: float = 0.07
+    """Relative decrease between successive forces at which the search evaluates the leading growth rate."""
+    min_force: float = 1e-2
+    """Force, in k3/L^2, at which the search for a Hopf point ends: at smaller forces no rod oscillates,
+    because F nu (nu + F c2) must exceed the order of pi^2; nu: stretch, c2 = 1/k2."""
+    hopf_tolerance: float = 1e-6
+    """A Hopf point is accepted if |Re w| and |Im w - frequency| <= hopf_tolerance |w|; w: leading eigenvalue
+    at this point. Bisection ends at this relative width of the interval of the force."""
+    max_newton_steps: int = 15
+    """Maximum number of Newton steps to a Hopf point."""
+    converged_growth_in_errors: float = 4.0
+    """Newton's method for the Hopf point has converged if |Re w| <= converged_growth_in_errors times the
+    error estimate of w."""
+    converged_force_step: float = 1e-15
+    """Newton's method for the Hopf point has also converged if |step of F| <= converged_force_step |F|."""
+    normal_form_accuracy: float = 1e-3
+    """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
+    larger."""
+    max_drag_of_finer_normal_form: float = 1e-2
+    """At a smaller axial drag the mesh of the normal form is finer in proportion: mesh errors of the axial
+    force are divided by the drag in the axial velocity, and the Landau coefficient would have an error of
+    3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
+    finest_normal_form_accuracy: float = 1e-15
+    """Smallest relative accuracy for which the mesh of the normal form is chosen: rounding error."""
+    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
+    form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
+    normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
+    squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
+    """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
+    y of the normal form."""
+    max_direct_force_distance: float = 1e-2
+    """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
+    form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
+    coarse_intervals: int = 8
+    """Number of time intervals of the coarse mesh, over half a period."""
+    coarse_stages: int = 3
+    """Number of collocation stages per interval of the coarse mesh."""
+    intermediate_orbit_tolerance: float = 3e-3
+    """Relative tolerance of Newton's method for the intermediate orbits on the branch."""
+
+
+HOPF_START_SETTINGS = HopfStartSettings()
+
+
+def normal_form_accuracy(rod: Rod) -> float:
+    """Relative accuracy for which the mesh of the normal form of `rod` is chosen, for the start of a
+    branch."""
+    settings = HOPF_START_SETTINGS
+    finer = min(1.0, rod.gamma1 / settings.max_drag_of_finer_normal_form)
+    return max(settings.normal_form_accuracy * finer, settings.finest_normal_form_accuracy)

@@ -1,0 +1,92 @@
+"""Estimated cost of searches for crossings and Hopf points along a parameter, and of phase diagrams."""
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+
+from .cost_estimate import CostEstimate, sampled_points
+from .points.points import Points
+
+THRESHOLD_SEARCH_MS = 24.0
+"""Time to search one rod for crossings along one parameter, in ms: mean over 72 rods, of which a few take
+four times as long."""
+SEARCH_CERTIFICATE_MS = 16.0
+"""Time to certify that a search along one parameter missed no crossing, in ms: mean over the 72 rods."""
+SOFT_SEARCH_MS = 0.014
+"""Time to search one uniform rod for exchanges of the leading eigenvalue, divided by F^2/k2, in ms. F:
+largest force of the search. The number of exchanges grows with F^2/k2: 30 rods with k2 from 0.3 to 3 took 0.8
+to 3 times this time, for F up to 200."""
+SOFT_ARM_SEARCH_MS = 4e-4
+"""Time to search a soft arm that is not uniform for crossings along F, divided by (F^2/k2)^2, in ms. F:
+largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000 took 0.3 to 2 times this
+time."""
+ARM_SEARCH_MS = 200.0
+"""Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
+half take 40 ms and a few soft arms 2000 ms."""
+CURVES_OF_ARMS_SECONDS = 4.5
+"""Time of the stability boundaries in a phase diagram of arms that are not uniform, with about 100 boundary
+points, in s: 3.3, 4.6 and 5.3 were measured for cones, rubber and rubber segments. The time hardly depends on
+the number of rows."""
+CRITICALITY_OF_ARMS_SECONDS = 2.5
+"""Time of the normal forms along the Hopf curves of a phase diagram of arms that are not uniform, in s: 0.7
+to 3.8 s were measured for about 50 points."""
+HOPF_SEARCH_MS = 25.0
+"""Time to search one rod for Hopf points, in ms: mean over 90 rods."""
+HOPF_CERTIFICATE_MS = 3.0
+"""Time to certify that no Hopf point of a rod is missing, in ms: mean over the 90 rods."""
+HOPF_POINTS_MS = 18.0
+"""Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
+
+
+def searches_cost(lines: int, certify: bool, of_arms: bool) -> CostEstimate:
+    """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
+
+    certify: whether each search is certified. of_arms: whether any arm is not uniform.
+    """
+    uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
+    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
+
+
+def soft_searches_seconds(points: Points, reach: tuple[float, float], of_arms: bool) -> float:
+    """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
+    eigenvalue and crossings become many where F^2/k2 is large. reach: smallest and largest force. of_arms:
+    whether any arm is not uniform."""
+    indices = sampled_points(points)
+    if not indices.size:
+        return 0.0
+    values = points.values_of(indices)
+    weakest = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
+    with np.errstate(over="ignore"):
+        F = np.maximum(np.minimum(reach[1], values["k1"]), -reach[0])
+        exchanges = F**2 / (np.asarray(values["k2"]) * weakest)
+        each = SOFT_ARM_SEARCH_MS * exchanges**2 if of_arms else SOFT_SEARCH_MS * exchanges
+        return float(min(points.count * 1e-3 * float(np.mean(each)), sys.float_info.max / 4))
+
+
+def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) -> CostEstimate:
+    """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
+    whether each list is certified. of_arms: whether any arm is not uniform.
+    """
+    lines = searches_cost(points.count, certify, of_arms)
+    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, (0.0, F_max), of_arms))
+
+
+def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:
+    """Estimated cost of a phase diagram of `rows` rows, without limit cycles.
+
+    certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
+    whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
+    """
+    lines = searches_cost(rows, certify, of_arms)
+    more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
+    return replace(lines, seconds=lines.seconds + more * of_arms)
+
+
+def criticality_cost(rods: int, certify: bool, of_arms: bool) -> CostEstimate:
+    """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
+    certified. of_arms: whether any rod is not uniform.
+    """
+    search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
+    each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
+    return CostEstimate(rods * 1e-3 * each)

@@ -1,0 +1,67 @@
+"""Cycles of rods with little axial drag, down to none, whose axial velocity is an unknown of the solver."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branches import solve_branches
+from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.status import BranchStatus
+from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.limit_cycle import solve_cycle
+from rodsweep.solve.cycle.status import CycleStatus
+
+ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
+STIFF = Rod(F=50.0, k1=1e8, k2=1e4, gamma3=1e-8, gamma1=1e-6)
+LIMIT = STRESS_FORM_SETTINGS.min_eliminated_axial_drag
+FOLD = 27.4204256223
+"""Fold of the branch from the first Hopf point of ROD with the axial drag 1e-6, +- 9e-10, by the form in
+which the axial velocity is eliminated."""
+REQUEST = CycleRequest(
+    amplitude=0.01, harmonics=8, samples=0, shapes=0, nodes=0, most_periods=200, accuracy=1e-5
+)
+
+
+def period_and_y(rod, accuracy=1e-8):
+    found = solve_cycle(rod, replace(REQUEST, accuracy=accuracy))
+    assert found.status == CycleStatus.cycle, found.message
+    return np.array([found.measures.period, found.measures.tip_y_max])
+
+
+def test_the_two_forms_have_the_same_cycle():
+    with_v1, without = (replace(ROD, gamma1=LIMIT * (1 + sign * 1e-9)) for sign in (-1, 1))
+    forms = [StressForm(rod, uniform_mesh(1, 8)).unknown_velocities for rod in (with_v1, without)]
+    assert forms == [(0,), ()]
+    assert period_and_y(with_v1) == pytest.approx(period_and_y(without), rel=2e-8)
+
+
+def test_period_and_amplitude_are_linear_in_a_small_drag_down_to_none():
+    drags = [4 * LIMIT, 2 * LIMIT, LIMIT / 10, 1e-300]
+    large, small, tiny, none = (period_and_y(replace(ROD, gamma1=drag)) for drag in drags)
+    slope = (large - small) / (drags[0] - drags[1])
+    assert tiny == pytest.approx(none + slope * drags[2], rel=1e-7)
+    # The drag of 2 LIMIT is small, too: what is left is quadratic in the drag.
+    assert small == pytest.approx(none + slope * drags[1], rel=1e-6)
+
+
+def test_a_stiff_rod_with_little_axial_and_rotational_drag_beats():
+    found = solve_cycle(STIFF, REQUEST)
+    assert found.status == CycleStatus.cycle, found.message
+    # With the axial drags 1e-4, where the axial velocity is eliminated, the period is 0.007785.
+    assert found.measures.period == pytest.approx(0.0077724, rel=1e-4)
+
+
+@pytest.mark.parametrize("gamma1", [1e-6, 1e-14])
+def test_branches_start_at_hopf_points_and_have_their_folds(gamma1):
+    request = BranchRequest(
+        along="F", start=0.0, stop=28.0, accuracy=1e-5, certify=True, cycles=50, special=9
+    )
+    found = solve_branches(replace(ROD, F=0.0, gamma1=gamma1), request)
+    assert found.status == BranchStatus.ok, found.message
+    (fold,) = (p for p in found.curves[0].special_points if p.kind == SpecialKind.fold)
+    assert fold.at == pytest.approx(FOLD, abs=2e-9 if gamma1 == 1e-6 else 2e-6)
