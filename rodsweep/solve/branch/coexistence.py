@@ -5,6 +5,7 @@ multipliers of a section lie inside the unit circle, a stable cycle exists at ev
 interval. The ends of an interval are located special points, not parameter values of the row.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -53,16 +54,20 @@ class CoexistenceRow:
 
 
 def solve_coexistence(
-    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
+    rod: Rod,
+    request: RowRequest,
+    max_special_points: int,
+    workspace: NewtonWorkspace | None = None,
+    starts: Sequence[SpecialPoint] = (),
 ) -> CoexistenceRow:
     """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
     0 there is no cycle.
 
-    max_special_points: maximum number of stored special points. workspace: memory of Newton's matrices, as in
-    `solve_branches`.
+    max_special_points: maximum number of stored special points. workspace, starts: memory of Newton's
+    matrices, and special points of further branches, as in `solve_branches`.
     """
     row = solve_row(rod, request)
-    branches = row_branches(rod, request, max_special_points, workspace)
+    branches = row_branches(rod, request, max_special_points, workspace, starts)
     cycles = stable_cycles_at(request.values, branches, request.certify)
     forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
     # Without a force the elastic energy decreases until the rod is straight: there is no cycle.
@@ -81,10 +86,15 @@ def solve_coexistence(
 
 
 def row_branches(
-    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
+    rod: Rod,
+    request: RowRequest,
+    max_special_points: int,
+    workspace: NewtonWorkspace | None = None,
+    starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches of cycles that start at Hopf points of a row. max_special_points: maximum number of stored
-    special points. workspace: memory of Newton's matrices, as in `solve_branches`."""
+    """All branches of cycles that start at Hopf points of a row, and those through the special points
+    `starts`. max_special_points: maximum number of stored special points. workspace: memory of Newton's
+    matrices, as in `solve_branches`."""
     asked = BranchRequest(
         along=request.parameter_name,
         start=float(request.values[0]),
@@ -94,12 +104,14 @@ def row_branches(
         cycles=BRANCH_SETTINGS.max_row_cycles,
         special=max_special_points,
     )
-    return solve_branches(rod, asked, workspace)
+    return solve_branches(rod, asked, workspace, starts)
 
 
 def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
-    """Special points of all branches of a rod, in one tuple, branch after branch."""
-    return tuple(point for curve in branches.curves for point in curve.special_points)
+    """Special points of all branches of a rod, in one tuple, branch after branch, each only once."""
+    return tuple(
+        point for curve in branches.curves for point in curve.special_points[: -1 if curve.closed else None]
+    )
 
 
 def _undecided_values_text(name: str, values: Array) -> str:
