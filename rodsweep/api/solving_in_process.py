@@ -2,7 +2,7 @@
 
 import socket
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -12,7 +12,6 @@ from ..errors import InputError
 from ..results.file.creation import Plan
 from ..results.file.provenance import joined_failure_reasons, utc_time
 from ..results.file.view import View
-from ..results.layouts.variables import FilledVariable
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
@@ -20,8 +19,8 @@ from ..solve_progress import reporting_to, solve_part
 from ..sweep.points.stretches import SolveStretch, Stretches
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ..tasks.protocol import NamedArrays, Solver, SweepWideSolver
-from ..tasks.running.failures import FailureReasons, parameters_text
+from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
+from ..tasks.running.failures import FailureReasons, parameters_text, reasons_of_changed_points
 from ..tasks.running.in_memory import blas_pool, view_in_memory
 from ..tasks.running.job import Job, plan_in_memory
 from ..tasks.running.unforeseen_exceptions import PointExceptionNote, guarded_solver
@@ -60,17 +59,18 @@ def solve_in_process(
         shown(0)
         try:
             values, messages, reasons = _solve_points(job, solver, plan, shown)
-            sweep_wide = (
-                _sweep_wide_variables(solver.sweep_wide_solver, view_in_memory(job, plan, values), shown)
-                if solver.sweep_wide_solver
-                else ()
-            )
+            sweep_wide = SweepWideResult(())
+            if solver.sweep_wide_solver:
+                view = view_in_memory(job, plan, values)
+                sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, shown)
+                _change_points(sweep_wide, job, plan, values, messages)
+                reasons += reasons_of_changed_points(sweep_wide, solver.statuses, _point_text_of(job))
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise
         finally:
             shown.close()
-        filled = (*plan.variables_from_config(), *sweep_wide, *plan.variables_from_points(values))
+        filled = (*plan.variables_from_config(), *sweep_wide.variables, *plan.variables_from_points(values))
     return SolvedPoints(
         job=job,
         plan=plan,
@@ -80,6 +80,11 @@ def solve_in_process(
         run_attributes=_solve_attributes(started, reasons),
         messages=messages,
     )
+
+
+def _point_text_of(job: Job) -> Callable[[int], str]:
+    """Function from the flat index of a point to a text with its parameters."""
+    return lambda index: parameters_text(job.points.values(index))
 
 
 def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
@@ -106,7 +111,7 @@ def _solve_points(
     of the points first. messages: one message for each point. reasons: reasons why points failed. shown:
     progress display.
     """
-    reasons = FailureReasons(lambda index: parameters_text(job.points.values(index)))
+    reasons = FailureReasons(_point_text_of(job))
     count = job.points.count
     flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
     messages = [""] * count
@@ -149,17 +154,28 @@ def _solve_stretches(
     return unsolved
 
 
-def _sweep_wide_variables(solver: SweepWideSolver, view: View, shown: Display) -> Sequence[FilledVariable]:
-    """Values of the variables that depend on all points, for example curves. view: the solved points. shown:
-    progress display.
+def _sweep_wide_result(solver: SweepWideSolver, view: View, shown: Display) -> SweepWideResult:
+    """Variables that depend on all points, for example curves, and points that change. view: the solved
+    points. shown: progress display.
     """
-    items = solver.work_items(view)
     results = dict[int, NamedArrays]()
-    while items is not None and (chosen := items.items_to_solve(results)):
+    while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
         with solve_part(name), reporting_to(display_listener(shown, name)):
             results[chosen[0]] = solver.solve_item(items, chosen[0])
-    return solver.variables(view, items, results)
+    return solver.result(view, results)
+
+
+def _change_points(
+    result: SweepWideResult, job: Job, plan: Plan, values: dict[str, np.ndarray], messages: list[str]
+) -> None:
+    """Replaces variables and messages of the points that change. values: variables by name, with the
+    dimensions of the points first. messages: message of each point."""
+    for index, changed in result.changed_points.items():
+        at = np.unravel_index(index, job.points.shape)
+        for variable in plan.layout.variables:
+            values[variable.name][at] = changed[variable.name]
+        messages[index] = result.messages[index]
 
 
 def _solve_outcomes(

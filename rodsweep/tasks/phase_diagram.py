@@ -1,5 +1,6 @@
 """The task phase_diagram: stability of the straight rod, and stable cycles, over two parameters."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -18,7 +19,10 @@ from .protocol import CheckRow, Solver
 from .thresholds import crossing_values
 
 if TYPE_CHECKING:
+    from ..solve.branch.coexistence import CoexistenceRow
+    from ..solve.branch.special.special_point import SpecialPoint
     from ..solve.changes.diagram.rows import DiagramRow, RowRequest
+    from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,28 +119,41 @@ class PhaseDiagramTask(CertifiedTask):
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod_of_row(index), request),
-            record=lambda index, result: row_values(result, request.parameter_name, request.max_thresholds),
+            record=lambda index, result: self.row_record(result),
             sweep_wide_solver=curves if options.curves else None,
         )
         if not options.cycles:
             return of_rows
         from ..solve.branch.branches import warm_up as warm_up_branches
-        from ..solve.branch.coexistence import CoexistenceRow, solve_coexistence
         from ..solve.branch.status import CoexistenceStatus
-
-        def solve(index: int) -> CoexistenceRow:
-            row = solve_coexistence(self.rod_of_row(index), request, MAX_CYCLE_SPECIAL_POINTS, workspace)
-            return curves.cache_row(index, row)
 
         return replace(
             of_rows,
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up_branches,
-            solve=solve,
-            record=lambda index, result: (
-                of_rows.record(index, result.straight_rod_row) | cycles_record(result, request.parameter_name)
-            ),
+            solve=lambda index: curves.cache_row(index, self.coexistence_row(index, workspace)),
+            record=lambda index, result: self.coexistence_record(result),
         )
+
+    def coexistence_row(
+        self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
+    ) -> "CoexistenceRow":
+        """Solves a row with cycles. index: flat index of the row. workspace, starts: as in
+        `solve_coexistence`."""
+        from ..solve.branch.coexistence import solve_coexistence
+
+        rod = self.rod_of_row(index)
+        return solve_coexistence(rod, self.row_request(), MAX_CYCLE_SPECIAL_POINTS, workspace, starts)
+
+    def row_record(self, result: "DiagramRow") -> dict[str, Any]:
+        """Variables of the file for a row without cycles."""
+        request = self.row_request()
+        return row_values(result, request.parameter_name, request.max_thresholds)
+
+    def coexistence_record(self, result: "CoexistenceRow") -> dict[str, Any]:
+        """Variables of the file for a row with cycles."""
+        cycles = cycles_record(result, self.row_request().parameter_name)
+        return self.row_record(result.straight_rod_row) | cycles
 
     def rod_of_row(self, index: int) -> Rod:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies

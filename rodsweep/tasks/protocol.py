@@ -2,8 +2,8 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Protocol
+from dataclasses import dataclass, field, replace
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -31,40 +31,56 @@ class WorkItems(ItemChooser, Protocol):
     """Work items, numbered from 0, for variables that depend on all points: an `ItemChooser` that also
     describes its items. The object is sent to all ranks."""
 
+    outcome: ClassVar[str]
+    """Noun for one item and what was done with it, as in "piece of curves followed"."""
+    progress_noun: ClassVar[str]
+    """Plural noun for items in the progress display."""
+
     def item_label(self, item: int) -> str:
         """Text describing an item, for the progress display and the log."""
+
+
+@dataclass(frozen=True, slots=True)
+class SweepWideResult:
+    """Variables that depend on all points, for the result file. changed_points: new values of all variables,
+    by name, of the points that have changed since they were solved, by flat index. messages: message for the
+    user on each of these points, by flat index."""
+
+    variables: Sequence[FilledVariable]
+    changed_points: Mapping[int, NamedArrays] = field(default_factory=dict)
+    messages: Mapping[int, str] = field(default_factory=dict)
 
 
 class SweepWideSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
-    def work_items(self, view: View) -> WorkItems | None:
-        """The work items to be divided among the ranks; None if there are no work items. view: the file with
-        all points.
+    def work_items(self, view: View, results: Mapping[int, NamedArrays]) -> WorkItems | None:
+        """The work items to be divided among the ranks now, with numbers that no other work items have; None
+        if there are no work items at all. Only the last work items may be unsolved, or solved.
+
+        view: the file with all points. results: results of work items so far, by number.
         """
 
-    def initial_data(self, items: Any, chosen: Sequence[int]) -> dict[int, Any]:
-        """Initial data that this rank has cached for the work items numbered `chosen` of `items`, to be sent
-        to all ranks.
+    def initial_data(self, items: Any, chosen: Sequence[int]) -> dict[Any, Any]:
+        """Initial data, by key, that this rank has cached for the work items numbered `chosen` of `items`, to
+        be sent to all ranks.
         """
 
-    def add_initial_data(self, starts: Mapping[int, Any]) -> None:
-        """Caches initial data received from a different rank. starts: initial data by number, as from
+    def add_initial_data(self, starts: Mapping[Any, Any]) -> None:
+        """Caches initial data received from a different rank. starts: initial data by key, as from
         `initial_data`.
         """
 
     def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""
 
-    def empty_result(self) -> NamedArrays:
-        """Empty result, for a work item whose solver raised an unforeseen exception."""
+    def empty_result(self, items: Any) -> NamedArrays:
+        """Empty result, for a work item of `items` whose solver raised an unforeseen exception."""
 
-    def variables(
-        self, view: View, items: Any, results: Mapping[int, NamedArrays]
-    ) -> Sequence[FilledVariable]:
-        """The variables that depend on all points, for the result file; called on the first rank only.
+    def result(self, view: View, results: Mapping[int, NamedArrays]) -> SweepWideResult:
+        """The variables that depend on all points, and the points that change; called on the first rank only.
 
-        view: the file with all points. items: the work items. results: results of all work items, by number.
+        view: the file with all points. results: results of all work items, by number.
         """
 
 

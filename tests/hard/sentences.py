@@ -947,11 +947,18 @@ def _bautin(view, row, fixed, value, F):
 def _states_of(view, row, fixed, table):
     """What is stable at the points of a diagram, and the special points of its rows, from branches of rods.
 
-    table: what the straight rod does, (rows, values).
+    table: what the straight rod does, (rows, values). Rows with branches that no Hopf point leads to are as
+    in the file: the branches of a rod lack them.
     """
     F, gamma1 = view.variables["F"], float(view.attributes.get("gamma1", 1.0))
     states, kinds, at = [], [], []
+    own = [view.by_point(name) for name in ("stable_states", "cycle_special_kind", "cycle_special_F")]
     for value, motions in zip(view.parameter_values[row], table, strict=True):
+        if value in _detached(view, row):
+            number = list(view.parameter_values[row]).index(value)
+            for found, values in zip((states, kinds, at), own, strict=True):
+                found.append(values[number])
+            continue
         rod = {**fixed, row: float(value), "gamma1": gamma1, "stop": float(F[-1])}
         branch = solved("branch", rod | {"accuracy": FINE["branch"]})
         ranges_ = [piece for curve in RodBranches(branch).curves for piece in curve.stable_ranges]
@@ -966,6 +973,12 @@ def _states_of(view, row, fixed, table):
         "cycle_special_kind": np.array(kinds),
         "cycle_special_F": np.array(at),
     }
+
+
+def _detached(view, row):
+    """Values of the rows with branches that no Hopf point leads to."""
+    numbers = view.variables.get("cycle_detached_row", [])
+    return [float(view.point_columns[row][number - 1]) for number in numbers]
 
 
 STABLE_STATES = (
@@ -1024,6 +1037,11 @@ def _state_sentences(view, page, fine, row):
         places = ((float(match[2 + k]), match[3 + k], match[4 + k]) for k in (0, 3))
         why = (_special_on_branch(view, row, match[1], *place) for place in places)
         found.append((line, "; ".join(filter(None, why))))
+    detached = _detached(view, row)
+    pattern = "^branches that no Hopf point of their row leads to: on NUMBER of NUMBER row"
+    found += counts(page, pattern, len(detached), len(rows))
+    if detached:
+        found += ranges(page, rf"^branches that .*: on \d+ of \d+ rows?, {row} = RANGE", detached)
     for line, match in read(
         page, rf"^this curve crosses the row {row} = NUMBER between F = NUMBER and NUMBER, but no branch"
     ):
@@ -1054,6 +1072,8 @@ def _special_on_row(view, row, value, low, high):
 
 def _special_on_branch(view, row, kind, value, F, error):
     """Why a point of a curve of special points of cycles is none on the branch of its rod."""
+    if any(abs(value / one - 1) < 1e-8 for one in _detached(view, row)):
+        return ""  # the branches of a rod lack this one
     rod = {name: float(view.parameter_values[name][0]) for name in view.parameters} | {row: value}
     rod["gamma1"] = float(view.attributes.get("gamma1", 1.0))
     top = min(1.05 * float(F), 0.9998 * rod["k1"])

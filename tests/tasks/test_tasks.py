@@ -16,7 +16,7 @@ import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
-from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.creation import Additions, Plan
 from rodsweep.results.file.store import Store
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -272,7 +272,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
         (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
         (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
     ]
-    store.finish({"finished": "now"}, curve)
+    store.finish({"finished": "now"}, Additions(curve))
     store.close()
     with h5py.File(path) as file:
         assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)
@@ -380,7 +380,7 @@ def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
         by_point=rows.__getitem__,
     )
     _, line = cycle_curve_lines(view, "F", "k1")
-    assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch from")
+    assert line.startswith("this curve crosses the row k1 = 175 between F = 60 and 70, but no branch of")
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):

@@ -71,9 +71,9 @@ class RunEnd:
     """Time spent on the variables that need all points, in s."""
     interrupted_points: int
     """Number of points interrupted by a stop."""
-    followed_pieces: int | None
-    """Number of half curves (from a starting point, in one direction) followed in this run; None if no curves
-    were to be computed."""
+    solved_items: dict[str, int] | None
+    """Numbers of work items for the curves solved in this run, by phrase, as in `WorkItems.outcome`; None if
+    no curves were to be computed."""
     stored_pieces: int | None
     """Number of half curves stored for the next run if the curves are incomplete, else None."""
 
@@ -86,11 +86,13 @@ class RunEnd:
             each = self.seconds * self.ranks / max(points, 1)
             pace = f" ({duration(each)} per point on one rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
-        if self.followed_pieces is not None:
+        if self.solved_items is not None:
             word = "curves in" if self.stored_pieces is None else "curves stopped after"
-            pieces = f"{counted(self.followed_pieces, 'piece')} of curves of folds and torus points"
-            done = f"; {pieces} followed" if self.followed_pieces else ""
-            sentences.append(f"{word} {self.curve_seconds:.2f} s on {ranks}{done}")
+            parts = [f"{word} {self.curve_seconds:.2f} s on {ranks}"]
+            for outcome, number in self.solved_items.items():
+                noun, _, what = outcome.partition(" ")
+                parts += [f"{counted(number, noun)} {what}"] if number else []
+            sentences.append("; ".join(parts))
         return sentences
 
     def stored_points_clause(self) -> str:

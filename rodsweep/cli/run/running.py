@@ -10,14 +10,15 @@ import click
 from ...config import load_config
 from ...errors import STOPPED_STATUS
 from ...results.file import provenance
+from ...results.file.creation import Additions
 from ...results.file.store import Store
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_solvers, require_working_directory
-from ...sweep.loop import RankStatistics
 from ...sweep.points.ranges import IndexRange, index_count
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
-from ...tasks.running.failures import parameters_text
+from ...tasks.protocol import SweepWideResult
+from ...tasks.running.failures import parameters_text, reasons_of_changed_points
 from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
@@ -107,13 +108,13 @@ class _RankRun:
                 self.team.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
             )
         pending = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
-        on_curves: list[RankStatistics] = []
-        if self.sweep_wide and pending.work_items is not None:
+        solved: dict[str, int] = {}
+        if self.sweep_wide:
             title = None if self.request.quiet else self.job.title
-            on_curves = self.team.gather(self.sweep_wide.solve(pending.work_items, self.prepare, title)) or []
+            pending, solved = self.sweep_wide.solve_all(pending, self.prepare, title)
         exceptions = sum(self.team.gather(self.log.count) or [])
         return self.team.call_on_first_rank(
-            lambda: self._finish(count, contributions, pending, on_curves, exceptions)
+            lambda: self._finish(count, contributions, pending, solved, exceptions)
         )
 
     def _lacks_sweep_wide_variables(self, missing: int) -> bool:
@@ -139,7 +140,7 @@ class _RankRun:
             return PendingSweepWideVariables(True)
         if not count:
             self._record_blas_kernels()
-        return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output)))
+        return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output), {}))
 
     def _print_message(self, text: str, amiss: bool = False) -> None:
         """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
@@ -179,11 +180,13 @@ class _RankRun:
         missing."""
         if not pending.is_missing:
             return False
-        variables = self.sweep_wide.variables(pending.work_items) if self.sweep_wide else ()
-        if variables is None:
+        result = self.sweep_wide.result(pending.work_items) if self.sweep_wide else SweepWideResult(())
+        if result is None:
             self.store.add_journals({"stopped": self.stop.name})
             return True
-        self.store.finish({"finished": provenance.utc_time(), "stopped": self.stop.name}, variables)
+        attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
+        reasons = reasons_of_changed_points(result, self.solver.statuses, self._point_text)
+        self.store.finish(attributes, Additions(result.variables, result.changed_points, reasons))
         if self.sweep_wide:
             self.sweep_wide.item_results.remove_all()
         return False
@@ -209,12 +212,12 @@ class _RankRun:
         count: int,
         contributions: list[RunContribution],
         pending: PendingSweepWideVariables,
-        on_curves: list[RankStatistics],
+        solved: dict[str, int],
         exceptions: int,
     ) -> int:
         """Completes the result file, prints how the run ended, and returns the exit status. count: number of
-        points to be solved. contributions: of each rank. on_curves: statistics of each rank on half curves.
-        pending: variables that depend on all points. exceptions: unforeseen exceptions on all ranks."""
+        points to be solved. contributions: work of each rank on points. pending, solved: as from `solve_all`.
+        exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
         wide = self.sweep_wide
         missing = self.store.missing()
@@ -231,7 +234,7 @@ class _RankRun:
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
-            followed_pieces=sum(s.solved_points for s in on_curves) if pending.is_missing and wide else None,
+            solved_items=solved if pending.is_missing and wide else None,
             stored_pieces=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:

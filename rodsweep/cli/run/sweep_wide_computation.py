@@ -1,12 +1,12 @@
 """Variables that depend on all points, for example curves of a phase diagram, computed by all ranks."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from ...results.file.view import read_view
-from ...results.layouts.variables import FilledVariable
 from ...results.run.checkpoints import ItemResults
 from ...results.run.journal import journal_directory
 from ...solve.backend.solver_pools import destroy_pooled_solvers
@@ -16,11 +16,8 @@ from ...sweep.loop import Indices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ...sweep.team import Team
-from ...tasks.protocol import NamedArrays, SweepWideSolver, WorkItems
+from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
-
-HALF_CURVE_NOUN = "pieces of curves"
-"""Name of the work items in the progress display: a curve is followed in two directions from its start."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +57,27 @@ class SweepWideComputation:
         self.results: dict[int, NamedArrays] = {}
         """Results of all finished work items, by number, on the first rank only."""
 
+    def solve_all(
+        self, pending: PendingSweepWideVariables, prepare: Callable[[], object], title: str | None
+    ) -> tuple[PendingSweepWideVariables, dict[str, int]]:
+        """Solves the work items of `pending`, and all that follow from their results, on all ranks, until
+        none is left or the run is stopped. Returns (`pending` with the last work items, number of items that
+        all ranks solved in this run by `WorkItems.outcome`, on the first rank). Other arguments as in
+        `solve`."""
+        solved: dict[str, int] = {}
+        items = pending.work_items
+        while items is not None:
+            pending = PendingSweepWideVariables(True, items)
+            shares = self.team.gather(self.solve(items, prepare, title)) or []
+            count = sum(share.solved_points for share in shares)
+            solved[items.outcome] = solved.get(items.outcome, 0) + count
+            items = self.team.call_on_first_rank(partial(self._next_items, items))
+        return pending, solved
+
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
-        """Solves all missing work items on all ranks; returns the statistics of this rank. items: as in
-        `PendingSweepWideVariables`. prepare: function called before the first solve. title: text of the
-        progress display; None for no display."""
+        """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
+        rank. prepare: function called before the first solve. title:
+        text of the progress display; None for no display."""
         found: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
@@ -81,7 +95,7 @@ class SweepWideComputation:
             todo = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
         shown = (
-            ProgressReporter(None, f"{title}, curves", HALF_CURVE_NOUN)
+            ProgressReporter(None, f"{title}, curves", items.progress_noun)
             if self.team.is_first and title
             else SilentProgress()
         )
@@ -113,14 +127,22 @@ class SweepWideComputation:
         except Exception as error:
             destroy_pooled_solvers()
             self.note(items.item_label(item), error)
-            yield item, self.solver.empty_result()
+            yield item, self.solver.empty_result(items)
 
-    def variables(self, items: WorkItems | None) -> Sequence[FilledVariable] | None:
-        """The variables that depend on all points; called on the first rank. None if the run was stopped
-        before these variables were complete. items: as in `PendingSweepWideVariables`.
+    def _next_items(self, items: WorkItems) -> WorkItems | None:
+        """The work items after `items`; None if `items` are not complete, or if none are left. Called on the
+        first rank."""
+        if items.items_to_solve(self.results):
+            return None
+        following = self.solver.work_items(read_view(self.output), self.results)
+        return following if following is not None and following.items_to_solve(self.results) else None
+
+    def result(self, items: WorkItems | None) -> SweepWideResult | None:
+        """The variables that depend on all points, and the points that change; called on the first rank. None
+        if the run was stopped before these variables were complete. items: the last work items.
         """
         if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):
-            return self.solver.variables(read_view(self.output), items, self.results)
+            return self.solver.result(read_view(self.output), self.results)
         return None

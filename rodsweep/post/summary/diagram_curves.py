@@ -1,15 +1,13 @@
 """Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points."""
 
-from itertools import pairwise
-
 import numpy as np
-from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
+from .detached_branches import detached_branch_lines, rows_without_cycles_of_curve
 from .number_texts import error_text, number_with_error, span_text
 
 CYCLE_CHANGE_WORDS = {
@@ -39,9 +37,6 @@ BAUTIN_END_WORDS = {
     "closed": "its first point",
 }
 """Phrase for the reason for which a curve of generalised Hopf points ends."""
-MAX_ROW_DISTANCE = 0.01
-"""Largest distance of a special point of a row from the two points of a curve between which the curve meets
-the row, divided by the length of the row."""
 END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
@@ -80,39 +75,8 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
         error = error_text(float(v["cycle_curve_error"][on].max()))
         points = counted(len(on), "point")
         lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
-        lines += _rows_without_cycles_of_curve(view, line, row, on)
-    return lines
-
-
-def _rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np.intp]) -> list[str]:
-    """Lines about completed rows that a curve of folds or torus points crosses although no branch from a Hopf
-    point of the row has this special point. line, row: as in `curve_lines`. on: indices of the points of the
-    curve.
-    """
-    v = view.variables
-    if len(on) < 2:
-        return []
-    kind = int(v["cycle_curve_kind"][on[0]])
-    kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line}"))
-    near = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
-    along = zip(v[f"cycle_curve_{row}"][on], v[f"cycle_curve_{line}"][on], strict=True)
-    lines = []
-    for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(along)):
-        for index, value in enumerate(view.point_columns[row]):
-            if view.status_names[index] != "ok":
-                continue
-            # A row through a point of the curve belongs to the piece before this point.
-            if (value == x and number > 0) or (x - value) * (next_x - value) > 0:
-                continue
-            low, high = sorted((y, next_y))
-            own = specials[index][kinds[index] == kind]
-            if not ((own >= low - near) & (own <= high + near)).any():
-                lines.append(
-                    f"this curve crosses the row {row} = {value:g} between {line} = {low:.6g} and "
-                    f"{high:.6g}, but no branch from a Hopf point of this row reaches the crossing: the "
-                    "stable states of the row do not include the cycles there"
-                )
-    return list(dict.fromkeys(lines))
+        lines += rows_without_cycles_of_curve(view, line, row, on)
+    return lines + detached_branch_lines(view, row)
 
 
 def curve_count_lines(view: View, line: str) -> list[str]:

@@ -3,7 +3,7 @@ addition of variables."""
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -65,6 +65,20 @@ class Plan:
     def fingerprint(self) -> str:
         """Fingerprint of config and points; a run can continue a file with an equal fingerprint."""
         return fingerprint_of(self.config, self.points.identifying_arrays)
+
+
+@dataclass(frozen=True, slots=True)
+class Additions:
+    """Contents that complete a file with all points. variables: variables that do not belong to single
+    points. changed_points: new values of the variables of points, by name, by flat index. reasons: lines that
+    say why some of these points failed."""
+
+    variables: Sequence[FilledVariable] = ()
+    changed_points: Mapping[int, Mapping[str, NDArray[Any]]] = field(default_factory=dict)
+    reasons: Sequence[str] = ()
+
+
+NO_ADDITIONS = Additions()
 
 
 def create_file(path: Path, plan: Plan) -> None:

@@ -82,10 +82,13 @@ def _block_points(layout: Layout) -> int:
 def _selected_records(
     path: Path, layout: Layout, blocks: Iterable[tuple[int, np.ndarray]]
 ) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of selected points; blocks: (flat index of the first point, mask of points)."""
+    """Yields records, (n,), of selected points that were not changed after all points were solved; blocks:
+    (flat index of the first point, mask of points)."""
+    changed = _changed_points(path, layout)
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
-        for first, selected in blocks:
+        for first, chosen in blocks:
+            selected = chosen & ~np.isin(first + np.arange(len(chosen)), changed)
             if selected.any():
                 records = np.empty(selected.sum(), layout.record_dtype)
                 records["index"] = first + np.flatnonzero(selected)
@@ -108,6 +111,16 @@ def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
             for i, place in enumerate(index):
                 stream.seek(offset + int(place) * kind.itemsize)
                 records[name][i] = np.fromfile(stream, kind.base, prod(kind.shape)).reshape(kind.shape)
+    return records
+
+
+def records_of_points(points: Mapping[int, Mapping[str, Any]], layout: Layout) -> np.ndarray:
+    """Records, (n,), of points from the values of their variables by name, by flat index."""
+    records = np.empty(len(points), layout.record_dtype)
+    for record, (index, values) in zip(records, points.items(), strict=True):
+        record["index"] = index
+        for variable in layout.variables:
+            record[variable.name] = values[variable.name]
     return records
 
 
@@ -165,6 +178,14 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
                     stream.seek(offset + first * values[0].nbytes)
                     stream.write(values[a:b].data)
     return any_written
+
+
+def _changed_points(path: Path, layout: Layout) -> np.ndarray:
+    """Flat indices of the points that were changed after all points were solved, (n,)."""
+    with h5py.File(path, "r") as file:
+        if layout.changed_points and layout.changed_points in file:
+            return np.asarray(file[layout.changed_points][...]) - 1
+    return np.empty(0, int)
 
 
 def _variable_offsets(path: Path, layout: Layout) -> dict[str, int]:

@@ -8,7 +8,7 @@ by its fingerprint, even without a file; other journals are moved away, never de
 
 import json
 import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
 from typing import Any
@@ -18,7 +18,7 @@ import numpy as np
 
 from ...errors import EnvironmentIncomplete, InputError
 from ...sweep.points.ranges import IndexRange, index_count
-from ..layouts.variables import MISSING_STATUS, FilledVariable, Layout
+from ..layouts.variables import MISSING_STATUS, Layout
 from ..run.checkpoints import CHECKPOINT_GLOB
 from ..run.journal import (
     JOURNAL_GLOB,
@@ -32,9 +32,9 @@ from ..run.journal import (
     read_reasons,
 )
 from .combination.extension import extension_of
-from .creation import Plan, add_variables, create_file
+from .creation import NO_ADDITIONS, Additions, Plan, add_variables, create_file
 from .current_state import SNAPSHOT_ATTRIBUTE
-from .points import iterate_statuses, missing_ranges, points_of_file, write_records
+from .points import iterate_statuses, missing_ranges, points_of_file, records_of_points, write_records
 from .provenance import merged_history, with_failure_reasons
 from .refusals import header_of_existing_file, require_room, require_same_config
 from .replacement import FileReplacement, disk_refusals, file_identity
@@ -152,19 +152,13 @@ class Store:
         with damage_refusals(self.path):
             return missing_ranges(self.path)
 
-    def finish(self, attributes: dict[str, Any], variables: Sequence[FilledVariable] = ()) -> None:
-        """Stores journalled points, attributes, `variables`, and variables computed from all points."""
-        self.add_journals(attributes, lambda file: (*variables, *self.plan.variables_from_points(file)))
+    def finish(self, attributes: dict[str, Any], additions: Additions = NO_ADDITIONS) -> None:
+        """Stores journalled points, attributes, `additions`, and variables computed from all points."""
+        self.add_journals(attributes, additions)
 
-    def add_journals(
-        self,
-        attributes: dict[str, Any],
-        additions: Callable[[h5py.File], Sequence[FilledVariable]] | None = None,
-    ) -> None:
-        """Adds journalled points, attributes and variables by one replacement; deletes the journals.
-
-        additions: function from the open file to complete variables.
-        """
+    def add_journals(self, attributes: dict[str, Any], additions: Additions | None = None) -> None:
+        """Adds journalled points and attributes by one replacement; deletes the journals. additions: as for
+        `finish`; None if points are missing."""
         plan = self.plan
         self.restore_missing_file()
         blocks = read_journals(self.journal_directory, plan.layout, plan.fingerprint, plan.points.count)
@@ -201,7 +195,7 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Callable[[h5py.File], Sequence[FilledVariable]] | None = None,
+        additions: Additions | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
         the journals.
@@ -212,13 +206,18 @@ class Store:
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first = next(blocks, None)
             reasons = read_reasons(self.journal_directory, layout, fingerprint)
+            reasons += additions.reasons if additions else ()
             if first is not None or attributes:
                 with self.replacement.replacing(self.path) as copy:
                     if first is not None:
                         write_records(copy, chain([first], blocks), layout)
+                    if additions:
+                        write_records(copy, [records_of_points(additions.changed_points, layout)], layout)
                     if attributes or reasons:
                         with h5py.File(copy, "r+") as file:
-                            add_variables(file, additions(file) if additions else ())
+                            if additions:
+                                own = self.plan.variables_from_points(file)
+                                add_variables(file, (*additions.variables, *own))
                             file.attrs.update(attributes | with_failure_reasons(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)

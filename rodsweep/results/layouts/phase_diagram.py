@@ -6,6 +6,7 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
+from .detached_branches import DETACHED_BRANCH_VARIABLES, DETACHED_ROW
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
@@ -45,8 +46,7 @@ STABLE_STATES = ((-1, "missing"), *enumerate(STABLE_STATE_NAMES))
 CYCLE_SPECIAL_DIMENSION = "cycle_special"
 """Name of the dimension of the special points on the branches of cycles of a row."""
 MAX_CYCLE_SPECIAL_POINTS = 64
-"""Maximum number of special points stored for a row; the variable cycle_special_count counts all special
-points."""
+"""Maximum number of special points stored for a row; the variable cycle_special_count counts all."""
 CYCLE_CURVE_ENDS = {
     "none": "not an end of the curve",
     "edge": "the curve leaves the diagram",
@@ -79,11 +79,10 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together: all variables of curves and of
     criticality, requested by the config or not, and variables of Bautin curves along the parameters in
-    `phase_diagram.bautin_along` only. config: the resolved config. is_grid: not used.
-    """
+    `phase_diagram.bautin_along` only. config: the resolved config. is_grid: not used."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
-    variables |= cycle_curve_variables(line, row)
+    variables |= cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES
     for third in config["phase_diagram"].get("bautin_along") or ():
         variables |= bautin_curve_variables(line, row, third)
     return tuple(variables.values())
@@ -104,7 +103,8 @@ def layout(config: dict[str, Any]) -> Layout:
         variables += cycle_variables(line)
         extents[CYCLE_SPECIAL_DIMENSION] = MAX_CYCLE_SPECIAL_POINTS
     variables = with_certified_meaning(variables, config, "crossings")
-    return Layout(variables, extents, parameter_names_except(line), needs_all_points=options["curves"])
+    changed = DETACHED_ROW if options["cycles"] else ""
+    return Layout(variables, extents, parameter_names_except(line), (), options["curves"], changed)
 
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:

@@ -34,6 +34,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "special": ("1", "number of the special point on all branches of a rod, branch by branch"),
     "cycle_special": ("1", "number of the special point on all branches of cycles of a row"),
     "cycle_curve_point": ("1", "number of the point on all curves of folds and torus points, curve by curve"),
+    "cycle_detached": ("1", "number of the row among the rows with detached branches of cycles"),
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),
     "change": ("1", "number of the change located between neighbouring points along F, line by line"),
@@ -219,6 +220,9 @@ class Layout:
     list."""
     needs_all_points: bool = False
     """Whether a finished file also has variables that are computed from all points together."""
+    changed_points: str = ""
+    """Name of the variable with the numbers, from 1, of the points whose variables were changed after all
+    points were solved; "" if no file of this layout has it. These points are not reused in other files."""
 
     def dimensions(self, is_list: bool) -> tuple[str, ...]:
         """Names of the dimensions of the points; is_list: whether the points come from a list."""

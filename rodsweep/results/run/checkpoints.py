@@ -23,7 +23,7 @@ ITEM_RESULT_GLOB = "unit-*"
 CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
 """First line of a checkpoint; the number grows when a state changes in meaning. Checkpoints with another
 number are ignored."""
-RESULT_HEAD = b"rodsweep unit 1\n"
+RESULT_HEAD = b"rodsweep unit 2\n"
 """First line of the file of an item's result; the number grows when items or results change in meaning."""
 CHECKSUM_BYTES = 4
 """Length of the checksum at the end of a checkpoint file, in bytes."""

@@ -95,11 +95,9 @@ def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimit
     value = PARAMETERS[name].value(start.parameter_coordinate)
     aim_value = PARAMETERS[name].value(aim)
     words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
+    born = curve.special_points[0].at if curve.special_points else curve.points[0].at
     return SolvePosition(
-        words,
-        fraction_done(
-            PARAMETERS[name].coordinate(curve.special_points[0].at), start.parameter_coordinate, aim
-        ),
+        words, fraction_done(PARAMETERS[name].coordinate(born), start.parameter_coordinate, aim)
     )
 
 
@@ -144,12 +142,8 @@ def _append_next_cycle(
         if range_end is not None and _step_has_unresolved_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
-        # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
-        if end.cycle.measures.least_stretch <= 0:
-            return BranchEnd(
-                special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
-            )
-        _add_special_points(curve, start, end, limits)
+        if (within := _add_special_points(curve, start, end, limits)) is not None:
+            return within
         record.append(end)
         last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
     except Unsolvable as why:
@@ -164,10 +158,22 @@ def _append_next_cycle(
 
 def _add_special_points(
     curve: BranchCurve, start: BranchCycle, end: BranchCycle, limits: BranchLimits
-) -> None:
-    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch."""
+) -> BranchEnd | None:
+    """Appends the special points between the last cycle `start` and the next cycle `end` to a branch. Returns
+    the end of the branch if it ends between the two cycles, at h1 = 0 or because it is closed; else None."""
+    # h1 = 0: the model is not valid beyond, even if the discrete equations have solutions.
+    if end.cycle.measures.least_stretch <= 0:
+        return BranchEnd(
+            special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
+        )
     cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
-    curve.add_special_points(*special_points_between(start, end, cycle_at, limits.accuracy))
+    between, explained = special_points_between(start, end, cycle_at, limits.accuracy)
+    closing = curve.index_of_first_special_point(between)
+    if closing < 0:
+        curve.add_special_points(between, explained)
+        return None
+    curve.add_special_points(between[:closing], explained)
+    return BranchEnd(between[closing], complete=True, closed=True)
 
 
 def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:

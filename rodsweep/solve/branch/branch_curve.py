@@ -74,6 +74,7 @@ class BranchEnd:
     end_hopf: int = -1
     end_breaking: SymmetryBreaking | None = None
     list_full: bool = False
+    closed: bool = False
 
 
 @dataclass(kw_only=True, slots=True)
@@ -81,14 +82,14 @@ class BranchCurve:
     """A branch: cycles and special points, both lists in order along the branch."""
 
     start_hopf: int
-    """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if asymmetric."""
+    """Index in `BranchLimits.hopfs` of the Hopf point where the branch starts, -1 if it starts elsewhere."""
     points: list[BranchPoint] = field(default_factory=list)
     special_points: list[SpecialPoint] = field(default_factory=list)
     end_hopf: int = -1
     """Index in `BranchLimits.hopfs` of the Hopf point where the branch ends; -1 if the branch has another
     end."""
     start_breaking: SymmetryBreaking | None = None
-    """Symmetry breaking where an asymmetric branch starts; None for a branch from a Hopf point."""
+    """Symmetry breaking where an asymmetric branch starts; None if the branch starts elsewhere."""
     end_breaking: SymmetryBreaking | None = None
     """Symmetry breaking where an asymmetric branch ends; None if the branch has another end."""
     complete: bool = False
@@ -96,6 +97,8 @@ class BranchCurve:
     of the model."""
     list_full: bool = False
     """Whether the continuation stopped at the maximum number of cycles."""
+    closed: bool = False
+    """Whether the branch is closed: its last special point is its first special point, located again."""
     unit_circle_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
@@ -129,5 +132,38 @@ class BranchCurve:
         self.add_special_point(end.special_point)
         self.complete = end.complete
         self.list_full = end.list_full
+        self.closed = end.closed
         self.end_hopf = end.end_hopf
         self.end_breaking = end.end_breaking
+
+    def index_of_first_special_point(self, between: Sequence[SpecialPoint]) -> int:
+        """Index in `between` of the first special point of this branch, -1 if `between` does not have it or
+        if this point is not located. The branch is closed if it returns to this point."""
+        first = [point for point in self.special_points[:1] if not point.message]
+        located = [(i, point) for i, point in enumerate(between) if not point.message]
+        return next((i for i, point in located for one in first if one.is_same_as(point)), -1)
+
+    def joined_with(self, ahead: "BranchCurve") -> "BranchCurve":
+        """The branch of this branch, reversed, and the branch `ahead`; both start at the same cycle, in
+        opposite directions."""
+        count = len(self.points)
+        behind = [
+            replace(point, index_of_cycle_before=count - 2 - point.index_of_cycle_before)
+            for point in reversed(self.special_points)
+        ]
+        beyond = [
+            replace(point, index_of_cycle_before=point.index_of_cycle_before + count - 1)
+            for point in ahead.special_points
+        ]
+        return BranchCurve(
+            start_hopf=self.end_hopf,
+            start_breaking=self.end_breaking,
+            points=[*self.points[:0:-1], *ahead.points],
+            special_points=[*behind, *beyond],
+            end_hopf=ahead.end_hopf,
+            end_breaking=ahead.end_breaking,
+            complete=self.complete and ahead.complete,
+            list_full=self.list_full or ahead.list_full,
+            unit_circle_crossings_explained=self.unit_circle_crossings_explained
+            and ahead.unit_circle_crossings_explained,
+        )

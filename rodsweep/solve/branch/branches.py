@@ -1,30 +1,28 @@
 """The task `branch` for one rod: all branches of cycles from Hopf points along a parameter, to their ends.
 The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
 only once, from the first Hopf point. At a symmetry breaking on such a branch, the branch of asymmetric cycles
-is followed too. Cycles on other branches are not found."""
+is followed too. Cycles on other branches are found only if a special point on the branch is known."""
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from functools import cache
 
 from ...determinant.parameter_path import Path
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
-from ...solve_progress import solve_part
 from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
-from .branch_continuation import follow_asymmetric_branch, follow_branch
 from .branch_curve import BranchCurve
 from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
-from .computing_time import fractions_before_branches
-from .special.special_point import SPECIAL_POINT_SETTINGS
-from .start.hopf_point import accuracy_beside_hopf_points, hopf_branch_start
+from .branch_search import BranchSearch
+from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
+from .start.hopf_point import HopfBranchStart, accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
-from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,16 +58,19 @@ class BranchesOfRod:
 
 
 def solve_branches(
-    rod: Rod, request: BranchRequest, workspace: NewtonWorkspace | None = None
+    rod: Rod,
+    request: BranchRequest,
+    workspace: NewtonWorkspace | None = None,
+    starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches that start at Hopf points of a rod along a parameter; a failure becomes a status, never an
-    exception. The rod's own value of this parameter is not used. workspace: memory of Newton's matrices,
-    which rods may share; None: a new workspace."""
+    """All branches that start at Hopf points of a rod along a parameter, and those through the special points
+    `starts` of cycles; a failure becomes a status, never an exception. The rod's own value of this parameter
+    is not used. workspace: memory of Newton's matrices, which rods may share; None: a new workspace."""
     memory = workspace or NewtonWorkspace()
     memory.limit_work(request.max_work)
     try:
         return outcome_or_failure(
-            lambda: _solve_branches_or_raise(rod, request, memory),
+            lambda: _solve_branches_or_raise(rod, request, memory, starts),
             lambda cause: BranchesOfRod(status=BranchStatus.failed, message=cause),
         )
     finally:
@@ -84,7 +85,9 @@ def warm_up() -> None:
     )
 
 
-def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: NewtonWorkspace) -> BranchesOfRod:
+def _solve_branches_or_raise(
+    rod: Rod, request: BranchRequest, workspace: NewtonWorkspace, starts: Sequence[SpecialPoint]
+) -> BranchesOfRod:
     low, high = uncrushed_interval(
         rod.build,
         {"F": rod.F, "k1": rod.k1, "taper": rod.taper},
@@ -100,14 +103,7 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
     # The smallest drag of the range is at one of its ends.
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
-    hopfs = []
-    failures = []
-    for crossing in found.thresholds:
-        try:
-            hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
-        except FAILURES as error:
-            where = f"{request.along} = {crossing.value:.12g}"
-            failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
+    hopfs, failures = _hopf_branch_starts(path, found, keeps_omega, unit)
     crushed = (low > request.start, high < request.stop)
     reasons = [BranchEndReason.crushed if end else BranchEndReason.range_end for end in crushed]
     if path.is_compliance_path:
@@ -115,52 +111,33 @@ def _solve_branches_or_raise(rod: Rod, request: BranchRequest, workspace: Newton
         reasons = reasons[::-1]
     accuracy = accuracy_beside_hopf_points(hopfs, request.accuracy)
     limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), accuracy, request.cycles, workspace, unit)
-    curves = _follow_all_branches(limits, request.along)
-    status, message = _status_and_message(found, curves, failures, request)
+    search = BranchSearch(limits, request.along)
+    search.follow_all(starts)
+    status, message = _status_and_message(found, search.curves, failures + search.failures, request)
     return BranchesOfRod(
         status=status,
         message=message,
         crossings=found.thresholds,
         unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
-        curves=tuple(curves),
+        curves=tuple(search.curves),
     )
 
 
-def _follow_all_branches(limits: BranchLimits, name: str) -> list[BranchCurve]:
-    """Branches from all Hopf points, then from all symmetry breakings. A branch between two Hopf points, or
-    between two symmetry breakings, is followed only once. name: continuation parameter."""
-    curves: list[BranchCurve] = []
-    arrived: set[int] = set()
-    left = limits.max_cycles
-    count = len(limits.hopfs)
-    shares = fractions_before_branches(
-        [hopf.parameter_coordinate for hopf in limits.hopfs], limits.coordinate_range
-    )
-    for number in range(count):
-        if number in arrived:
-            continue
-        remaining = replace(limits, max_cycles=left)
-        with solve_part(
-            f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])
-        ):
-            curve = follow_branch(number, remaining)
-        arrived.add(curve.end_hopf)
-        left -= len(curve.points)
-        curves.append(curve)
-    breakings = symmetry_breakings_in([curve.special_points for curve in curves])
-    met: list[SymmetryBreaking] = []
-    for which, breaking in enumerate(breakings):
-        if breaking in met:
-            continue
-        with solve_part(f"branch {len(curves) + 1}, of asymmetric cycles"):
-            curve = follow_asymmetric_branch(
-                which, name, replace(limits, max_cycles=left, breakings=breakings)
-            )
-        met += [curve.end_breaking] if curve.end_breaking else []
-        left -= len(curve.points)
-        curves.append(curve)
-    return curves
+def _hopf_branch_starts(
+    path: Path, found: ThresholdSearchResult, keeps_omega: bool, unit: float
+) -> tuple[list[HopfBranchStart], list[str]]:
+    """(Hopf points with normal form, messages on Hopf points without). keeps_omega, unit: as in
+    `hopf_branch_start`."""
+    hopfs = []
+    failures = []
+    for crossing in found.thresholds:
+        try:
+            hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
+        except FAILURES as error:
+            where = f"{path.name} = {crossing.value:.12g}"
+            failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
+    return hopfs, failures
 
 
 def _status_and_message(
@@ -168,7 +145,7 @@ def _status_and_message(
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
     and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on
-    Hopf points without a normal form."""
+    Hopf points without a normal form, and on known special points without a branch."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)

@@ -5,6 +5,7 @@ multipliers of a section lie inside the unit circle, a stable cycle exists at ev
 interval. The ends of an interval are located special points, not parameter values of the row.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -53,17 +54,21 @@ class CoexistenceRow:
 
 
 def solve_coexistence(
-    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
+    rod: Rod,
+    request: RowRequest,
+    max_special_points: int,
+    workspace: NewtonWorkspace | None = None,
+    starts: Sequence[SpecialPoint] = (),
 ) -> CoexistenceRow:
     """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
     0 there is no cycle.
 
-    max_special_points: maximum number of stored special points. workspace: memory of Newton's matrices, as in
-    `solve_branches`.
+    max_special_points: maximum number of stored special points. workspace, starts: memory of Newton's
+    matrices, and special points of further branches, as in `solve_branches`.
     """
     row = solve_row(rod, request)
     start = _first_searched_value(row, request)
-    branches = _branches_from(start, rod, request, max_special_points, workspace)
+    branches = solve_branches(rod, _branch_request(start, request, max_special_points), workspace, starts)
     cycles = stable_cycles_at(request.values, branches, request.certify)
     cycles[request.values < start] = -1
     forces = request.values if request.parameter_name == "F" else np.full(len(request.values), rod.F)
@@ -83,14 +88,19 @@ def solve_coexistence(
 
 
 def row_branches(
-    rod: Rod, request: RowRequest, max_special_points: int, workspace: NewtonWorkspace | None = None
+    rod: Rod,
+    request: RowRequest,
+    max_special_points: int,
+    workspace: NewtonWorkspace | None = None,
+    starts: Sequence[SpecialPoint] = (),
 ) -> BranchesOfRod:
-    """All branches of cycles that start at Hopf points of a row. max_special_points: maximum number of stored
-    special points. workspace: memory of Newton's matrices, as in `solve_branches`."""
+    """All branches of cycles that start at Hopf points of a row, and those through the special points
+    `starts`. max_special_points: maximum number of stored special points. workspace: memory of Newton's
+    matrices, as in `solve_branches`."""
     start = float(request.values[0])
     if request.parameter_name == "F" and start < 0:
         start = _first_searched_value(solve_row(rod, request), request)
-    return _branches_from(start, rod, request, max_special_points, workspace)
+    return solve_branches(rod, _branch_request(start, request, max_special_points), workspace, starts)
 
 
 def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
@@ -101,15 +111,10 @@ def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
     return float(first if begins_late else request.values[0])
 
 
-def _branches_from(
-    start: float,
-    rod: Rod,
-    request: RowRequest,
-    max_special_points: int,
-    workspace: NewtonWorkspace | None,
-) -> BranchesOfRod:
-    """`row_branches` from the parameter value `start` on."""
-    asked = BranchRequest(
+def _branch_request(start: float, request: RowRequest, max_special_points: int) -> BranchRequest:
+    """Request of the branches of a row from the parameter value `start` on. max_special_points: maximum
+    number of stored special points."""
+    return BranchRequest(
         along=request.parameter_name,
         start=start,
         stop=float(request.values[-1]),
@@ -118,12 +123,13 @@ def _branches_from(
         cycles=BRANCH_SETTINGS.max_cycles_per_diagram_row,
         special=max_special_points,
     )
-    return solve_branches(rod, asked, workspace)
 
 
 def special_points_of(branches: BranchesOfRod) -> tuple[SpecialPoint, ...]:
-    """Special points of all branches of a rod, in one tuple, branch after branch."""
-    return tuple(point for curve in branches.curves for point in curve.special_points)
+    """Special points of all branches of a rod, in one tuple, branch after branch, each only once."""
+    return tuple(
+        point for curve in branches.curves for point in curve.special_points[: -1 if curve.closed else None]
+    )
 
 
 def _undecided_values_text(name: str, values: Array) -> str:

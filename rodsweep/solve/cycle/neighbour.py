@@ -16,15 +16,11 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
-from ...model.material.build import Build
-from ...model.parameters import PARAMETERS
-from ...model.rod import Rod
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
-from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
-from ..orbit.symmetry import NO_SYMMETRY, REFLECTION
+from ..orbit.stored_orbit import orbit_arrays, orbit_from_arrays
 from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cheapest_mesh import cheapest_mesh
@@ -103,31 +99,20 @@ class Neighbour:
         orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
         `CyclePredictor`."""
         branch = self.predictor
-        orbit = branch.orbit
-        return {
-            "rod": np.array(list(orbit.form.rod.values.values())),
-            # Checkpoints hold arrays only, so a text is stored as its bytes.
-            "build": np.frombuffer(orbit.form.rod.build.json_text.encode(), np.uint8),
-            "symmetric": np.array(orbit.is_symmetric),
-            "mesh": mesh_of(orbit).as_array,
-            "orbit": orbit.values,
+        own: dict[str, Any] = {
             "places": branch.parameter_offsets,
             "orders": branch.derivative_orders,
             "data": branch.values_and_derivatives,
             "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
-        } | self.calibration.arrays()
+        }
+        return orbit_arrays(branch.orbit) | own | self.calibration.arrays()
 
     @classmethod
     def from_arrays(cls, arrays: CheckpointArrays) -> "Neighbour":
         """The neighbour from the named arrays that `Neighbour.arrays` returns."""
-        mesh = OrbitMesh.from_array(arrays["mesh"])
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
-        parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
-        rod = Rod(**parameters, build=Build.from_json_text(bytes(arrays["build"]).decode()))
-        symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
-        form = StressForm(rod, mesh.space_mesh)
-        orbit = Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"])
+        orbit = orbit_from_arrays(arrays)
         branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
         return cls(branch, next_mesh, Calibration.from_arrays(arrays), arrays["eigenvalues"].astype(complex))
 

@@ -22,6 +22,7 @@ from ...results.layouts.phase_diagram import (
     cycle_variables,
 )
 from ...results.layouts.variables import FilledVariable, Variable, outcome_values, value_lists
+from .detached_branches import followed_special_points
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
@@ -178,23 +179,23 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
-    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
-    from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
-
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
-    kinds, at, period, height = map(view.by_point, names)
+    kinds, *columns = map(view.by_point, names)
     return [
-        RowSpecialPoint(
-            row_index=int(i),
-            row_value=float(rows[i]),
-            kind=SpecialKind(int(kinds[i, j])),
-            at=float(at[i, j]),
-            period=float(period[i, j]),
-            tip_y_max=float(height[i, j]),
-        )
+        point
         for i in np.flatnonzero(np.isfinite(rows))
-        for j in np.flatnonzero(np.isin(kinds[i], tuple(FOLLOWED_KINDS)))
+        for point in followed_special_points(kinds[i], [c[i] for c in columns], int(i), float(rows[i]))
     ]
+
+
+def special_points_of_row(
+    values: Mapping[str, np.ndarray], line: str, row_index: int, row_value: float
+) -> "list[RowSpecialPoint]":
+    """Folds and torus points of a row from its variables, by name, (special points,) each. line: parameter
+    along the row. row_index, row_value: index of the row, and value of its parameter."""
+    names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
+    kinds, *columns = (values[name] for name in names)
+    return followed_special_points(kinds, columns, row_index, row_value)
 
 
 def unstored_special_count(view: View, finite: np.ndarray) -> int:

@@ -1,38 +1,46 @@
 """Computation of the curves of a phase diagram, which need the results of all rows."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...config.axis import Axis
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...model.rod import Rod
 from ...results.file.view import View
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
-from ...results.layouts.variables import FilledVariable
+from ..protocol import NamedArrays, SweepWideResult
+from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
 from .curve_variables import (
-    bautin_curve_values,
     boundary_curve_values,
     criticality_record,
     cycle_curve_values,
+    special_points_of_row,
     special_points_of_rows,
     unstored_special_count,
     with_hopf_ends,
+)
+from .detached_branches import (
+    COMPLETE_ROW_STATUS,
+    detached_branch_values,
+    row_message,
+    row_result,
+    rows_with_further_branches,
 )
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
+    from ...solve.branch.special.detached_rows import DiagramStages, Stage
     from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
     from ...solve.branch.special.special_point import SpecialPoint
-    from ...solve.changes.diagram.boundary_curves import BoundaryCurve
-    from ...solve.continuation.curve_search import TracedCurves
-    from ...solve.hopf.bautin_points import CurveCriticality
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
     from ..phase_diagram import PhaseDiagramTask
 
+RowKey = tuple[int, int]
+"""(number of a row, number of special points from which its branches are followed beside Hopf points)."""
 MAX_CACHED_ROWS = 200
 """Maximum number of rows whose special points are cached in a process, because the cycles of a row take up to
 a megabyte. Special points of further rows are computed again, in some seconds and with equal results."""
@@ -50,68 +58,93 @@ class DiagramCurves:
     task: "PhaseDiagramTask"
     workspace: "NewtonWorkspace"
     """Buffers of Newton's matrices in this process."""
-    special_points_by_row: "dict[int, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
-    """Special points of cycles by the number of their row, for rows solved in this process."""
+    special_points_by_row: "dict[RowKey, tuple[SpecialPoint, ...]]" = field(default_factory=dict)
+    """Special points of cycles of the rows solved in this process."""
 
     def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
         cached. number: number of the row.
         """
         if len(self.special_points_by_row) < MAX_CACHED_ROWS:
-            self.special_points_by_row[number] = row.special_points
+            self.special_points_by_row[number, 0] = row.special_points
         return row
 
-    def initial_data(self, items: "SpecialCurveTracer", chosen: Sequence[int]) -> "dict[int, Any]":
-        """Special points cached on this rank, by number of the row, for the rows on which the half curves
-        numbered `chosen` start. items: all half curves.
+    def initial_data(self, items: "Stage", chosen: Sequence[int]) -> "dict[RowKey, Any]":
+        """Special points cached on this rank, for the rows on which the half curves numbered `chosen` start.
+        items: all half curves, or rows that are solved again, which need no special points.
         """
-        rows = {items.row_of(item) for item in chosen}
-        return {row: self.special_points_by_row[row] for row in rows if row in self.special_points_by_row}
+        from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
-    def add_initial_data(self, starts: "Mapping[int, Any]") -> None:
-        """Caches special points of rows solved on other ranks. starts: special points by number of the
-        row.
-        """
+        if not isinstance(items, SpecialCurveTracer):
+            return {}
+        keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, chosen)}
+        return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
+
+    def add_initial_data(self, starts: "Mapping[RowKey, Any]") -> None:
+        """Caches special points of rows solved on other ranks."""
         self.special_points_by_row.update(starts)
 
-    def work_items(self, view: View) -> "SpecialCurveTracer | None":
-        """Curves of folds and torus points of cycles, divided into half curves; None if these curves are not
-        requested, or if fewer than two rows have a finite value.
+    def work_items(self, view: View, results: Mapping[int, NamedArrays]) -> "Stage | None":
+        """The present stage of the search for curves of folds and torus points of cycles; None if these
+        curves are not requested, or if fewer than two rows have a finite value.
 
-        view: the result file with all rows.
+        view: the result file with all rows. results: results of half curves and rows so far, by number.
         """
+        stages = self._stages(view)
+        return stages.stages(results)[-1] if stages is not None else None
+
+    def _stages(self, view: View) -> "DiagramStages | None":
+        """All stages of the search, as in `work_items`."""
+        from ...solve.branch.special.detached_rows import DiagramStages
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
         plane = self.plane if self.task.config.phase_diagram.cycles else None
         if plane is None:
             return None
-        row = self.task.config.plane_parameters[1]
-        special = special_points_of_rows(view, plane.axes[0].name, self.task.points.columns_by_name[row])
-        return SpecialCurveTracer(*plane.axes, special)
+        line, row = self.task.config.plane_parameters
+        rows = self.task.points.columns_by_name[row]
+        complete = np.flatnonzero(view.has_status(COMPLETE_ROW_STATUS).ravel() & np.isfinite(rows))
+        tracer = SpecialCurveTracer(
+            *plane.axes,
+            special_points_of_rows(view, line, rows),
+            {int(number): float(rows[number]) for number in complete},
+        )
+        return DiagramStages(
+            tracer, lambda number, values: special_points_of_row(values, line, number, rows[number])
+        )
 
-    def solve_item(self, items: "SpecialCurveTracer", item: int) -> dict[str, np.ndarray]:
-        """Result of the half curve number `item`, as arrays with the shapes of `TracedHalfCurve`."""
-        return items.solve(item, self._special_points, self.workspace)
+    def solve_item(self, items: "Stage", item: int) -> dict[str, np.ndarray]:
+        """Result of the work item number `item`: of a half curve, arrays with the shapes of
+        `TracedHalfCurve`; of a row that is solved again, its variables, and its message as bytes."""
+        from ...solve.branch.special.detached_rows import DetachedRows
 
-    def empty_result(self) -> dict[str, np.ndarray]:
-        """Result of a half curve without points: arrays of shape (0, ...)."""
+        if not isinstance(items, DetachedRows):
+            return items.solve(item, partial(self._special_points, items), self.workspace)
+        number = items.row_of(item)
+        starts = items.starts_of_row(number)
+        row = self.task.coexistence_row(number, self.workspace, starts)
+        self.special_points_by_row[number, len(starts)] = row.special_points
+        return row_result(row, self.task.coexistence_record(row))
+
+    def empty_result(self, items: "Stage") -> dict[str, np.ndarray]:
+        """Result of a half curve without points, arrays of shape (0, ...); no variables for a row, which is
+        then unchanged."""
+        from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
         from ...solve.branch.special.special_curves import TracedHalfCurve
 
-        return TracedHalfCurve(None).arrays()
+        return TracedHalfCurve(None).arrays() if isinstance(items, SpecialCurveTracer) else {}
 
-    def variables(
-        self, view: View, items: "SpecialCurveTracer | None", results: Mapping[int, dict[str, np.ndarray]]
-    ) -> list[FilledVariable]:
-        """All curves as variables of the file; an empty list if there are no curves, because `plane` is None.
-        view: the file with all rows. results: results of all half curves by number, with shapes as in
-        `TracedHalfCurve`."""
+    def result(self, view: View, results: Mapping[int, NamedArrays]) -> SweepWideResult:
+        """All curves as variables of the file, and the rows that are changed because curves lead to further
+        branches; both empty if there are no curves, because `plane` is None. view: the file with all rows.
+        results: results of all half curves and rows by number, as from `solve_item`."""
         plane = self.plane
         if plane is None:
-            return []
+            return SweepWideResult(())
         line, row = self.task.config.plane_parameters
         names = (line, row)
         options = self.task.config.phase_diagram
-        found = self._boundaries(plane, view, self.task.points.columns_by_name[row])
+        found = boundary_curves(plane, view, self.task.points.columns_by_name[row])
         limit = {}
         if names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
@@ -120,17 +153,22 @@ class DiagramCurves:
             Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
         variables = boundary_curve_values(found, names, **limit)
-        criticalities = self._criticality(plane, found) if options.criticality or options.cycles else []
+        accuracy = self.task.config.accuracy
+        is_needed = options.criticality or options.cycles
+        criticalities = criticality_along(plane, found, accuracy) if is_needed else []
         if options.criticality:
             variables += criticality_record(criticalities, names, self.task.config.gamma1)
         if options.bautin_parameter is not None:
-            variables += self._bautin_curves(plane, criticalities, *options.bautin_parameter)
-        if items is not None:
-            curves = with_hopf_ends(
-                items.curves(results), plane, criticalities, unstored_special_count(view, self._is_row_finite)
-            )
-            variables += cycle_curve_values(curves, names)
-        return variables
+            variables += generalised_hopf_curves(plane, criticalities, options.bautin_parameter, accuracy)
+        stages = self._stages(view)
+        if stages is None:
+            return SweepWideResult(variables)
+        unstored = unstored_special_count(view, self._is_row_finite)
+        curves = with_hopf_ends(stages.curves(results), plane, criticalities, unstored)
+        changed = rows_with_further_branches(view, stages.changed_rows(results))
+        variables += [*cycle_curve_values(curves, names), *detached_branch_values(view, changed)]
+        messages = {number: row_message(result) for number, result in changed.items()}
+        return SweepWideResult(variables, changed, messages)
 
     @property
     def _is_row_finite(self) -> np.ndarray:
@@ -158,77 +196,16 @@ class DiagramCurves:
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
         return Plane(rod, (abscissa, ordinate))
 
-    def _boundaries(self, plane: "Plane", view: View, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
-        """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
-        every row, (rows,).
-        """
-        from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
-
-        names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-        at, kind, frequency, rate = map(view.by_point, names)
-        seeds = [
-            seed_of(
-                (float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j])
-            )
-            for i in np.flatnonzero(np.isfinite(rows))
-            for j in np.flatnonzero(kind[i])
-        ]
-        found = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
-        # If a list is full, its last crossings are not stored, and no curve starts from them.
-        cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
-        return replace(
-            found, untraced_count=found.untraced_count + int(cut[np.isfinite(rows)].clip(min=0).sum())
-        )
-
-    def _special_points(self, number: int) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of the row `number`, cached or computed again."""
+    def _special_points(self, items: "SpecialCurveTracer", number: int) -> "tuple[SpecialPoint, ...]":
+        """Special points of the branches of the row `number`, cached or computed again. items: half curves
+        that start at these points."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
-        if number not in self.special_points_by_row:
+        starts = items.starts_of_row(number)
+        if (number, len(starts)) not in self.special_points_by_row:
+            rod = self.task.rod_of_row(number)
             request = self.task.row_request()
             return special_points_of(
-                row_branches(self.task.rod_of_row(number), request, MAX_CYCLE_SPECIAL_POINTS, self.workspace)
+                row_branches(rod, request, MAX_CYCLE_SPECIAL_POINTS, self.workspace, starts)
             )
-        return self.special_points_by_row[number]
-
-    def _criticality(self, plane: "Plane", found: "TracedCurves[BoundaryCurve]") -> "list[CurveCriticality]":
-        """Criticality along each curve; NaN along curves that are not Hopf curves."""
-        from ...solve.hopf.bautin_points import CurveCriticality, curve_criticality
-
-        accuracy = self.task.config.accuracy
-        return [
-            curve_criticality(plane, curve, accuracy)
-            if curve.consists_of_hopf_points
-            else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
-            for curve in found.curves
-        ]
-
-    def _bautin_curves(
-        self, plane: "Plane", criticalities: Sequence["CurveCriticality"], name: str, axis: Axis
-    ) -> list[FilledVariable]:
-        """Curves of generalised Hopf points along the third parameter `name`, as variables of the file. axis:
-        values of the third parameter. criticalities: as from `_criticality`.
-        """
-        from ...determinant.parameter_plane import PlaneAxis
-        from ...solve.hopf.bautin_curves import (
-            BautinCurve,
-            BautinProblem,
-            as_curve_point,
-            bautin_curve,
-            lies_on_curve,
-        )
-
-        line, row = self.task.config.plane_parameters
-        values = axis.array()
-        value_in_plane = float(getattr(plane.rod, name))
-        third = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
-        all_values = np.append(values, value_in_plane)
-        space = BautinProblem(plane.rod, (*plane.axes, third), all_values, self.task.config.accuracy)
-        curves: list[BautinCurve] = []
-        for start in [
-            as_curve_point(found, value_in_plane) for curve in criticalities for found in curve.points
-        ]:
-            # A curve may return to the plane: its further points need no curve of their own.
-            if not any(lies_on_curve(space, start, curve) for curve in curves):
-                curves.append(bautin_curve(space, start))
-        return bautin_curve_values(curves, (line, row), name)
+        return self.special_points_by_row[number, len(starts)]

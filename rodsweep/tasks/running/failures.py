@@ -1,12 +1,16 @@
 """Reasons why points failed, each with one example, for the last lines of a run and for the result file."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 from typing import Any
 
 from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
+from ...results.layouts.variables import STATUS
+from ...solve.status import PointStatus
 from ...sweep.loop import Indices
 from ...sweep.points.stretches import StretchResult
+from ..protocol import SweepWideResult
 
 
 def parameters_text(values: Mapping[str, float]) -> str:
@@ -43,3 +47,16 @@ class FailureReasons:
             return []
         self.examples[failure_kind(line)] = line
         return [line]
+
+
+def reasons_of_changed_points(
+    result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
+) -> list[str]:
+    """Distinct reasons why points that have changed since they were solved failed, as in `FailureReasons`.
+    statuses: all statuses that a point can have. point_text: as in `FailureReasons`."""
+    by_value = {int(status): status for status in statuses}
+    reasons = FailureReasons(point_text)
+    for index, values in result.changed_points.items():
+        status = by_value[int(values[STATUS.name])]
+        reasons.add(index, SimpleNamespace(status=status, message=result.messages[index]))
+    return [*reasons.examples.values()]

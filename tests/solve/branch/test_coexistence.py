@@ -81,7 +81,7 @@ def test_a_cycle_on_the_last_value_of_a_row_counts():
 def test_what_a_branch_that_stopped_leaves_open_is_undecided(monkeypatch):
     real = coexistence.solve_branches
 
-    def stopped(rod, asked, workspace):
+    def stopped(rod, asked, workspace, starts):
         return replace(real(rod, asked, workspace), status=BranchStatus.stopped, message="no further cycle")
 
     monkeypatch.setattr(coexistence, "solve_branches", stopped)
@@ -109,7 +109,7 @@ def test_cycles_whose_multipliers_are_lost_to_rounding_but_for_their_size_are_un
 def test_states_that_multipliers_on_the_circle_leave_undecided_have_a_status(monkeypatch):
     real = coexistence.solve_branches
 
-    def on_the_circle(rod, asked, workspace):
+    def on_the_circle(rod, asked, workspace, starts):
         branches = real(rod, asked, workspace)
         (curve,) = branches.curves
         curve.points[:] = [replace(point, unstable_count=-1, multiplier=1.0) for point in curve.points]

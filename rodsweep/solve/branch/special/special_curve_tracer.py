@@ -3,20 +3,18 @@ in two halves from a special point of a row; each half is a work item."""
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import ClassVar
 
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import CurveSearch, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...point_outcome import FAILURES
-from ...unsolvable import Unsolvable
 from .curve_problem import END_SETTINGS, SpecialCurveProblem
-from .solved_curve_point import SolvedPoint
+from .half_curve import trace_half_curve
+from .row_crossing import RowCrossing
 from .special_curves import (
     CURVE_IDENTITY_SETTINGS,
     CurveEndReason,
-    CurvePoint,
-    HalfCurve,
     HalfCurveArrays,
     SpecialPointCurve,
     TracedHalfCurve,
@@ -30,13 +28,29 @@ FOLLOWED_KINDS = {SpecialKind.fold: "folds", SpecialKind.torus: "torus points"}
 @dataclass(frozen=True, slots=True)
 class SpecialCurveTracer:
     """Curves through all folds and torus points of the rows of a parameter plane, traced as half curves.
-    line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points of
-    all rows. Half curve (work item) 2 i leads from special point i to larger values of the row parameter, 2 i
-    + 1 to smaller values."""
+    line_axis, row_axis: axes of the parameter along a row and of the row parameter. special_points: points
+    through which curves are traced. Half curve (work item) `first_item` + 2 i leads from special point i to
+    larger values of the row parameter, `first_item` + 2 i + 1 to smaller values."""
+
+    outcome: ClassVar[str] = "piece of curves of folds and torus points followed"
+    progress_noun: ClassVar[str] = "pieces of curves"
 
     line_axis: PlaneAxis
     row_axis: PlaneAxis
     special_points: Sequence[RowSpecialPoint]
+    complete_rows: Mapping[int, float] = field(default_factory=dict)
+    """Value of the row parameter, by index, of the rows whose branches are all known."""
+    known_special_points: Sequence[RowSpecialPoint] = ()
+    """Further special points of the rows, through which no curve is traced."""
+    starts_by_row: Mapping[int, tuple[SpecialPoint, ...]] = field(default_factory=dict)
+    """Special points from which branches of a row are followed beside those from Hopf points, by index of the
+    row."""
+    first_item: int = 0
+
+    @property
+    def end_item(self) -> int:
+        """Number of half curves plus `first_item`."""
+        return self.first_item + 2 * len(self.special_points)
 
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
@@ -46,7 +60,16 @@ class SpecialCurveTracer:
         for curves, search in self._searches(results):
             needed += search.missing_items
             likely += curves.possible_items(search)
-        return needed + likely if needed else []
+        return [self.first_item + item for item in needed + likely] if needed else []
+
+    def crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
+        """Crossings of all curves with complete rows at which no special point lies; valid as `curves`."""
+        return [
+            crossing
+            for _, search in self._searches(results)
+            for traced in search.curves
+            for crossing in traced.crossings
+        ]
 
     def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
@@ -60,8 +83,9 @@ class SpecialCurveTracer:
         self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, CurveSearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
+        own = {number - self.first_item: result for number, result in results.items()}
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, results)
+            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own)
             seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
             yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
@@ -70,31 +94,39 @@ class SpecialCurveTracer:
     ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        index, behind = divmod(item, 2)
+        index, behind = divmod(item - self.first_item, 2)
         one = self.special_points[index]
         problem = SpecialCurveProblem(
             one.kind, self.line_axis, self.row_axis, workspace, -1.0 if behind else 1.0
         )
-        return _trace_half_curve(problem, one, located(one.row_index), self.special_points).arrays()
+        special = (*self.special_points, *self.known_special_points)
+        return trace_half_curve(problem, one, located(one.row_index), special, self.complete_rows).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
-        return self.special_points[item // 2].row_index
+        return self.special_points[(item - self.first_item) // 2].row_index
+
+    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+        """Special points of `starts_by_row` for the row with the index `row`."""
+        return self.starts_by_row.get(row, ())
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
-        one = self.special_points[item // 2]
+        index, behind = divmod(item - self.first_item, 2)
+        one = self.special_points[index]
         start = f"{self.row_axis.name} = {one.row_value:.5g}"
-        way = "smaller" if item % 2 else "larger"
+        way = "smaller" if behind else "larger"
         return f"curve of {FOLLOWED_KINDS[one.kind]} from {start} to {way} values"
 
 
 @dataclass(frozen=True, slots=True)
 class _TracedCurve:
-    """Curve of two halves. distances: distances of nearby special points in row lengths, by point index."""
+    """Curve of two halves. distances: distances of nearby special points in row lengths, by point index.
+    crossings: crossings with complete rows at which no special point lies."""
 
     curve: SpecialPointCurve
     distances: Mapping[int, float]
+    crossings: tuple[RowCrossing, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +177,7 @@ class _CurvesOfKind:
         near = dict(ahead.distances)
         for i, distance in behind.distances.items():
             near[i] = min(distance, near.get(i, math.inf))
-        return _TracedCurve(curve, near)
+        return _TracedCurve(curve, near, ahead.crossings + behind.crossings)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
@@ -159,18 +191,11 @@ class _CurvesOfKind:
 
     def are_identical(self, one: _TracedCurve, other: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
-        pairs = zip(self._ends(one.curve), self._ends(other.curve), strict=True)
-        distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-        return all(distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances)
+        return are_identical_curves(one.curve, other.curve, self.line_axis)
 
     def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
         return self.special_points[i].row_value, self.special_points[i].at
-
-    def _ends(self, curve: SpecialPointCurve) -> list[tuple[float, float]]:
-        """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
-        ends = curve.points[0], curve.points[-1]
-        return sorted((p.row_coordinate, self.line_axis.coordinate(p.at)) for p in ends)
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
         """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
@@ -190,61 +215,17 @@ class _CurvesOfKind:
         return False
 
 
-def _trace_half_curve(
-    problem: SpecialCurveProblem,
-    one: RowSpecialPoint,
-    located: Iterable[SpecialPoint],
-    special: Sequence[RowSpecialPoint],
-) -> TracedHalfCurve:
-    """One half of a curve, from the point in `located` that agrees with special point `one`; `half` is None
-    if no point agrees or after a failure. located: points of the row, with cycles. special: all points."""
-    width = abs(problem.line_axis.parameter_per_coordinate(one.at))
-    same = [
-        point
-        for point in located
-        if point.kind == one.kind
-        and abs(point.at - one.at) <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
-        and abs(point.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
-    ]
-    if not same:
-        return TracedHalfCurve(None)
-    try:
-        points, end = problem.follow_from(same[0], one.row_value)
-    except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
-        return TracedHalfCurve(None)
-    distances = {i: _row_distance(problem, points, other) for i, other in enumerate(special)}
-    near = {i: far for i, far in distances.items() if far <= CURVE_IDENTITY_SETTINGS.max_row_distance}
-    return TracedHalfCurve(HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), near)
+def are_identical_curves(one: SpecialPointCurve, other: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
+    """Whether two curves are identical: kinds agree, and their ends coincide within a tolerance. line_axis:
+    axis of the parameter along a row."""
+    pairs = zip(_ends(one, line_axis), _ends(other, line_axis), strict=True)
+    distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
+    return one.kind == other.kind and all(
+        distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances
+    )
 
 
-def _row_distance(problem: SpecialCurveProblem, points: Sequence[SolvedPoint], one: RowSpecialPoint) -> float:
-    """Distance along the row of special point `one` from a curve of its kind, in row lengths; else inf."""
-    if problem.kind != one.kind:
-        return math.inf
-    row_coordinate = problem.row_axis.coordinate(one.row_value)
-    best = math.inf
-    for a, b in zip(points[:-1], points[1:], strict=True):
-        low, high = sorted((a.row_coordinate, b.row_coordinate))
-        if not low <= row_coordinate <= high or not _may_be_near(problem, a, b, one):
-            continue
-        try:
-            crossing = problem.point_on_row(a, b, row_coordinate)
-        except Unsolvable:
-            continue
-        if abs(crossing.orbit.period / one.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference:
-            best = min(
-                best,
-                abs(problem.line_axis.coordinate(crossing.parameter) - problem.line_axis.coordinate(one.at)),
-            )
-    return best
-
-
-def _may_be_near(problem: SpecialCurveProblem, a: SolvedPoint, b: SolvedPoint, one: RowSpecialPoint) -> bool:
-    """Whether the special point `one` may lie on a curve between its successive points `a` and `b`."""
-    x = problem.line_axis.coordinate(one.at)
-    ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
-    periods = sorted(p.orbit.period for p in (a, b))
-    margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
-    on_line = ends[0] - margin <= x <= ends[1] + margin
-    ratio = 1 + CURVE_IDENTITY_SETTINGS.max_period_change
-    return on_line and periods[0] / ratio <= one.period <= periods[1] * ratio
+def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
+    """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
+    ends = curve.points[0], curve.points[-1]
+    return sorted((p.row_coordinate, line_axis.coordinate(p.at)) for p in ends)

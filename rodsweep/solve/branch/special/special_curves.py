@@ -11,6 +11,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ...hopf.bautin_points import GeneralisedHopfPoint
 from ...orbit.normalised import polynomial_weights
+from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
 from .solved_curve_point import SolvedPoint
 from .special_point import SpecialKind
 
@@ -127,29 +128,32 @@ class TracedHalfCurve:
     followed.
 
     distances: distances of nearby special points from this half, in units of the length of a row, by the
-    index of the special point in the list of all special points.
+    index of the special point in the list of all special points. crossings: crossings of this half with rows
+    without a special point there.
     """
 
     half: HalfCurve | None
     distances: dict[int, float] = field(default_factory=dict)
+    crossings: tuple[RowCrossing, ...] = ()
 
     def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
         the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
-        special point."""
+        special point; and the arrays of `numbered_arrays` for the crossings."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
             "end": np.array([0.0 if self.half is None else float(self.half.end)]),
             "distances": np.array(list(self.distances.items()), dtype=float).reshape(-1, 2),
-        }
+        } | numbered_arrays(self.crossings)
 
     @classmethod
     def from_arrays(cls, arrays: HalfCurveArrays) -> "TracedHalfCurve":
         """The result from the named arrays that `arrays` returns."""
         points = tuple(CurvePoint(*map(float, row)) for row in arrays["points"])
         half = HalfCurve(points, CurveEndReason(int(arrays["end"][0]))) if points else None
-        return cls(half, {int(index): float(distance) for index, distance in arrays["distances"]})
+        distances = {int(index): float(distance) for index, distance in arrays["distances"]}
+        return cls(half, distances, crossings_from_arrays(arrays))
 
 
 def _point_numbers(point: CurvePoint) -> list[float]:

@@ -80,6 +80,11 @@ class SpecialPointSettings:
     unit_multiplier_distance: float = 3e-3
     """A multiplier m with |m - 1| below this number may lie on either side of the unit circle, because of
     errors. Near a fold two multipliers are close to 1."""
+    max_relocation_distance: float = 1e-6
+    """Two special points of a rod are the same point only if the relative difference of their parameters,
+    less their errors, is at most this number; a point on a curve over two parameters has an error of 1e-7."""
+    max_relocation_period_change: float = 1e-4
+    """Largest relative difference between the periods of the same special point located twice."""
     max_halvings: int = 7
     """Maximum number of halvings of a step that has several special points, or a special point that cannot be
     located."""
@@ -130,6 +135,11 @@ class SpecialPoint:
     coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
+    def is_same_as(self, other: "SpecialPoint") -> bool:
+        """Whether this point and `other` are the same special point of a rod, or mirror images, located
+        twice: kind, parameter and period agree."""
+        return _are_near(self, other, self.error + other.error)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
@@ -143,3 +153,20 @@ class RowSpecialPoint:
     at: float
     period: float
     tip_y_max: float
+
+    def is_same_as(self, other: "RowSpecialPoint | SpecialPoint") -> bool:
+        """Whether this point and `other`, of the same row, are the same special point located twice."""
+        return _are_near(self, other, 0.0)
+
+
+def _are_near(
+    one: SpecialPoint | RowSpecialPoint, other: SpecialPoint | RowSpecialPoint, error: float
+) -> bool:
+    """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
+    the two parameters."""
+    far = abs(one.at - other.at) - error
+    return (
+        one.kind == other.kind
+        and far <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(one.at)
+        and abs(one.period / other.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
+    )

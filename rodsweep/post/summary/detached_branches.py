@@ -1,0 +1,60 @@
+"""Cycles on branches that no Hopf point of a diagram's row leads to, in `rodsweep show`."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...results.file.view import View
+from ...results.layouts.detached_branches import DETACHED_ROW
+from ...wording import count_of_total
+from .number_texts import axis_values_text
+
+MAX_ROW_DISTANCE = 0.01
+"""Largest distance of a special point of a row from the two points of a curve between which the curve meets
+the row, divided by the length of the row."""
+
+
+def detached_branch_lines(view: View, row: str) -> list[str]:
+    """List with a line about the rows with cycles on detached branches; empty if there are none. row:
+    parameter that is constant on a row."""
+    if DETACHED_ROW not in view.variables:
+        return []
+    numbers = view.variables[DETACHED_ROW] - 1
+    rows = count_of_total(len(numbers), view.variables["status"].size, "row")
+    values = axis_values_text(view.point_columns[row][numbers])
+    return [
+        f"branches that no Hopf point of their row leads to: on {rows}, {row} = {values}; they were followed "
+        "from the crossings of these curves with the rows, and the stable states include their cycles"
+    ]
+
+
+def rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np.intp]) -> list[str]:
+    """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
+    has this special point. line: parameter that varies along a row. row: parameter that is constant on a row.
+    on: indices of the points of the curve, (points,).
+    """
+    v = view.variables
+    if len(on) < 2:
+        return []
+    kind = int(v["cycle_curve_kind"][on[0]])
+    kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line}"))
+    near = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
+    along = zip(v[f"cycle_curve_{row}"][on], v[f"cycle_curve_{line}"][on], strict=True)
+    lines = []
+    for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(along)):
+        for index, value in enumerate(view.point_columns[row]):
+            if view.status_names[index] != "ok":
+                continue
+            # A row through a point of the curve belongs to the piece before this point.
+            if (value == x and number > 0) or (x - value) * (next_x - value) > 0:
+                continue
+            low, high = sorted((y, next_y))
+            own = specials[index][kinds[index] == kind]
+            if not ((own >= low - near) & (own <= high + near)).any():
+                lines.append(
+                    f"this curve crosses the row {row} = {value:g} between {line} = {low:.6g} and "
+                    f"{high:.6g}, but no branch of this row was found there: the stable states of the row do "
+                    "not include the cycles there"
+                )
+    return list(dict.fromkeys(lines))

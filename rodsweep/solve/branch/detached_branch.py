@@ -1,0 +1,137 @@
+"""Branches of cycles that no Hopf point within the range leads to: closed branches, and branches whose ends
+lie outside the range.
+
+Such a branch is followed from a fold or torus point, which lies on a curve of special points through other
+rods. The branch is followed in one direction from a cycle just before this point, through the point itself,
+and then, unless it is closed, from the same cycle in the other direction.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ...arrays import Array
+from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ..orbit.newton import relative_change
+from ..orbit.orbit import Orbit
+from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
+from ..unsolvable import Unsolvable, WorkLimitReached
+from .arc_length_step import BranchCycle, tangent_at
+from .bordered.condition import BorderCondition, moved_orbit
+from .bordered.matrix import BorderedMatrix
+from .bordered.scale import ArcLengthScale, deflection_of
+from .branch_continuation import follow_from_cycle
+from .branch_curve import BranchCurve
+from .branch_limits import BranchLimits
+from .branch_mesh_choice import first_measured_cycle
+from .special.special_point import SpecialPoint
+from .start.branch_start_settings import BRANCH_START_SETTINGS
+from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
+from .start.first_cycle import ALONG_DEFLECTION
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DetachedBranchSettings:
+    """Settings for the first cycle of a detached branch."""
+
+    first_distances: tuple[float, ...] = (0.02, 0.005, 0.001, 2e-4)
+    """Arc lengths of the first cycle from the known special point, tried in this order: 0.02 is the first
+    step length on all branches, and a small closed branch needs a shorter one."""
+    max_prediction_error: float = 0.5
+    """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
+    this step. If the difference is larger, the branch turns by about a right angle on this step, and the
+    cycle may lie beyond another fold."""
+
+
+DETACHED_BRANCH_SETTINGS = DetachedBranchSettings()
+
+
+def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits) -> BranchCurve:
+    """The branch along the parameter `name` through the special point `start`, whose orbit need not be
+    accurate, in both directions to its ends; raises Unsolvable if no cycle is found beside `start`. A later
+    failure is stored in an end of the branch. The branch found may be another one, which does not pass
+    `start`."""
+    if start.orbit is None:
+        raise Unsolvable(start.message or "the cycle of the special point is not known")
+    if not start.orbit.is_symmetric:
+        limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
+    first = _first_cycle(start.orbit, name, limits)
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), first, limits)
+    if not curve.closed:
+        left = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
+        behind = follow_from_cycle(BranchCurve(start_hopf=-1), _reversed(first), left)
+        curve = behind.joined_with(curve)
+    return curve
+
+
+def lies_on_any(special: SpecialPoint, curves: Iterable[BranchCurve]) -> bool:
+    """Whether one of the branches `curves` has the special point `special`."""
+    return any(special.is_same_as(other) for curve in curves for other in curve.special_points)
+
+
+def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
+    """A cycle just before the special point with the orbit `orbit`, as the first cycle of a branch that leads
+    through this point; raises Unsolvable."""
+    tangent = _tangent_towards_larger_cycles(orbit, name, limits)
+    why: Unsolvable | None = None
+    for distance in DETACHED_BRANCH_SETTINGS.first_distances:
+        try:
+            return _cycle_behind(tangent, distance, limits)
+        except WorkLimitReached:
+            raise
+        except Unsolvable as error:
+            why = error
+    raise Unsolvable(f"no cycle is found beside this point: {why}") from why
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Tangent:
+    """Tangent of a branch at the orbit `orbit` with unit arc length in the units of `scale`. change: change
+    of orbit values and parameter coordinate, (N + 1,). side: the same in components (deflection, log period,
+    parameter), (3,)."""
+
+    orbit: Orbit
+    scale: ArcLengthScale
+    change: Array
+    side: Array
+
+
+def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits) -> _Tangent:
+    """Tangent of a branch towards larger deflections, at an orbit on a mesh for the accuracy of the
+    branch."""
+    mesh = mesh_from_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
+    orbit = mesh.interpolated_orbit(orbit)
+    height = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
+    least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / height
+    scale = ArcLengthScale.at_orbit(orbit, name, least, limits.min_coordinate_unit)
+    tangent = tangent_at(orbit, scale, ALONG_DEFLECTION, BorderedMatrix(orbit, scale, limits.workspace))
+    ahead = scale.directional_derivative(orbit, tangent)
+    unit = float(np.linalg.norm(ahead))
+    return _Tangent(orbit, scale, tangent / unit, ahead / unit)
+
+
+def _cycle_behind(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
+    """The cycle of a branch at the arc length `distance` behind the orbit of `tangent`, with measured errors;
+    raises Unsolvable."""
+    accuracy = limits.accuracy
+    condition = BorderCondition.at_arc_length(tangent.scale, tangent.side, tangent.orbit, -distance)
+    predicted = moved_orbit(tangent.orbit, tangent.scale.parameter_name, -distance * tangent.change)
+    found = condition.solve_cycle(
+        predicted, newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
+    )
+    step = relative_change(tangent.orbit, distance * tangent.change[:-1])
+    off = relative_change(predicted, found.orbit.values - predicted.values)
+    if off > DETACHED_BRANCH_SETTINGS.max_prediction_error * step:
+        raise Unsolvable("the cycle found is far from the prediction")
+    low, high = limits.coordinate_range
+    if not low < found.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
+        raise Unsolvable("the cycle found lies outside the range")
+    return first_measured_cycle(found, tangent.scale, tangent.side, distance, accuracy)
+
+
+def _reversed(first: BranchCycle) -> BranchCycle:
+    """The first cycle of a branch, for the continuation in the opposite direction."""
+    known = first.derivatives
+    turned = replace(known, tangent=-known.tangent, unit_tangent=-known.unit_tangent)
+    return replace(first, derivatives=turned)

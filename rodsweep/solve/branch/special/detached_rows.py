@@ -1,0 +1,171 @@
+"""Search for all curves of folds and torus points of a phase diagram, and for the branches that only these
+curves lead to, in stages.
+
+A stage traces curves through special points (`SpecialCurveTracer`), or solves rows again, each with the
+points at which curves cross it without a special point of its own (`DetachedRows`). The next stage follows
+from the results of all stages so far: rows after curves, and curves through the new special points of rows.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from ....arrays import Array
+from ...continuation.curve_search import TracedCurves
+from .row_crossing import RowCrossing
+from .special_curve_tracer import SpecialCurveTracer, are_identical_curves
+from .special_curves import SpecialPointCurve
+from .special_point import RowSpecialPoint, SpecialPoint
+
+MAX_DIAGRAM_STAGES = 8
+"""Maximum number of stages of a diagram: stages of curves and stages of rows alternate, and each finds fewer
+branches than the one before. Rows with cycles that are not reached then are named by `show`."""
+Results = Mapping[int, dict[str, Array]]
+"""Results of work items, by number; the result of a row has the variables of the row by name, or is empty."""
+SpecialPointsOfRow = Callable[[int, dict[str, Array]], list[RowSpecialPoint]]
+"""Function from (index of a row, its variables) to the folds and torus points of the row."""
+
+
+@dataclass(frozen=True, slots=True)
+class DetachedRows:
+    """Rows that are solved again, as work items numbered from `first_item`. row_name, row_values: name of the
+    row parameter, and its value by index of the row. crossings: all points known so far at which curves cross
+    a row without a special point of its own, by index of the row."""
+
+    outcome: ClassVar[str] = "row solved again with the branches that only these curves lead to"
+    progress_noun: ClassVar[str] = "rows"
+
+    first_item: int
+    row_name: str
+    row_values: Mapping[int, float]
+    crossings: Mapping[int, tuple[RowCrossing, ...]]
+
+    @property
+    def end_item(self) -> int:
+        """Number of rows plus `first_item`."""
+        return self.first_item + len(self.crossings)
+
+    def items_to_solve(self, results: Results) -> list[int]:
+        """Numbers of the rows that are not solved yet."""
+        return [item for item in range(self.first_item, self.end_item) if item not in results]
+
+    def row_of(self, item: int) -> int:
+        """Index of the row of a work item."""
+        return sorted(self.crossings)[item - self.first_item]
+
+    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+        """Special points from which branches of the row with the index `row` are followed."""
+        return tuple(crossing.special_point for crossing in self.crossings[row])
+
+    def item_label(self, item: int) -> str:
+        """Text for a row in the progress display."""
+        return f"branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g} that only curves meet"
+
+
+Stage = SpecialCurveTracer | DetachedRows
+
+
+@dataclass(frozen=True, slots=True)
+class DiagramStages:
+    """The stages of a diagram whose first stage traces the curves of `first`. special_points_of_row: as in
+    `SpecialPointsOfRow`."""
+
+    first: SpecialCurveTracer
+    special_points_of_row: SpecialPointsOfRow
+
+    def stages(self, results: Results) -> list[Stage]:
+        """All stages that follow from the results of work items; only the last one may be incomplete."""
+        stages: list[Stage] = [self.first]
+        while len(stages) < MAX_DIAGRAM_STAGES and not stages[-1].items_to_solve(results):
+            following = self._stage_after(stages, results)
+            if following is None:
+                break
+            stages.append(following)
+        return stages
+
+    def _stage_after(self, stages: Sequence[Stage], results: Results) -> Stage | None:
+        """The stage after complete `stages`; None if nothing is left to do."""
+        last = stages[-1]
+        if isinstance(last, SpecialCurveTracer):
+            return _rows_after(last, stages, results)
+        new = self._new_special_points(stages, last, results)
+        if not new:
+            return None
+        known = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+        known = tuple(point for point in known if point not in new)
+        return replace(
+            self.first,
+            first_item=last.end_item,
+            special_points=new,
+            known_special_points=known,
+            starts_by_row={row: last.starts_of_row(row) for row in last.crossings},
+        )
+
+    def _special_points_of_rows(self, stages: Sequence[Stage], results: Results) -> list[RowSpecialPoint]:
+        """Special points of all rows that were solved again."""
+        return [
+            point
+            for row, values in _changed_rows(stages, results).items()
+            for point in self.special_points_of_row(row, values)
+        ]
+
+    def _new_special_points(
+        self, stages: Sequence[Stage], last: DetachedRows, results: Results
+    ) -> list[RowSpecialPoint]:
+        """Special points of the rows of `last` that lie on no curve traced so far."""
+        known: dict[int, list[RowSpecialPoint | SpecialPoint]] = {}
+        for stage in stages:
+            if isinstance(stage, SpecialCurveTracer):
+                for point in stage.special_points:
+                    known.setdefault(point.row_index, []).append(point)
+        for row, crossings in last.crossings.items():
+            known.setdefault(row, []).extend(crossing.special_point for crossing in crossings)
+        return [
+            point
+            for point in self._special_points_of_rows([last], results)
+            if not any(point.is_same_as(other) for other in known.get(point.row_index, ()))
+        ]
+
+    def changed_rows(self, results: Results) -> dict[int, dict[str, Array]]:
+        """Variables of all rows that were solved again, (...,) each, by index of the row."""
+        return _changed_rows(self.stages(results), results)
+
+    def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
+        """The curves of all stages, each only once; valid if the last stage is complete."""
+        found: list[SpecialPointCurve] = []
+        stages = self.stages(results)
+        traced = [stage.curves(results) for stage in stages if isinstance(stage, SpecialCurveTracer)]
+        for curve in (curve for one in traced for curve in one.curves):
+            if not any(are_identical_curves(curve, other, self.first.line_axis) for other in found):
+                found.append(curve)
+        return TracedCurves(
+            tuple(found),
+            max(one.largest_seed_distance for one in traced),
+            sum(one.untraced_count for one in traced),
+        )
+
+
+def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[str, Array]]:
+    """Variables of all rows that were solved again, by index of the row; the last result of a row counts."""
+    found: dict[int, dict[str, Array]] = {}
+    for stage in stages:
+        if isinstance(stage, DetachedRows):
+            numbers = (item for item in range(stage.first_item, stage.end_item) if results.get(item))
+            found |= {stage.row_of(item): results[item] for item in numbers}
+    return dict(sorted(found.items()))
+
+
+def _rows_after(last: SpecialCurveTracer, stages: Sequence[Stage], results: Results) -> DetachedRows | None:
+    """The rows that the curves of `last` cross without a special point there; None if there are none."""
+    known: dict[int, tuple[RowCrossing, ...]] = {}
+    for stage in stages:
+        known |= stage.crossings if isinstance(stage, DetachedRows) else {}
+    new: dict[int, tuple[RowCrossing, ...]] = {}
+    for crossing in last.crossings(results):
+        row = crossing.row_index
+        before = new.get(row) or known.get(row, ())
+        if not any(crossing.special_point.is_same_as(other.special_point) for other in before):
+            new[row] = (*before, crossing)
+    if not new:
+        return None
+    return DetachedRows(last.end_item, last.row_axis.name, last.complete_rows, new)

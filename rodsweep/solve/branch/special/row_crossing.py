@@ -1,0 +1,78 @@
+"""Points at which a curve of folds or torus points crosses a row of a phase diagram although no branch of the
+row has a special point there: the branch of the row is followed from such a point."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from numpy import array
+
+from ....arrays import Array
+from ...orbit.stored_orbit import orbit_arrays, orbit_from_arrays
+from .solved_curve_point import CURVE_SECANT_SETTINGS, SolvedPoint
+from .special_point import SpecialKind, SpecialPoint
+
+
+@dataclass(frozen=True, slots=True)
+class RowCrossing:
+    """A crossing of a curve with a row. row_index: index of the row. special_point: the special point of the
+    row on the curve, with its orbit on the mesh of the curve."""
+
+    row_index: int
+    special_point: SpecialPoint
+
+    @classmethod
+    def from_solved_point(cls, row_index: int, kind: SpecialKind, point: SolvedPoint) -> "RowCrossing":
+        """The crossing at the point `point` of a curve of special points of the kind `kind`."""
+        special = SpecialPoint(
+            kind=kind,
+            at=point.parameter,
+            period=point.orbit.period,
+            tip_y_max=point.tip_y_max,
+            error=CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter),
+            orbit=point.orbit,
+        )
+        return cls(row_index, special)
+
+    def arrays(self) -> dict[str, Array]:
+        """The crossing as named arrays: "crossing" (6,), then those of the orbit."""
+        point = self.special_point
+        assert point.orbit is not None
+        keeps_omega = point.orbit.form.keeps_omega
+        numbers = (self.row_index, point.kind, point.at, point.tip_y_max, point.error, keeps_omega)
+        return {"crossing": array([float(number) for number in numbers])} | orbit_arrays(point.orbit)
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, Array]) -> "RowCrossing":
+        """The crossing from named arrays with the shapes that `arrays` gives, as "crossing" (6,)."""
+        row_index, kind, at, tip_y_max, error, keeps_omega = map(float, arrays["crossing"])
+        orbit = orbit_from_arrays(arrays, bool(keeps_omega))
+        point = SpecialPoint(
+            kind=SpecialKind(int(kind)),
+            at=at,
+            period=orbit.period,
+            tip_y_max=tip_y_max,
+            error=error,
+            orbit=orbit,
+        )
+        return cls(int(row_index), point)
+
+
+def numbered_arrays(crossings: Sequence[RowCrossing]) -> dict[str, Array]:
+    """The arrays, (...,) each, of all crossings, with the number of the crossing before each name, as in
+    "0:mesh"."""
+    return {
+        f"{number}:{name}": values
+        for number, crossing in enumerate(crossings)
+        for name, values in crossing.arrays().items()
+    }
+
+
+def crossings_from_arrays(arrays: Mapping[str, Array]) -> tuple[RowCrossing, ...]:
+    """The crossings from arrays, (...,) each, with the names that `numbered_arrays` gives; other arrays are
+    ignored."""
+    parts: dict[int, dict[str, Array]] = {}
+    for full_name, values in arrays.items():
+        number, separator, name = full_name.partition(":")
+        if separator:
+            parts.setdefault(int(number), {})[name] = values
+    return tuple(RowCrossing.from_arrays(parts[number]) for number in sorted(parts))

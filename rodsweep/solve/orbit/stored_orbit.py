@@ -1,0 +1,38 @@
+"""An orbit as named arrays, for checkpoints."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from ...discretization.stress.form import StressForm
+from ...model.material.build import Build
+from ...model.parameters import PARAMETERS
+from ...model.rod import Rod
+from .orbit import Orbit
+from .orbit_mesh import OrbitMesh, mesh_of
+from .symmetry import NO_SYMMETRY, REFLECTION
+
+
+def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
+    """The orbit as named arrays: values (N,), rod (parameters,) with its build (bytes,), mesh, symmetry."""
+    return {
+        "rod": np.array(list(orbit.form.rod.values.values())),
+        # Checkpoints hold arrays only, so a text is stored as its bytes.
+        "build": np.frombuffer(orbit.form.rod.build.json_text.encode(), np.uint8),
+        "symmetric": np.array(orbit.is_symmetric),
+        "mesh": mesh_of(orbit).as_array,
+        "orbit": orbit.values,
+    }
+
+
+def orbit_from_arrays(arrays: Mapping[str, Array], keeps_omega: bool = False) -> Orbit:
+    """The orbit from named arrays with the shapes that `orbit_arrays` gives, as "orbit" (N,). keeps_omega: as
+    in `StressForm`."""
+    mesh = OrbitMesh.from_array(arrays["mesh"])
+    parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
+    rod = Rod(**parameters, build=Build.from_json_text(bytes(arrays["build"]).decode()))
+    form = StressForm(rod, mesh.space_mesh, keeps_omega)
+    symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
+    return Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"])

@@ -1,0 +1,84 @@
+"""Boundaries of stability of a phase diagram, their criticality, and curves of generalised Hopf points."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...config.axis import Axis
+from ...results.file.view import View
+from ...results.layouts.variables import FilledVariable
+from .curve_variables import bautin_curve_values
+
+if TYPE_CHECKING:
+    from ...determinant.parameter_plane import Plane
+    from ...solve.changes.diagram.boundary_curves import BoundaryCurve
+    from ...solve.continuation.curve_search import TracedCurves
+    from ...solve.hopf.bautin_points import CurveCriticality
+
+
+def boundary_curves(plane: "Plane", view: View, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
+    """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
+    every row, (rows,).
+    """
+    from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
+
+    names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
+    at, kind, frequency, rate = map(view.by_point, names)
+    seeds = [
+        seed_of((float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j]))
+        for i in np.flatnonzero(np.isfinite(rows))
+        for j in np.flatnonzero(kind[i])
+    ]
+    found = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
+    # If a list is full, its last crossings are not stored, and no curve starts from them.
+    cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
+    return replace(found, untraced_count=found.untraced_count + int(cut[np.isfinite(rows)].clip(min=0).sum()))
+
+
+def criticality_along(
+    plane: "Plane", found: "TracedCurves[BoundaryCurve]", accuracy: float
+) -> "list[CurveCriticality]":
+    """Criticality along each curve; NaN along curves that are not Hopf curves. accuracy: relative accuracy of
+    the linear results."""
+    from ...solve.hopf.bautin_points import CurveCriticality, curve_criticality
+
+    return [
+        curve_criticality(plane, curve, accuracy)
+        if curve.consists_of_hopf_points
+        else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
+        for curve in found.curves
+    ]
+
+
+def generalised_hopf_curves(
+    plane: "Plane",
+    criticalities: Sequence["CurveCriticality"],
+    third: tuple[str, Axis],
+    accuracy: float,
+) -> list[FilledVariable]:
+    """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities,
+    accuracy: as in `criticality_along`. third: name and values of the third parameter.
+    """
+    from ...determinant.parameter_plane import PlaneAxis
+    from ...solve.hopf.bautin_curves import (
+        BautinCurve,
+        BautinProblem,
+        as_curve_point,
+        bautin_curve,
+        lies_on_curve,
+    )
+
+    name, axis = third
+    values = axis.array()
+    value_in_plane = float(getattr(plane.rod, name))
+    along = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
+    all_values = np.append(values, value_in_plane)
+    space = BautinProblem(plane.rod, (*plane.axes, along), all_values, accuracy)
+    curves: list[BautinCurve] = []
+    for start in [as_curve_point(found, value_in_plane) for curve in criticalities for found in curve.points]:
+        # A curve may return to the plane: its further points need no curve of their own.
+        if not any(lies_on_curve(space, start, curve) for curve in curves):
+            curves.append(bautin_curve(space, start))
+    return bautin_curve_values(curves, (plane.axes[0].name, plane.axes[1].name), name)

@@ -1,0 +1,83 @@
+"""Rows of a phase diagram whose stable states change because curves of folds or torus points lead to further
+branches of cycles, and the corresponding variables of the file."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...results.file.view import View
+from ...results.layouts.detached_branches import DETACHED_BRANCH_VARIABLES
+from ...results.layouts.variables import FilledVariable
+from ..protocol import NamedArrays
+
+if TYPE_CHECKING:
+    from ...solve.branch.coexistence import CoexistenceRow
+    from ...solve.branch.special.special_point import RowSpecialPoint
+
+COMPLETE_ROW_STATUS = "ok"
+"""Status of the rows on which every branch from a Hopf point is followed to its end, and all special points
+are located; on other rows a special point might be taken for one of another branch."""
+ROW_MESSAGE = "message"
+"""Name under which the result of a row that was solved again has its message, as bytes."""
+
+
+def row_result(row: "CoexistenceRow", record: Mapping[str, Any]) -> NamedArrays:
+    """Result of a row that was solved again, as named arrays. record: variables of the row, by name."""
+    values = {name: np.asarray(value) for name, value in record.items()}
+    return values | {ROW_MESSAGE: np.frombuffer(row.message.encode(), np.uint8)}
+
+
+def row_message(result: NamedArrays) -> str:
+    """Message of a row, from its result."""
+    return result[ROW_MESSAGE].tobytes().decode()
+
+
+def followed_special_points(
+    kinds: np.ndarray, columns: Sequence[np.ndarray], row_index: int, row_value: float
+) -> "list[RowSpecialPoint]":
+    """Folds and torus points of a row, from the list of its special points. kinds: kind of each point, (n,).
+    columns: parameter along the row, period, and largest tip y of each point, (n,) each."""
+    from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
+    from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+
+    at, period, height = columns
+    return [
+        RowSpecialPoint(
+            row_index=row_index,
+            row_value=row_value,
+            kind=SpecialKind(int(kinds[j])),
+            at=float(at[j]),
+            period=float(period[j]),
+            tip_y_max=float(height[j]),
+        )
+        for j in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KINDS)))
+    ]
+
+
+def rows_with_further_branches(view: View, solved_again: Mapping[int, NamedArrays]) -> dict[int, NamedArrays]:
+    """The rows of `solved_again` that have further branches or another status than in the file. view: the
+    file with all rows. solved_again: results of rows, by index."""
+    counts = view.by_point("cycle_special_count")
+    statuses = view.variables["status"].ravel()
+    return {
+        row: values
+        for row, values in solved_again.items()
+        if int(values["cycle_special_count"]) != counts[row] or int(values["status"]) != statuses[row]
+    }
+
+
+def detached_branch_values(view: View, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:
+    """Variables of the rows that have further branches; [] if there are none. view, changed: as in
+    `rows_with_further_branches`."""
+    if not changed:
+        return []
+    before = view.by_point("cycle_special_count")
+    values = (
+        [row + 1 for row in changed],
+        [int(result["cycle_special_count"]) - int(before[row]) for row, result in changed.items()],
+    )
+    return [
+        (variable, np.array(column))
+        for variable, column in zip(DETACHED_BRANCH_VARIABLES.values(), values, strict=True)
+    ]
