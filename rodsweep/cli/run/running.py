@@ -201,9 +201,7 @@ class _RankRun:
             click.echo(f"  {raised}, a bug: please report it with {self.log.path}, which has the traceback")
 
     def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
-        """Text with the number of points of each status. counts: numbers by status. left: number of points of
-        this run that are not solved.
-        """
+        """Number of points of each status as text. counts: by status. left: unsolved points of this run."""
         words = {"missing": "of other shards"} if self.shard and not left else {}
         return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
 

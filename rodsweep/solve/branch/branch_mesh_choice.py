@@ -12,8 +12,9 @@ from ..cycle.accuracy.refinement import (
     cycle_with_calibrated_errors,
     newton_tolerance,
 )
+from ..orbit.mesh_choice import finer_mesh
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
-from ..orbit.orbit_mesh import OrbitMesh, finer_mesh, mesh_limit, mesh_of
+from ..orbit.orbit_mesh import OrbitMesh, mesh_limit, mesh_of
 from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition

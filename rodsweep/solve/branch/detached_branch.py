@@ -13,9 +13,9 @@ import numpy as np
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ..orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import BranchCycle, tangent_at
 from .bordered.condition import BorderCondition, moved_orbit

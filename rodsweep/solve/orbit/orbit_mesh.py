@@ -1,8 +1,7 @@
-"""Meshes of an orbit in space and time, and the choice of the mesh for a requested accuracy from the
-coefficient tails of a nearby orbit (`tails`)."""
+"""Meshes of an orbit in space and time."""
 
 from dataclasses import dataclass, replace
-from math import ceil, log
+from math import ceil
 
 import numpy as np
 
@@ -14,8 +13,6 @@ from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
 from .matrix.workspace import WORKSPACE_SETTINGS, factors_size
 from .orbit import Orbit
-from .order_ratios import order_ratios
-from .tails import tails_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,7 +158,7 @@ class OrbitMesh:
             self,
             edges=halve_elements(self.edges),
             order=ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * self.order),
-            order_ratios=_ratios_of_halves(self.order_ratios),
+            order_ratios=ratios_of_halves(self.order_ratios),
         )
 
     @property
@@ -195,61 +192,6 @@ def mesh_of(orbit: Orbit) -> OrbitMesh:
     return OrbitMesh(mesh.edges, mesh.order, orbit.interval_count, orbit.stage_count, mesh.order_ratios)
 
 
-def _ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
+def ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:
     """Ratios of the orders after all elements are halved."""
     return tuple(ratio for ratio in ratios for _ in range(2))
-
-
-def cheapest_stage_count(accuracy: float) -> int:
-    """Number of collocation stages with the smallest cost for the relative accuracy `accuracy`."""
-    return ORBIT_MESH_SETTINGS.min_stages + sum(
-        accuracy <= limit for limit in ORBIT_MESH_SETTINGS.max_accuracies_for_more_stages
-    )
-
-
-def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
-    """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
-    `min_intervals`, and finer than the mesh of `orbit` at most by `max_order_increase` and
-    `max_interval_ratio`."""
-    present = mesh_of(orbit)
-    tails = tails_of(orbit)
-    aim_space = (
-        ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.space_error_factor
-    ) ** 0.5
-    aim_time = (ORBIT_MESH_SETTINGS.accuracy_share * accuracy / ORBIT_MESH_SETTINGS.time_error_factor) ** 0.5
-    # Below `min_tail` a tail is rounding error.
-    order = present.order + ceil(
-        log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / aim_space) / tails.space_decay
-    )
-    edges = present.edges
-    ratios = order_ratios(orbit, order, aim_space)
-    while order > RESOLUTION_SETTINGS.max_order:
-        order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
-        edges = halve_elements(edges)
-        ratios = _ratios_of_halves(ratios)
-    # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
-    # number of intervals is about a power of the known tail.
-    tail = max(tails.time, ORBIT_MESH_SETTINGS.min_tail) ** (stages / present.stage_count)
-    intervals = ceil(present.interval_count * (tail / aim_time) ** (1 / stages))
-    order = min(
-        max(order, ORBIT_MESH_SETTINGS.min_order), present.order + ORBIT_MESH_SETTINGS.max_order_increase
-    )
-    intervals = min(
-        max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
-        ORBIT_MESH_SETTINGS.max_interval_ratio * present.interval_count,
-    )
-    return OrbitMesh(edges, order, intervals, stages, ratios)
-
-
-def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
-    """A mesh that is at least as fine as `target` and finer than the present mesh `mesh`."""
-    order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
-    intervals = max(target.interval_count, mesh.interval_count)
-    stages = max(target.stage_count, mesh.stage_count)
-    finer = replace(target, order=order, interval_count=intervals, stage_count=stages)
-    if finer != mesh:
-        return finer
-    return replace(
-        mesh.finer_in_space, interval_count=ceil(ORBIT_MESH_SETTINGS.interval_factor * mesh.interval_count)
-    )

@@ -8,7 +8,8 @@ import numpy as np
 
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.orbit_mesh import cheapest_stage_count, mesh_of
+from ...orbit.mesh_choice import cheapest_stage_count
+from ...orbit.orbit_mesh import mesh_of
 from ...unsolvable import Unsolvable
 from ..arc_length_step import tangent_at
 from ..bordered.matrix import BorderedMatrix

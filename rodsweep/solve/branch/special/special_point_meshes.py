@@ -3,7 +3,8 @@
 from dataclasses import replace
 from math import ceil, log
 
-from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count
+from ...orbit.mesh_choice import cheapest_stage_count
+from ...orbit.orbit_mesh import OrbitMesh
 from ..branch_errors import BranchCalibration
 from .special_point import SPECIAL_POINT_SETTINGS
 

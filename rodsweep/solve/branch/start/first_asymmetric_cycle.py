@@ -15,9 +15,9 @@ from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_toleran
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath
+from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
 from ..bordered.condition import BorderCondition, moved_orbit

@@ -12,8 +12,8 @@ from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_toleran
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...cycle.hopf_start import orbit_of_amplitude
 from ...orbit.matrix.workspace import NewtonWorkspace
+from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import cheapest_stage_count, mesh_from_tails
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition

@@ -13,6 +13,7 @@ import numpy as np
 from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, measures_of
+from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
@@ -22,7 +23,7 @@ from ...orbit.newton import (
     with_matrix_within_distance,
 )
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, cheapest_stage_count, finer_mesh, mesh_from_tails, mesh_limit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_limit
 from ...unsolvable import Unsolvable
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
