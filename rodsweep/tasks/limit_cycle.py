@@ -3,11 +3,12 @@ rest."""
 
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NamedTuple
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..arrays import COMPLEX_NAN, Complex
+from ..arrays import COMPLEX_NAN
 from ..config.task.limit_cycle import LimitCycleConfig
 from ..discretization.elements.elements import Elements
 from ..discretization.elements.quadrature import lobatto_points
@@ -39,7 +40,7 @@ NON_SOLVER_OPTIONS = ("method", "along", "direction", "time")
 """Options of the task that concern the sweep or the file; all other options are passed to the solver of a
 cycle."""
 MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
-"""Field of `_StoredMultipliers` by name of the variable, where the two names differ."""
+"""Field of `Cycle` by name of the variable, where the two names differ."""
 ALLOWED_K2_WITH_TAU1 = Range(isfinite, "a finite number")
 """Values of k2 for which tau1 exists."""
 ALLOWED_GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
@@ -214,7 +215,8 @@ class LimitCycleTask(Task):
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
         found = cycle.multipliers
-        stored = _StoredMultipliers(np.full(STORED_MULTIPLIERS, COMPLEX_NAN) if found is None else found)
+        unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
+        stored = SimpleNamespace(multipliers=unknown if found is None else found)
         values = outcome_values(
             CYCLE_VARIABLES, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
         )
@@ -229,14 +231,6 @@ class LimitCycleTask(Task):
         if options.transient:
             values |= _values_of_arrays(TRANSIENT_VARIABLES, cycle.transient)
         return values
-
-
-class _StoredMultipliers(NamedTuple):
-    """The stored Floquet multipliers of a cycle, (STORED_MULTIPLIERS,); NaN if no multipliers were
-    computed.
-    """
-
-    multipliers: Complex
 
 
 def _values_of_arrays(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:

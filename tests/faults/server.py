@@ -361,10 +361,10 @@ def find_provenance(solving: bool) -> None:
 
     provenance()
     if solving:
-        from rodsweep.solve.backend import blas_kernel
+        from rodsweep.solve.backend import petsc
 
-        blas_kernel.blas_description = cache(blas_kernel.blas_description)
-        blas_kernel.blas_description()
+        petsc.blas_description = cache(petsc.blas_description)
+        petsc.blas_description()
 
 
 def draw() -> None:

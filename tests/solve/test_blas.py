@@ -12,8 +12,8 @@ from rodsweep.results.file.provenance import (
     merged_blas_kernels,
 )
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.backend import blas_kernel as blas_module
-from rodsweep.solve.backend.blas_kernel import blas_description
+from rodsweep.solve.backend import petsc as blas_module
+from rodsweep.solve.backend.petsc import blas_description
 
 SPECTRA = """
 task: spectrum

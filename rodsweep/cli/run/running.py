@@ -51,7 +51,7 @@ class _RankRun:
     """The result file, on the first rank, after `_open_store`."""
 
     def __init__(self, team: Team, job: Job, output: Path, request: RunRequest, stop: StopRequest):
-        from ...solve.backend.blas_kernel import blas_description
+        from ...solve.backend.petsc import blas_description
 
         self.team = team
         self.job = job

@@ -8,20 +8,9 @@ import numpy as np
 from bokeh.models import HoverTool, Legend, LegendItem, Range1d
 
 from ..slider_scales import PictureAxis
-from .card import (
-    NEUTRAL_COLOUR,
-    POINT_COLOUR,
-    STABLE_COLOUR,
-    UNSTABLE_COLOUR,
-    Card,
-    axis_limits,
-    empty_source,
-    new_figure,
-    set_axis_range,
-    vertical_line,
-)
+from . import card
 
-STABILITY_COLOURS = {1: STABLE_COLOUR, 0: UNSTABLE_COLOUR, -1: NEUTRAL_COLOUR}
+STABILITY_COLOURS = {1: card.STABLE_COLOUR, 0: card.UNSTABLE_COLOUR, -1: card.NEUTRAL_COLOUR}
 """Colour of a branch, by stability: 1 stable, 0 unstable, -1 unknown."""
 NO_CYCLE_COLUMNS = {"F": np.zeros(0), "y": np.zeros(0), "stable": np.zeros(0, dtype=int)}
 """Columns without values, for an answer that has branches but no separately solved cycles."""
@@ -38,18 +27,23 @@ class BranchPicture:
     """
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "force F (k3/L^2)", "largest tip deflection (L)", x_range=Range1d(0, 1), y_range=Range1d(-0.05, 1)
         )
-        self.branch_source = empty_source(("F", "y", "colour", "dash"), "branch_source")
-        self.cycle_source = empty_source(("F", "y", "colour"), "stored_cycle_source")
-        self.special_point_source = empty_source(("F", "y", "kind", "period"), "special_source")
+        self.branch_source = card.empty_source(("F", "y", "colour", "dash"), "branch_source")
+        self.cycle_source = card.empty_source(("F", "y", "colour"), "stored_cycle_source")
+        self.special_point_source = card.empty_source(("F", "y", "kind", "period"), "special_source")
         figure.multi_line(
             "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.branch_source
         )  # fmt: skip
         figure.scatter("F", "y", size=5, color="colour", source=self.cycle_source)
         marks = figure.scatter(
-            "F", "y", size=9, color=NEUTRAL_COLOUR, line_color=POINT_COLOUR, source=self.special_point_source
+            "F",
+            "y",
+            size=9,
+            color=card.NEUTRAL_COLOUR,
+            line_color=card.POINT_COLOUR,
+            source=self.special_point_source,
         )
         figure.add_tools(
             HoverTool(
@@ -68,9 +62,9 @@ class BranchPicture:
             for text, key in zip(("stable", "unstable"), keys, strict=True)
         ]
         figure.add_layout(Legend(items=items, location="top_left"))
-        self.load_line = vertical_line(0, POINT_COLOUR)
+        self.load_line = card.vertical_line(0, card.POINT_COLOUR)
         figure.add_layout(self.load_line)
-        self.card = Card("branches", figure)
+        self.card = card.Card("branches", figure)
         self.card.set_title("")
 
     def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
@@ -95,8 +89,8 @@ class BranchPicture:
             drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
             all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
-            set_axis_range(self.card.figure.x_range, *axis_limits(all_F * load.factor, margin))
-            set_axis_range(self.card.figure.y_range, *axis_limits(all_y * length.factor))
+            card.set_axis_range(self.card.figure.x_range, *card.axis_limits(all_F * load.factor, margin))
+            card.set_axis_range(self.card.figure.y_range, *card.axis_limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]

@@ -13,25 +13,14 @@ from ...arrays import Array
 from ...wording import counted
 from ..slider_scales import ControlScale
 from ..solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
-from .card import (
-    FOLD_COLOUR,
-    NEUTRAL_COLOUR,
-    POINT_COLOUR,
-    STABLE_COLOUR,
-    TORUS_COLOUR,
-    UNSTABLE_COLOUR,
-    Card,
-    empty_source,
-    new_figure,
-    set_axis_range,
-)
+from . import card
 from .diagram_regions import region_table
 
-BOUNDARY_COLOURS = {"double": NEUTRAL_COLOUR, "onset": NEUTRAL_COLOUR, "hopf": UNSTABLE_COLOUR}
+BOUNDARY_COLOURS = {"double": card.NEUTRAL_COLOUR, "onset": card.NEUTRAL_COLOUR, "hopf": card.UNSTABLE_COLOUR}
 """Colour of a stability boundary, by kind; other kinds have the colour STABLE_COLOUR."""
 CYCLE_CURVE_LOOKS = {
-    "fold": ("folds of cycles", FOLD_COLOUR, "solid"),
-    "torus": ("torus points", TORUS_COLOUR, "dashed"),
+    "fold": ("folds of cycles", card.FOLD_COLOUR, "solid"),
+    "torus": ("torus points", card.TORUS_COLOUR, "dashed"),
 }
 """(legend entry, colour, line style) of curves of folds and of torus points of cycles, by kind of point."""
 DARKEST_COUNT = 6
@@ -85,11 +74,11 @@ def joined_cells(sides: Array, levels: Array, counts: Array) -> list[DiagramCell
 def stability_colour(count: int) -> tuple[str, float]:
     """(colour, opacity) for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
     if count in (CRUSHED_COUNT, UNKNOWN_COUNT):
-        return NEUTRAL_COLOUR, 0.55 if count == CRUSHED_COUNT else 0.25
+        return card.NEUTRAL_COLOUR, 0.55 if count == CRUSHED_COUNT else 0.25
     return (
-        (STABLE_COLOUR, 0.18)
+        (card.STABLE_COLOUR, 0.18)
         if count == 0
-        else (UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
+        else (card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
     )
 
 
@@ -105,17 +94,17 @@ class DiagramPicture:
     """
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "force F (k3/L^2)", "k2", y_axis_type="log",
             x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
         )  # fmt: skip
-        self.cell_source = empty_source(
+        self.cell_source = card.empty_source(
             ("left", "right", "bottom", "top", "unstable", "words", "colour", "alpha"), "cell_source"
         )
-        self.curve_source = empty_source(("x", "y", "colour"), "curve_source")
-        self.cycle_curve_source = empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
-        self.crossing_source = empty_source(("x", "y", "colour"), "crossing_source")
-        self.point_source = empty_source(("x", "y"), "point_source")
+        self.curve_source = card.empty_source(("x", "y", "colour"), "curve_source")
+        self.cycle_curve_source = card.empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
+        self.crossing_source = card.empty_source(("x", "y", "colour"), "crossing_source")
+        self.point_source = card.empty_source(("x", "y"), "point_source")
         areas = figure.quad(
             left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
             line_width=0, source=self.cell_source,
@@ -138,11 +127,11 @@ class DiagramPicture:
             marker="cross",
             size=22,
             line_width=3,
-            color=POINT_COLOUR,
+            color=card.POINT_COLOUR,
             source=self.point_source,
             level="overlay",
         )
-        self.card = Card("diagram", figure)
+        self.card = card.Card("diagram", figure)
 
     @property
     def is_drawn(self) -> bool:
@@ -171,11 +160,11 @@ class DiagramPicture:
         self.crossing_source.data = {
             "x": found["crossing_x"] * load.factor,
             "y": found["crossing_y"] * second.factor,
-            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
+            "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
         }
         figure = self.card.figure
-        set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
-        set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
+        card.set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
+        card.set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
         figure.yaxis.axis_label = second.label
         self.card.show_figure()
@@ -185,7 +174,7 @@ class DiagramPicture:
         self.curve_source.data = {
             "x": x,
             "y": y,
-            "colour": [BOUNDARY_COLOURS.get(kind, STABLE_COLOUR) for kind in kinds],
+            "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
         }
         x, y, kinds = _curves_of_answer(found, "cycle_curve")
         looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]

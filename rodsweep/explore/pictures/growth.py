@@ -6,19 +6,7 @@ import numpy as np
 from bokeh.models import HoverTool, Range1d, Span
 
 from ..slider_scales import PictureAxis
-from .card import (
-    NEUTRAL_COLOUR,
-    POINT_COLOUR,
-    STABLE_COLOUR,
-    UNSTABLE_COLOUR,
-    Card,
-    axis_limits,
-    empty_source,
-    new_figure,
-    set_axis_range,
-    source_columns,
-    vertical_line,
-)
+from . import card
 from .numbers import SI_NAMES
 
 NAMED_THRESHOLDS = ("F_onset", "F_hopf", "F_restabilization")
@@ -28,10 +16,10 @@ ROD_THRESHOLD_FORMATS = ("F* = {:.7g}", "F** = {:.7g}", "stable from {:.7g}")
 ARM_THRESHOLD_FORMATS = ("oscillates from {:.5g} kPa", "flutters from {:.5g} kPa", "stable from {:.5g} kPa")
 """Formats of `NAMED_THRESHOLDS` in the title, for an arm (load: pressure)."""
 THRESHOLD_LOOKS = {
-    "onset": ("oscillates from F*", NEUTRAL_COLOUR),
-    "hopf": ("flutters, Hopf point F**", UNSTABLE_COLOUR),
-    "hopf_reverse": ("a mode becomes stable", STABLE_COLOUR),
-    "restabilization": ("stable again", STABLE_COLOUR),
+    "onset": ("oscillates from F*", card.NEUTRAL_COLOUR),
+    "hopf": ("flutters, Hopf point F**", card.UNSTABLE_COLOUR),
+    "hopf_reverse": ("a mode becomes stable", card.STABLE_COLOUR),
+    "restabilization": ("stable again", card.STABLE_COLOUR),
 }
 """(tooltip, colour) of each kind of threshold in the picture."""
 
@@ -42,17 +30,17 @@ class GrowthPicture:
     """
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "force F (k3/L^2)", "growth rate (1/tau2)", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
         )
-        self.rate_source = empty_source(("F", "first", "second", "third"), "growth_source")
-        self.threshold_source = empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
+        self.rate_source = card.empty_source(("F", "first", "second", "third"), "growth_source")
+        self.threshold_source = card.empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
         for name, width in (("third", 1), ("second", 1), ("first", 2.5)):
             figure.line(
                 "F",
                 name,
                 line_width=width,
-                color=NEUTRAL_COLOUR if width == 1 else STABLE_COLOUR,
+                color=card.NEUTRAL_COLOUR if width == 1 else card.STABLE_COLOUR,
                 source=self.rate_source,
             )
         drawn = figure.vspan(
@@ -64,11 +52,13 @@ class GrowthPicture:
                 tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("frequency", "@frequency{0.000000}")],
             )
         )
-        figure.add_layout(Span(location=0, dimension="width", line_color=NEUTRAL_COLOUR, line_dash="dashed"))
-        self.load_line = vertical_line(0, POINT_COLOUR)
+        figure.add_layout(
+            Span(location=0, dimension="width", line_color=card.NEUTRAL_COLOUR, line_dash="dashed")
+        )
+        self.load_line = card.vertical_line(0, card.POINT_COLOUR)
         self.load_line.line_width = 3
         figure.add_layout(self.load_line)
-        self.card = Card("growth", figure, title_lines=2)
+        self.card = card.Card("growth", figure, title_lines=2)
         self.card.set_title("")
 
     def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
@@ -76,10 +66,14 @@ class GrowthPicture:
         rates = found["growth_rate"]
         names = ("first", "second", "third")
         F = found["F"] * load.factor
-        self.rate_source.data = source_columns(F=F, **{name: rates[:, i] for i, name in enumerate(names)})
+        self.rate_source.data = card.source_columns(
+            F=F, **{name: rates[:, i] for i, name in enumerate(names)}
+        )
         leading = rates[:, 0]
-        set_axis_range(self.card.figure.y_range, *axis_limits(np.append(leading[np.isfinite(leading)], 0.0)))
-        set_axis_range(self.card.figure.x_range, F[0], F[-1])
+        card.set_axis_range(
+            self.card.figure.y_range, *card.axis_limits(np.append(leading[np.isfinite(leading)], 0.0))
+        )
+        card.set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
         self.card.show_figure()

@@ -14,17 +14,7 @@ from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..page_style import template_text
 from ..slider_scales import PictureAxis
 from ..solving.tip_release import Tip
-from .card import (
-    NEUTRAL_COLOUR,
-    POINT_COLOUR,
-    STABLE_COLOUR,
-    Card,
-    empty_source,
-    new_figure,
-    set_axis_range,
-    source_columns,
-    status_sentence,
-)
+from . import card
 
 PERIOD_SECONDS = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
@@ -44,20 +34,20 @@ class MovingArmPicture:
     """
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "x (L)", "y (L)", x_range=Range1d(-0.1, 1.1), y_range=Range1d(-0.7, 0.7), match_aspect=True
         )
         names = ("shapes", "motion", "reached")
         self.shapes_source, self.motion_source, self.reached_source = (
-            empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
+            card.empty_source(SHAPE_COLUMNS, f"{name}_source") for name in names
         )
         names = ("arm", "bent", "path")
         self.arm_source, self.bent_source, self.path_source = (
-            empty_source(("x", "y"), f"{name}_source") for name in names
+            card.empty_source(("x", "y"), f"{name}_source") for name in names
         )
-        self.grip_source = empty_source(("x", "y", "phase"), "grip_source")
+        self.grip_source = card.empty_source(("x", "y", "phase"), "grip_source")
         self.length = PictureAxis("L", 1.0)
-        figure.line("x", "y", color=NEUTRAL_COLOUR, line_width=1, source=self.path_source)
+        figure.line("x", "y", color=card.NEUTRAL_COLOUR, line_width=1, source=self.path_source)
         for source in (
             self.shapes_source,
             self.motion_source,
@@ -67,14 +57,14 @@ class MovingArmPicture:
         ):
             figure.scatter("x", "y", visible=False, source=source)  # sends the source to the browser
         self.arm_line = figure.line(
-            "x", "y", color=STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm_source,
+            "x", "y", color=card.STABLE_COLOUR, line_width=5, line_cap="round", source=self.arm_source,
             visible=False,
         )  # fmt: skip
-        figure.scatter([0], [0], marker="square", size=12, color=POINT_COLOUR)
+        figure.scatter([0], [0], marker="square", size=12, color=card.POINT_COLOUR)
         for event, phase in ((Pan, "bent"), (PanEnd, "let go")):
             arguments = {"figure": figure, "grip": self.grip_source, "phase": phase}
             figure.js_on_event(event, CustomJS(args=arguments, code=template_text("grip.js")))
-        self.card = Card("beating", figure)
+        self.card = card.Card("beating", figure)
         self.card.set_title("")
 
     def animation_script(self) -> CustomJS:
@@ -83,7 +73,7 @@ class MovingArmPicture:
         """
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, f"{name}_source") for name in names}
-        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": STABLE_COLOUR}
+        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
         return CustomJS(args=sources | more, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
@@ -119,7 +109,7 @@ class MovingArmPicture:
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(status_sentence(found))
+            self.card.show_sentence_above(card.status_sentence(found))
 
     def show_bent(self, found: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
@@ -164,7 +154,7 @@ class MovingArmPicture:
         followed by the first.
         """
         path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
-        self.path_source.data = source_columns(x=path[:, 0], y=path[:, 1])
+        self.path_source.data = card.source_columns(x=path[:, 0], y=path[:, 1])
 
     def _fit_axes(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit
@@ -172,8 +162,8 @@ class MovingArmPicture:
         """
         factor = self.length.factor
         reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        set_axis_range(self.card.figure.y_range, -reach, reach)
-        set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
+        card.set_axis_range(self.card.figure.y_range, -reach, reach)
+        card.set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:

@@ -5,19 +5,7 @@ from typing import Any
 import numpy as np
 from bokeh.models import Range1d
 
-from .card import (
-    NEUTRAL_COLOUR,
-    STABLE_COLOUR,
-    UNSTABLE_COLOUR,
-    Card,
-    axis_limits,
-    empty_source,
-    new_figure,
-    set_axis_range,
-    source_columns,
-    status_sentence,
-    vertical_line,
-)
+from . import card
 from .numbers import SI_NAMES
 
 
@@ -27,15 +15,15 @@ class SpectrumPicture:
     """
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "growth rate (1/tau2)", "frequency (rad/tau2)",
             [("growth rate", "@growth{0.00000000}"), ("frequency", "@frequency{0.00000000}")],
             x_range=Range1d(-1, 1), y_range=Range1d(-1, 1),
         )  # fmt: skip
-        self.source = empty_source(("growth", "frequency", "colour"), "spectrum_source")
-        figure.add_layout(vertical_line(0, NEUTRAL_COLOUR, "dashed"))
+        self.source = card.empty_source(("growth", "frequency", "colour"), "spectrum_source")
+        figure.add_layout(card.vertical_line(0, card.NEUTRAL_COLOUR, "dashed"))
         figure.scatter("growth", "frequency", size=11, color="colour", source=self.source)
-        self.card = Card("spectrum", figure)
+        self.card = card.Card("spectrum", figure)
         self.card.set_title("")
 
     def show(self, found: dict[str, Any]) -> None:
@@ -46,15 +34,15 @@ class SpectrumPicture:
         growth, frequency = (found[name] for name in names)
         known = np.isfinite(growth)
         if not known.any():
-            self.card.show_sentence_instead(status_sentence(found))
+            self.card.show_sentence_instead(card.status_sentence(found))
             return
         growth = growth[known]
         frequency = frequency[known]
-        colours = np.where(growth > 0, UNSTABLE_COLOUR, STABLE_COLOUR)
-        self.source.data = source_columns(growth=growth, frequency=frequency, colour=colours)
+        colours = np.where(growth > 0, card.UNSTABLE_COLOUR, card.STABLE_COLOUR)
+        self.source.data = card.source_columns(growth=growth, frequency=frequency, colour=colours)
         figure = self.card.figure
-        set_axis_range(figure.x_range, *axis_limits(np.append(growth, 0.0)))
-        set_axis_range(figure.y_range, *axis_limits(frequency))
+        card.set_axis_range(figure.x_range, *card.axis_limits(np.append(growth, 0.0)))
+        card.set_axis_range(figure.y_range, *card.axis_limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
             f"{word} ({found['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
@@ -78,19 +66,24 @@ class ModePicture:
     """Real and imaginary part of the deflection Y(u) of the leading mode."""
 
     def __init__(self) -> None:
-        figure = new_figure(
+        figure = card.new_figure(
             "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
         )
-        self.source = empty_source(("u", "real", "imaginary"), "mode_source")
+        self.source = card.empty_source(("u", "real", "imaginary"), "mode_source")
         figure.line(
-            "u", "real", line_width=2.5, color=STABLE_COLOUR, legend_label="real part", source=self.source
+            "u",
+            "real",
+            line_width=2.5,
+            color=card.STABLE_COLOUR,
+            legend_label="real part",
+            source=self.source,
         )
         figure.line(
-            "u", "imaginary", line_width=2.5, color=UNSTABLE_COLOUR, line_dash="dashed",
+            "u", "imaginary", line_width=2.5, color=card.UNSTABLE_COLOUR, line_dash="dashed",
             legend_label="imaginary part", source=self.source,
         )  # fmt: skip
         figure.legend.location = "top_left"
-        self.card = Card("mode", figure)
+        self.card = card.Card("mode", figure)
 
     def show(self, found: dict[str, Any]) -> None:
         """Draws the leading mode of `found`, an answer of the task `spectrum`; if the mode is not known,
@@ -99,8 +92,8 @@ class ModePicture:
         real = found["Y_real"][0]
         imaginary = found["Y_imag"][0]
         if not np.isfinite(real).all():
-            self.card.show_sentence_instead(status_sentence(found))
+            self.card.show_sentence_instead(card.status_sentence(found))
             return
-        self.source.data = source_columns(u=found["u"], real=real, imaginary=imaginary)
-        set_axis_range(self.card.figure.y_range, *axis_limits(np.append(real, imaginary)))
+        self.source.data = card.source_columns(u=found["u"], real=real, imaginary=imaginary)
+        card.set_axis_range(self.card.figure.y_range, *card.axis_limits(np.append(real, imaginary)))
         self.card.show_figure()

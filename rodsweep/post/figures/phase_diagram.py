@@ -17,6 +17,7 @@ from ...results.file.view import View
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
+from . import style
 from .arm.quantities import constant_quantities_text
 from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
@@ -26,17 +27,6 @@ from .stability.class_colours import CLASS_PALETTE, STATE_PALETTE, Palette
 from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
-from .style import (
-    LABELS,
-    SYMBOLS,
-    heading_text,
-    is_logarithmic,
-    legend_below,
-    parameter_text,
-    require_content,
-    scale_axis,
-)
-from .style import number_in_tex as number_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +57,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
     palette = STATE_PALETTE if STATE_PALETTE.variable in view.variables else CLASS_PALETTE
     values = view.variables[palette.variable]
-    require_content(view, (values >= 0).any(), "computed row")
+    style.require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
     y = view.parameter_values[row]
     keep = np.isfinite(y)
@@ -85,14 +75,14 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     pixels = _class_of_pixels(view, palette, line, row, ClassMap(plane, table, ratio))
     unit: dict[str, Any] = {"extent": (0, 1, 0, 1), "transform": axes.transAxes, "aspect": "auto"}
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
-    scale_axis(axes, "x", x)
-    scale_axis(axes, "y", y)
+    style.scale_axis(axes, "x", x)
+    style.scale_axis(axes, "y", y)
     edge = _draw_crushing(axes, ratio, *at)
-    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=LABELS[line], ylabel=LABELS[row])
+    axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
-    legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
+    style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(
-        heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
+        style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
     )
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
@@ -123,7 +113,7 @@ def _constant_parameters_text(view: View, line: str, row: str) -> str:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
         fixed["gamma1"] = float(view.attributes.get("gamma1", DEFAULT_VALUES_OF_PARAMETERS["gamma1"]))
-    return parameter_text(fixed)
+    return style.parameter_text(fixed)
 
 
 def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]:
@@ -146,7 +136,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     share = np.linspace(0, 1, PIXEL_COUNT + 1)
-    edges = x[0] * (x[-1] / x[0]) ** share if is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
+    edges = x[0] * (x[-1] / x[0]) ** share if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
     table = np.array(
         [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
     )
@@ -154,13 +144,15 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
     for between in np.arange(len(y) - 1) + 0.5:
         axes.axhline(between, color="white", lw=4)
-    scale_axis(axes, "x", x)
-    axes.set_yticks(np.arange(len(y)), [f"${SYMBOLS[row]} = {number_text(value)}$" for value in y])
+    style.scale_axis(axes, "x", x)
+    axes.set_yticks(
+        np.arange(len(y)), [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
+    )
     axes.tick_params("y", length=0)
-    axes.set(xlim=(x[0], x[-1]), xlabel=LABELS[line])
-    legend_below(figure, palette.legend_entries(table), columns=3)
+    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line])
+    style.legend_below(figure, palette.legend_entries(table), columns=3)
     figure.suptitle(
-        heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
+        style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
     )
     return figure
 

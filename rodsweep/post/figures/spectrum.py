@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 
 from ...errors import InputError
 from ...results.file.view import View
+from . import style
 from .grid_sections import left_out_clause, section_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
@@ -27,15 +28,6 @@ from .spectra.line import (
     mark_thresholds,
     roots_to_follow,
     threshold_text,
-)
-from .style import (
-    LABELS,
-    constant_parameters_text,
-    heading_text,
-    legend_below,
-    require_content,
-    scale_axis,
-    varied_axes,
 )
 
 MAX_PANELS = 12
@@ -71,20 +63,20 @@ def draw_spectrum(request: FigureRequest) -> str:
     if len(request.views) > 1:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view())
-    require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    style.require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     if view.variables["status"].size == 1 or not view.is_grid:
         _refuse_roots(view, request.roots, "single points, each with all stored eigenvalues", ("all",))
     if view.variables["status"].size == 1:
         return request.write(draw_eigenvalues(view), "the stored eigenvalues in the complex plane")
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
-    long = varied_axes(view)
+    long = style.varied_axes(view)
     few = min(long, key=lambda name: len(view.parameter_values[name]))
     if len(long) > 1 and len(view.parameter_values[few]) <= MAX_LINE_PANELS:
         return _draw_line_per_value(view, few, request)
     left_out = left_out_clause(view.parameter_values, long)
     view = without_infinite_values(view)
-    long = varied_axes(view)
+    long = style.varied_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
         return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + left_out)
@@ -110,7 +102,7 @@ def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
         for value in view.parameter_values[few]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
-    others = [name for name in varied_axes(view) if name != few]
+    others = [name for name in style.varied_axes(view) if name != few]
     return _draw_line_panels(views, request, f"{few}{left_out_clause(view.parameter_values, others)}")
 
 
@@ -134,7 +126,7 @@ def _draw_files(request: FigureRequest) -> str:
         )
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
-    left_out = [left_out_clause(grid.parameter_values, varied_axes(grid)) for grid in grids]
+    left_out = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
     return _draw_line_panels(views, request, f"of {len(views)} files{max(left_out, key=len)}")
 
 
@@ -145,7 +137,7 @@ def _line_of_spectra(view: View, request: FigureRequest) -> View:
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid_if_possible(view)
-    require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
+    style.require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite_values(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.parameter_values.values()) != 1:
         raise InputError(
@@ -174,16 +166,16 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     axes.set_rasterization_zorder(0)
     if np.nanmin(growth) < 0 < np.nanmax(growth):
         axes.contour(x, y, drawn, levels=[0.0], colors="k", linewidths=1.2)
-    scale_axis(axes, "x", x)
-    scale_axis(axes, "y", y)
-    axes.set(xlabel=LABELS[horizontal], ylabel=LABELS[vertical])
+    style.scale_axis(axes, "x", x)
+    style.scale_axis(axes, "y", y)
+    axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
     _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
     figure.suptitle(
-        heading_text(
+        style.heading_text(
             view,
-            constant_parameters_text(view, *names),
+            style.constant_parameters_text(view, *names),
             "black: zero growth, interpolated between the points",
         )
     )
@@ -211,7 +203,7 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     handles: dict[str, Artist] = {}
     for letter, panel, view in zip(ascii_lowercase, panels, views, strict=False):
-        (name,) = varied_axes(view)
+        (name,) = style.varied_axes(view)
         draw_roots(panel, view, name, roots)
         thresholds = mark_thresholds(panel, view, name)
         for handle, label in zip(*panel.get_legend_handles_labels(), strict=True):
@@ -219,14 +211,14 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
         for threshold in thresholds:
             handles.pop(threshold_text(threshold), None)
             word = THRESHOLD_WORDS[threshold.kind]
-            _, style = THRESHOLD_LOOKS[threshold.kind]
-            handles[word] = Line2D([], [], ls=style, label=word, **THRESHOLD_LINE)
-        text = heading_text(
-            view, constant_parameters_text(view, name), ", ".join(map(threshold_text, thresholds))
+            _, dashes = THRESHOLD_LOOKS[threshold.kind]
+            handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE)
+        text = style.heading_text(
+            view, style.constant_parameters_text(view, name), ", ".join(map(threshold_text, thresholds))
         )
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
-    legend_below(figure, list(handles.values()), 2 if narrow else 3)
+    style.legend_below(figure, list(handles.values()), 2 if narrow else 3)
     figure.suptitle(ROOT_CHOICE_TEXTS[roots])
     return figure

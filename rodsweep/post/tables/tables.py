@@ -11,17 +11,9 @@ from ...model.arm.quantities import LOADS
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ..branch_curves import followed_parameter
+from . import table_names
 from .column import Column
 from .rows_and_columns import Rows, item_rows, line_columns, list_columns, point_columns, si_columns
-from .table_names import (
-    BRANCHES,
-    GRID,
-    POINTS,
-    TableContents,
-    chosen_table,
-    refuse_unknown_columns,
-    table_contents_of,
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,9 +45,9 @@ class Tables:
         object.__setattr__(self, "view", self.view.as_list)
 
     @cached_property
-    def contents(self) -> TableContents:
+    def contents(self) -> table_names.TableContents:
         """Names of the tables of the result, and the variables in each table."""
-        return table_contents_of(self.view)
+        return table_names.table_contents_of(self.view)
 
     def table(self, name: str | None = None, columns: Sequence[str] = ()) -> Table:
         """The table with the given name or columns; by default the default table of the task.
@@ -64,19 +56,21 @@ class Tables:
         quantities and status of the points and the columns of the list. Raises InputError for an unknown
         name.
         """
-        name = chosen_table(self.view, self.contents, name, tuple(columns))
+        name = table_names.chosen_table(self.view, self.contents, name, tuple(columns))
         points, found = self._rows(name)
         beside = (
             [] if points is None else list(point_columns(self.view, self.contents.point_variables, points))
         )
-        if name == GRID:  # move the first column, a parameter, to its place among the other parameters
+        if (
+            name == table_names.GRID
+        ):  # move the first column, a parameter, to its place among the other parameters
             before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
             beside.insert(sum(column.name in before for column in beside), found.pop(0))
         by_name = {column.name: column for column in (*beside, *found)}
-        refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
+        table_names.refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
             hidden = {v.name for v in self.contents.point_variables if v.name != "status"}
-            columns = [each for each in by_name if name == POINTS or each not in hidden]
+            columns = [each for each in by_name if name == table_names.POINTS or each not in hidden]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
         others = tuple(other for other in self.contents.tables if other != name)
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
@@ -89,9 +83,9 @@ class Tables:
         """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
         row, (rows,); None if the rows belong to no point. columns: columns of the items.
         """
-        if name == POINTS:
+        if name == table_names.POINTS:
             return np.arange(self.view.variables["status"].size), []
-        if name == BRANCHES:
+        if name == table_names.BRANCHES:
             return self._branches()
         rows, columns = self._list(name)
         return None if name in self.contents.sweep_wide_lists else rows[0], columns
@@ -104,7 +98,7 @@ class Tables:
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, is_sweep_wide)
         columns = list(list_columns(self.view, variables, rows, is_sweep_wide))
-        columns += line_columns(self.view, rows) if name == GRID else ()
+        columns += line_columns(self.view, rows) if name == table_names.GRID else ()
         points = None if is_sweep_wide else rows[0]
         return rows, [*columns, *si_columns(self.view, variables, columns, points)]
 

@@ -23,7 +23,7 @@ RANK_STATISTICS = ("rank_points", "rank_busy_seconds", "rank_idle_seconds")
 """Names of the attributes with the work statistics of each rank of the last run."""
 KERNELS_ATTRIBUTE = "blas_kernels"
 """Name of the attribute with the BLAS kernels that computed the points of a file in all runs, a kernel per
-line, named by `rodsweep.solve.backend.blas_kernel`."""
+line, named by `rodsweep.solve.backend.petsc.blas_description`."""
 FAILURE_REASONS_ATTRIBUTE = "failure_reasons"
 """Name of the attribute with one example point for each distinct reason of failure, in all runs; each line
 has parameters, status and reason."""

@@ -1,7 +1,15 @@
-"""Starts PETSc and SLEPc on import; reports versions, user options and the sparse solver of this
-installation."""
+"""Starts PETSc and SLEPc on import; reports versions, user options, the sparse solver and the BLAS kernels of
+this installation.
+
+A library such as OpenBLAS has a kernel for every kind of processor, and chooses a kernel at start. Kernels
+sum in different orders, so the results of two kernels agree only within rounding. PETSc and NumPy may use
+different libraries.
+"""
 
 from functools import cache
+from pathlib import Path
+
+from threadpoolctl import threadpool_info
 
 from ...errors import import_refusal
 from .availability import add_debian_modules
@@ -19,7 +27,15 @@ try:
 except (ImportError, ValueError) as error:  # ValueError: compiled for another NumPy
     raise import_refusal("petsc4py and slepc4py", error) from error
 
-__all__ = ["PETSC_ERRORS", "PETSc", "SLEPc", "user_options_text", "sparse_package", "versions"]
+__all__ = [
+    "PETSC_ERRORS",
+    "PETSc",
+    "SLEPc",
+    "blas_description",
+    "user_options_text",
+    "sparse_package",
+    "versions",
+]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
 """Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error in a
@@ -28,6 +44,8 @@ SystemError."""
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Names of PETSc's sparse LU packages with pivoting, the fastest first, as measured on the rod's matrices.
 PETSc's built-in LU has no pivoting."""
+UNKNOWN_LIBRARY = "unknown"
+"""Name reported for a BLAS library that states no name, for example the reference BLAS."""
 
 
 @cache
@@ -54,3 +72,25 @@ def user_options_text(prefix: str = "") -> str:
     resource file."""
     given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
     return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))
+
+
+def blas_description() -> str:
+    """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's BLAS library if the two
+    differ."""
+    found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
+    for library in threadpool_info():
+        if library["user_api"] == "blas":
+            words = (library["internal_api"], library["version"], library.get("architecture"))
+            found[_package_of_library(library["filepath"])].add(" ".join(str(word) for word in words if word))
+    petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
+    if numpys in ("", petscs):
+        return petscs or UNKNOWN_LIBRARY
+    return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
+
+
+def _package_of_library(path: str) -> str:
+    """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a library of the
+    system)."""
+    names = {part.removesuffix(".libs") for part in Path(path).parts}
+    wheels = (owner for owner in ("NumPy", "SciPy") if owner.lower() in names)
+    return next(wheels, "PETSc")

@@ -44,6 +44,7 @@ from .transient.returns import (
     section_crossings,
     tip_angle_row,
 )
+from .transient.transient_settings import TRANSIENT_SETTINGS
 
 
 def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
@@ -118,18 +119,18 @@ class _IntegrationUntilSettled:
         """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
-        step = self.leading_mode.period / MARCHING_SETTINGS.first_steps_per_period
+        step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
         distances = ReturnDistances(MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance)
         most = self.request.most_periods
         while self.return_count < most:
             report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
             run = self._integrate(
                 z,
-                MARCHING_SETTINGS.max_run_duration_ratio
-                * MARCHING_SETTINGS.returns_per_test
+                TRANSIENT_SETTINGS.max_run_duration_ratio
+                * TRANSIENT_SETTINGS.returns_per_run
                 * self.clock.time_per_return,
                 step,
-                return_limit(row, z, MARCHING_SETTINGS.returns_per_test),
+                return_limit(row, z, TRANSIENT_SETTINGS.returns_per_run),
             )
             z = run.states[-1]
             # The last time step of a run is the first time step of the next run, which continues the motion.
@@ -140,10 +141,10 @@ class _IntegrationUntilSettled:
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
-            if len(past) <= MARCHING_SETTINGS.returns_per_test:
+            if len(past) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
             turns, distance = repetition(list(past))
-            distances.record_test(distance, turns / MARCHING_SETTINGS.returns_per_test)
+            distances.record_test(distance, turns / TRANSIENT_SETTINGS.returns_per_run)
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
             enough = max_settled_distance(self.request.accuracy)
             if distance <= enough * (1 - distances.contraction_rate):
@@ -186,7 +187,7 @@ class _IntegrationUntilSettled:
         returns = settled.returns_per_period + 2
         limit = return_limit(tip_angle_row(self.beam), settled.state, returns)
         tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
-        duration = MARCHING_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
+        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]

@@ -25,13 +25,6 @@ class MarchingSettings:
     tolerance."""
     tests_below_noise: int = 3
     """Number of successive distances below this noise that show that the integration errors are smaller."""
-    first_steps_per_period: int = 1000
-    """Period of the leading mode divided by the first time step of a motion."""
-    max_run_duration_ratio: int = 3
-    """Longest duration of a run divided by the number of returns and by the expected time per return: the
-    period of the leading mode, or the time between the last two returns if it is longer."""
-    returns_per_test: int = 5
-    """Number of returns of the tip between two tests whether the motion repeats."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     max_error_ratio_for_limiting_rod: float = 0.5

@@ -114,7 +114,7 @@ def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
 @cache
 def blas_kernels() -> str:
     """Names of the BLAS kernels that this process uses."""
-    from ...solve.backend.blas_kernel import blas_description as kernel
+    from ...solve.backend.petsc import blas_description as kernel
 
     return kernel()
 

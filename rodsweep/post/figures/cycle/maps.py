@@ -23,17 +23,7 @@ from ....results.file.view import View
 from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
-from ..style import (
-    LABELS,
-    draw_coloured_cells,
-    heading_text,
-    is_logarithmic,
-    label_outer,
-    legend_below,
-    parameter_text,
-    require_content,
-    scale_axis,
-)
+from .. import style
 from .amplitudes.hopf_marks import HOPF_SYMBOL
 from .point_map import PointMap, axis_coordinates, cell_edges, point_map
 from .selection import shared_and_own_of_arms
@@ -73,7 +63,7 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     points = point_map(view)
     words = view.status_names[points.point_indices]
     cycles = np.isin(words, CYCLE_STATUSES)
-    require_content(view, cycles.any(), "cycle")
+    style.require_content(view, cycles.any(), "cycle")
     figure, panels = map_panels(2, narrow)
     lines = hopf_lines(points, view)
     (units,) = units_of_files([view], [points.point_indices.ravel()])
@@ -82,15 +72,15 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
         drawn = units.converted({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
         values = np.where(cycles, drawn.reshape(points.point_indices.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
-        draw_coloured_cells(axes, edges, values, label, colours, ratios)
+        style.draw_coloured_cells(axes, edges, values, label, colours, ratios)
         handles = _draw_hopf_lines(axes, points, lines)
         handles += _draw_statuses(axes, points, words)
         handles += _mark_unstable(axes, points, words == "unstable")
     label_maps(panels, points)
     if handles:
         rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
-        legend_below(figure, handles, columns=-(-len(handles) // rows))
-    figure.suptitle(heading_text(view, _common_parameters_text(view, points, units.in_si)))
+        style.legend_below(figure, handles, columns=-(-len(handles) // rows))
+    figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
@@ -99,7 +89,7 @@ def _common_parameters_text(view: View, points: PointMap, in_si: bool) -> str:
     equal at all points.
     """
     if not in_si:
-        return parameter_text(points.common_parameters)
+        return style.parameter_text(points.common_parameters)
     along = {quantity for quantity, moved in CHANGED_PARAMETER.items() if moved in points.names}
     numbers = [int(points.point_indices[0, 0]) + 1, int(points.point_indices[-1, -1]) + 1]
     return shared_and_own_of_arms(view, numbers, {*points.names, *along})[0]
@@ -120,9 +110,9 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     labels.
     """
     for axes in panels:
-        scale_axis(axes, "x", points.x)
-        scale_axis(axes, "y", points.y)
-        label_outer(axes, *(LABELS[name] for name in points.names))
+        style.scale_axis(axes, "x", points.x)
+        style.scale_axis(axes, "y", points.y)
+        style.label_outer(axes, *(style.LABELS[name] for name in points.names))
 
 
 def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
@@ -188,7 +178,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     points of every row. Without a change of sign of the growth rate, the list is empty.
     """
     (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
-    to_scale = np.log if is_logarithmic(points.x) else np.asarray
+    to_scale = np.log if style.is_logarithmic(points.x) else np.asarray
     growth = view.variables["linear_growth_rate"].ravel()[points.point_indices]
     zeros = [to_scale(places) for places in _hopf_points(points, view)]
     refined = np.unique(np.concatenate([x, *zeros]))

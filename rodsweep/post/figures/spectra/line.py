@@ -14,17 +14,8 @@ from ....arrays import Array, Complex
 from ....results.file.view import View
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
+from .. import style
 from ..arm.quantities import NO_BREAK
-from ..style import (
-    BLUE,
-    LABELS,
-    SYMBOLS,
-    VERMILION,
-    constant_parameters_text,
-    heading_text,
-    legend_below,
-    scale_axis,
-)
 from .eigenvalues import scale_if_spread
 
 ROOT_CHOICE_TEXTS = {
@@ -41,8 +32,8 @@ is logarithmic except near 0."""
 THRESHOLD_DIGITS = 6
 """Number of significant digits of a threshold in the legend."""
 THRESHOLD_LOOKS = {
-    "onset": (rf"${SYMBOLS['F']}_*$", ":"),
-    "hopf": (rf"${SYMBOLS['F']}_{{**}}$", "--"),
+    "onset": (rf"${style.SYMBOLS['F']}_*$", ":"),
+    "hopf": (rf"${style.SYMBOLS['F']}_{{**}}$", "--"),
     "restabilization": ("restabilization", "--"),
 }
 """(symbol or word, line style) of each kind of threshold."""
@@ -127,15 +118,17 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     w = draw_roots(top, view, name, roots)
     mark_thresholds(top, view, name)
     if roots != "all":
-        for i, colour in enumerate((BLUE, VERMILION)):
+        for i, colour in enumerate((style.BLUE, style.VERMILION)):
             bottom.plot(w[:, i].real, w[:, i].imag, ".-", color=colour, lw=0.8, ms=3)
             _draw_direction_arrow(bottom, w[:, i], colour)
     else:
-        _draw_all_roots(bottom, view.parameter_values[name], w, LABELS[name])
+        _draw_all_roots(bottom, view.parameter_values[name], w, style.LABELS[name])
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(heading_text(view, constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots]))
+    style.legend_below(figure, top.get_legend_handles_labels()[0], 2)
+    figure.suptitle(
+        style.heading_text(view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
+    )
     return figure
 
 
@@ -148,20 +141,20 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
     if roots != "all":
         x_broken, w = with_gaps_between_roots(x, w)
         # A thin line over a thick line: both are visible where the lines coincide.
-        for i, (colour, width) in enumerate(((BLUE, 3.0), (VERMILION, 1.2))):
+        for i, (colour, width) in enumerate(((style.BLUE, 3.0), (style.VERMILION, 1.2))):
             look: dict[str, Any] = {"color": colour, "lw": width}
             axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
             axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
     else:
         across = np.broadcast_to(x[:, None], w.shape)
-        for part, colour, marker in ((w.real, BLUE, "o"), (w.imag, VERMILION, "s")):
+        for part, colour, marker in ((w.real, style.BLUE, "o"), (w.imag, style.VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
             axes.plot(
                 across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word
             )
     axes.axhline(0, color="0.5", lw=0.6)
-    scale_axis(axes, "x", x)
-    axes.set(xlabel=LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
+    style.scale_axis(axes, "x", x)
+    axes.set(xlabel=style.LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
     sizes = np.abs(w[np.isfinite(w)])
     if sizes.max(initial=0.0) > LOGARITHMIC_ROOT_RATIO * np.median(sizes):
         least_tick = 10 ** np.floor(np.log10(np.median(sizes) / 10))
@@ -210,8 +203,8 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedThreshold]
     found = StoredThresholds(view, name).thresholds_on(line)
     thresholds = [threshold for threshold in found if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
-        _, style = THRESHOLD_LOOKS[threshold.kind]
-        axes.axvline(threshold.position, ls=style, label=threshold_text(threshold), **THRESHOLD_LINE)
+        _, dashes = THRESHOLD_LOOKS[threshold.kind]
+        axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.
     starts, ends = (

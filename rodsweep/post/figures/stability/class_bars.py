@@ -11,18 +11,8 @@ from matplotlib.lines import Line2D
 from ....results.file.view import View
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
+from .. import style
 from ..point_lists import label_point_numbers, shared_parameters
-from ..style import (
-    BLUE,
-    GREEN,
-    LABELS,
-    SYMBOLS,
-    VERMILION,
-    heading_text,
-    legend_below,
-    parameter_text,
-    require_content,
-)
 from .class_colours import CLASS_COLOURS, class_legend_entries
 from .row_classes import class_above_crossing
 
@@ -30,10 +20,10 @@ FURTHER_HOPF = "later"
 """Key in CROSSING_MARKS of a Hopf point at which a further pair of modes of an unstable rod becomes
 unstable."""
 CROSSING_MARKS = {
-    "onset": (BLUE, "o", rf"onset ${SYMBOLS['F']}_*$"),
-    "hopf": (VERMILION, "s", rf"Hopf ${SYMBOLS['F']}_{{**}}$"),
-    FURTHER_HOPF: (VERMILION, "D", "further Hopf point"),
-    "restabilization": (GREEN, "^", "restabilization"),
+    "onset": (style.BLUE, "o", rf"onset ${style.SYMBOLS['F']}_*$"),
+    "hopf": (style.VERMILION, "s", rf"Hopf ${style.SYMBOLS['F']}_{{**}}$"),
+    FURTHER_HOPF: (style.VERMILION, "D", "further Hopf point"),
+    "restabilization": (style.GREEN, "^", "restabilization"),
 }
 """(colour, marker, legend entry) of each kind of crossing that is marked."""
 BAR_WIDTH = 0.8
@@ -49,7 +39,7 @@ def draw_class_bars(view: View) -> Figure:
     InputError if nothing can be drawn."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
-    require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
+    style.require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
     figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
     seen = set[str]()
@@ -59,13 +49,13 @@ def draw_class_bars(view: View) -> Figure:
     handles += mark_thresholds_on_bars(axes, view, upright=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
-        axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=LABELS["F"])
+        axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
         axes.spines["left"].set_visible(False)
     else:
-        axes.set(ylim=(0, end), ylabel=LABELS["F"])
+        axes.set(ylim=(0, end), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, count)
-    legend_below(figure, handles, columns=2)
-    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
+    style.legend_below(figure, handles, columns=2)
+    figure.suptitle(style.heading_text(view, style.parameter_text(shared_parameters(view))))
     return figure
 
 

@@ -1,4 +1,4 @@
-"""Settings for integrating a motion until its cycle is found (`transient`)."""
+"""Settings for integrating a motion until its cycle is found (`transient`, and in part `by_integration`)."""
 
 from dataclasses import dataclass
 

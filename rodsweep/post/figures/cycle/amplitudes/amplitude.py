@@ -13,24 +13,15 @@ from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
+from ... import style
 from ...grid_sections import left_out_clause
-from ...style import (
-    LABELS,
-    LINE_COLOURS,
-    SYMBOLS,
-    escape_dollar_signs,
-    heading_text,
-    legend_below,
-    require_content,
-    scale_axis,
-)
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
 from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 from .square_root import square_root_laws
 
-BRANCH_LOOKS = tuple(zip(LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
+BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), strict=True))
 """(colour, marker) of each line."""
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
@@ -56,7 +47,9 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
             f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    require_content(first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude")
+    style.require_content(
+        first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude"
+    )
     figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
     shared, own = _common_and_own_texts(branches, name)
@@ -72,10 +65,10 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
     )
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
-        scale_axis(panel, "x", np.unique(branches[0].x))
+        style.scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
-        legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(heading_text(first, shared))
+        style.legend_below(figure, legend, columns=min(2, len(legend)))
+    figure.suptitle(style.heading_text(first, shared))
     left_out = [left_out_clause(view.point_columns, [name]) for view in views]
     return figure, f"amplitudes of the tip, period and power against {name}{max(left_out, key=len)}"
 
@@ -125,8 +118,8 @@ def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tupl
     )
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
-        return {id(view): (escape_dollar_signs(view.path.stem), None) for view in views}
-    words = {"up": f"${SYMBOLS[name]}$ rising", "down": f"${SYMBOLS[name]}$ falling"}
+        return {id(view): (style.escape_dollar_signs(view.path.stem), None) for view in views}
+    words = {"up": f"${style.SYMBOLS[name]}$ rising", "down": f"${style.SYMBOLS[name]}$ falling"}
     return {
         id(view): (words[direction], direction == "up")
         for view, direction in zip(views, directions, strict=True)
@@ -175,7 +168,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
         axes.set_ylabel(label)
         grid_cell = axes.get_subplotspec()
         if grid_cell is not None and grid_cell.is_last_row():
-            axes.set_xlabel(LABELS[name])
+            axes.set_xlabel(style.LABELS[name])
 
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
