@@ -147,3 +147,12 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
 def arm_determinant(rod: Rod) -> ArmDeterminant:
     """The determinant D of an arm, cached: propagators made for one w serve later calls."""
     return ArmDeterminant(rod)
+
+
+def forget_arm_determinants() -> None:
+    """Empties the cache of `arm_determinant`.
+
+    Propagators made for a larger |w| change D by rounding errors. A point or a search that begins with an
+    empty cache has the same result in every process, whatever this process solved before.
+    """
+    arm_determinant.cache_clear()
