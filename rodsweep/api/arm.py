@@ -163,7 +163,8 @@ class Arm(SlenderArm):
 
         default = {each.name: each.default for each in fields(self)}
         section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
-        given = {name: value for name, value in section.items() if value != default[name]}
+        # `load_kind` is no quantity of the arm; the kind of the loads is given to the portrait as `load`.
+        given = {name: value for name, value in section.items() if value != default.get(name, value)}
         own = DescribedRod(arm=given, load=self.load or LOADS[0])
         return solved_portrait(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
 

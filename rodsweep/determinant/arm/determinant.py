@@ -158,3 +158,12 @@ def wave_number(rod: Rod, w: complex) -> float:
         if rod.is_uniform_and_linear
         else arm_determinant(rod).wave_number(w)
     )
+
+
+def forget_arm_determinants() -> None:
+    """Empties the cache of `arm_determinant`.
+
+    Propagators made for a larger |w| change D by rounding errors. A point or a search that begins with an
+    empty cache has the same result in every process, whatever this process solved before.
+    """
+    arm_determinant.cache_clear()

@@ -39,12 +39,11 @@ class Profile:
         if len(self.u) < 2:
             raise ValueError(f"there must be rows at u = 0 and u = 1; the number of rows is {len(self.u)}")
         if self.u[0] != 0 or self.u[-1] != 1:
-            raise ValueError(
-                f"the rows go from u = {self.u[0]:g} to {self.u[-1]:g}; they must go from 0 to 1"
-            )
+            first, last = _digits(self.u[0]), _digits(self.u[-1])
+            raise ValueError(f"the rows go from u = {first} to {last}; they must go from 0 to 1")
         for a, b in zip(self.u[:-1], self.u[1:], strict=True):
             if not a <= b:
-                raise ValueError(f"u = {b:g} follows u = {a:g}; u must not decrease")
+                raise ValueError(f"u = {_digits(b)} follows u = {_digits(a)}; u must not decrease")
             if 0 < b - a < MIN_ROW_DISTANCE * (1 - ROW_ROUNDING):
                 raise ValueError(
                     f"two rows near u = {a:g} differ by {b - a:.2g} in u; allowed: 0 (a jump) or at least "
@@ -67,9 +66,10 @@ class Profile:
 
     @cached_property
     def _cubic_coefficients(self) -> Array:
-        """Coefficients of the cubic polynomials between neighbouring u, t^3 first, (4, factors, intervals).
+        """Coefficients of the cubic polynomials between neighbouring u, (4, factors, 2, intervals).
 
-        t increases from 0 to 1 along each interval.
+        The first axis is the power of the distance from one end of the interval, cubes first; the distance is
+        1 at the opposite end. The third axis is this end: the lower u, the upper u.
         """
         u = np.array(self.u)
         rows = np.array(self.rows)
@@ -80,21 +80,41 @@ class Profile:
             y = rows[part]
             h = np.diff(u[part])[:, None]
             slopes = _monotone_slopes(u[part], y)
-            start = h * slopes[:-1]
-            end = h * slopes[1:]
-            rise = y[1:] - y[:-1]
-            pieces.append(np.array([start + end - 2 * rise, 3 * rise - 2 * start - end, start, y[:-1]]))
-        return np.ascontiguousarray(np.concatenate(pieces, axis=1).swapaxes(1, 2))
+            lower, upper = h * slopes[:-1], h * slopes[1:]
+            from_lower = _powers(y[:-1], y[1:], lower, upper)
+            from_upper = _powers(y[1:], y[:-1], -upper, -lower)
+            pieces.append(np.stack([from_lower, from_upper], axis=1))
+        return np.ascontiguousarray(np.concatenate(pieces, axis=2).transpose(0, 3, 1, 2))
 
     def factors_at(self, u: Array) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
         break."""
         breaks = self.breaks
         piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
-        t = (u - breaks[piece]) / (breaks[piece + 1] - breaks[piece])
-        cubic, square, linear, constant = self._cubic_coefficients[:, :, piece]
+        below, above = u - breaks[piece], breaks[piece + 1] - u
+        # Powers of the distance from the nearer end keep the digits of a factor that falls to a small part of
+        # its value at the other end.
+        end = (above < below).astype(int)
+        t = np.minimum(below, above) / (breaks[piece + 1] - breaks[piece])
+        cubic, square, linear, constant = self._cubic_coefficients[:, :, end, piece]
         factors: Array = ((cubic * t + square) * t + linear) * t + constant
         return factors
+
+
+def _powers(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
+    """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors).
+
+    first, last: values at 0 and at 1. first_slope, last_slope: slopes there. Each is (intervals, factors).
+    """
+    rise = last - first
+    return np.array(
+        [first_slope + last_slope - 2 * rise, 3 * rise - 2 * first_slope - last_slope, first_slope, first]
+    )
+
+
+def _digits(u: float) -> str:
+    """Text of u with all digits that distinguish u from other numbers; 1 for 1.0."""
+    return repr(float(u)).removesuffix(".0")
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:

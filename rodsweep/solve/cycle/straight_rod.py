@@ -11,6 +11,7 @@ from math import isnan, nan
 import numpy as np
 
 from ...arrays import Complex
+from ...determinant.arm.determinant import forget_arm_determinants
 from ...determinant.roots.settings import ROOT_SETTINGS
 from ...model.rod import Rod
 from ..spectrum.path.followed_leader import follow_leading_eigenvalue
@@ -92,6 +93,7 @@ def straight_rod_stability(
     near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
     possible. certify: whether to prove that no other eigenvalue has a larger growth rate.
     """
+    forget_arm_determinants()  # made for the Hopf points of a line, on some ranks
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
     leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
     if leader is not None:

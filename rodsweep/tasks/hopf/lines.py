@@ -41,11 +41,13 @@ class HopfLine:
         """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
         all rods on such a line are crushed, or if the search fails.
         """
+        from ...determinant.arm.determinant import forget_arm_determinants
         from ...determinant.parameter_path import Path
         from ...solve.changes.along_path import find_axis_crossings
         from ...solve.changes.search_range import CRUSHING_END_SETTINGS
         from ...solve.point_outcome import FAILURES
 
+        forget_arm_determinants()
         start = self.start
         stop = self.stop
         if self.varied_parameter == "F":

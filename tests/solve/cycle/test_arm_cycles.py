@@ -10,6 +10,7 @@ from reference.displaced_segments import Segments
 from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
+from rodsweep.determinant.arm.determinant import arm_determinant, forget_arm_determinants
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.plane_equations import write_balance, write_balance_derivative
@@ -30,6 +31,7 @@ from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.straight_rod import straight_rod_stability
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -255,6 +257,24 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     start = orbit.on_mesh(finer, 2 * orbit.interval_count, orbit.stage_count + 1)
     exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
+
+
+def test_the_straight_rod_is_the_same_whatever_was_solved_before():
+    """To the last bit: propagators of D made for other |w| would change the eigenvalue by rounding errors."""
+    build = Build("neo_hookean", "swelling", jump_in_k3())
+    rod = Rod(F=24.0, k1=400.0, k2=300.0, gamma3=0.01, build=build)
+    alone = straight_rod_stability(rod)
+    for first in (10, 14, 20, 28):
+        forget_arm_determinants()
+        for size in np.geomspace(first, 1e5 * first, 60):
+            arm_determinant(rod).propagators_for(size)
+        assert straight_rod_stability(rod) == alone
+
+
+def jump_in_k3():
+    """A profile whose bending stiffness jumps to a half at u = 0.5 and falls towards the tip."""
+    rows = [tuple(k3 if name == "k3" else 1.0 for name in FACTOR_NAMES) for k3 in (1, 1, 0.5, 0.4, 0.3)]
+    return Profile((0.0, 0.5, 0.5, 0.8, 1.0), tuple(rows))
 
 
 def test_a_jump_of_factor_one_is_none():

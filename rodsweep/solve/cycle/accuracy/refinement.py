@@ -6,11 +6,10 @@ The coefficient tails of a nearby orbit determine the first mesh (`orbit_mesh`).
 
 from contextlib import suppress
 from dataclasses import replace
-from math import inf, log
+from math import inf
 
 import numpy as np
 
-from ....arrays import Complex
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath, measures_of
 from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails
@@ -25,6 +24,7 @@ from ...orbit.newton import (
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_limit
 from ...unsolvable import Unsolvable
+from .amplitude_errors import multiplier_per_relative_exponent, with_amplitude_rounding
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
@@ -39,32 +39,21 @@ def cycle_with_calibrated_errors(
 ) -> RefinedCycle:
     """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
     scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled at
-    a nearby orbit, and of the amplitude error. accuracy: requested relative accuracy. path: path of the
-    orbit, if known."""
+    a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf point
+    or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
 
     path = path or CyclePath(found.orbit)
-    errors = calibration.errors(accuracy)
+    measures = measures_of(path)
+    errors = with_amplitude_rounding(calibration.errors(accuracy), found, measures)
     multipliers, trivial_error = multipliers_and_trivial_error(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
     by_matrix = (
         REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
     )
-    by_exponent = 2 * errors.amplitude_error * _multiplier_per_relative_exponent(multipliers)
+    by_exponent = 2 * errors.amplitude_error * multiplier_per_relative_exponent(multipliers)
     errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
-    measures = measures_of(path)
     return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
-
-
-def _multiplier_per_relative_exponent(multipliers: Complex) -> float:
-    """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
-    |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
-
-    Near a Hopf point the exponent is proportional to the squared amplitude. Its relative error is therefore
-    twice the error of the amplitude, even if the multiplier agrees on two meshes by coincidence.
-    """
-    modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
-    return modulus * abs(log(modulus)) if modulus else 0.0
 
 
 def refined_cycle_of_any_period(

@@ -1,0 +1,52 @@
+"""Errors of the amplitude of a cycle near a Hopf point or a fold, where the amplitude depends on the
+parameters of the rod like a square root.
+
+There a multiplier mu is near 1: at a relative distance d from a Hopf point 1 - mu is proportional to d, and
+rounding errors that displace this point by a relative eps change the amplitude by a relative eps/(2 d).
+"""
+
+from dataclasses import replace
+from math import log
+
+import numpy as np
+
+from ....arrays import Complex
+from ...orbit.measures import Measures
+from ...orbit.newton import ConvergedOrbit
+from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+
+MIN_MULTIPLIER_DISTANCE = 2e-16
+"""Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
+
+
+def with_amplitude_rounding(errors: CycleErrors, found: ConvergedOrbit, measures: Measures) -> CycleErrors:
+    """The errors of the extrema, at least the effect of rounding: `rounding_error` divided by the distance of
+    the nearest nontrivial multiplier from 1.
+
+    Two meshes of a comparison share no rounding errors, but may agree by coincidence.
+    """
+    multipliers = found.matrix.multipliers_over_solved_part
+    if len(multipliers) < 2:
+        return errors
+    # The nearest multiplier to 1 is the trivial one.
+    distance = max(float(np.sort(np.abs(multipliers - 1))[1]), MIN_MULTIPLIER_DISTANCE)
+    # A multiplier m over half of the period is m^2 over the period, twice as far from 1.
+    parts = 2 if found.orbit.is_symmetric else 1
+    of_height = CYCLE_ERROR_SETTINGS.rounding_error / (parts * distance)
+    of_extrema = of_height * max(1.0, measures.tip_theta_max / measures.tip_y_max)
+    return replace(
+        errors,
+        amplitude_error=max(errors.amplitude_error, of_height),
+        extrema_error=max(errors.extrema_error, of_extrema),
+    )
+
+
+def multiplier_per_relative_exponent(multipliers: Complex) -> float:
+    """Change of the largest nontrivial multiplier mu per relative change of its exponent ln |mu|: |mu ln
+    |mu||; 0 if there is no multiplier. multipliers: nontrivial, by descending modulus, (m,).
+
+    Near a Hopf point the exponent is proportional to the squared amplitude. Its relative error is therefore
+    twice the error of the amplitude, even if the multiplier agrees on two meshes by coincidence.
+    """
+    modulus = float(np.abs(multipliers[0])) if len(multipliers) else 0.0
+    return modulus * abs(log(modulus)) if modulus else 0.0
