@@ -193,9 +193,8 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_config(first: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
     """Config of the joined file: the config of the first file, for a grid with the axes of the joined points.
-    settings: `Config.settings_of_results` of the first file's config. The task's options are taken from
-    `settings`, so that options without effect have their default values; derived entries, such as the gamma1
-    of a diagram, are left out."""
+    settings: `Config.settings_of_results` of this config; its options of the task without effect have their
+    default values. Derived entries, such as the gamma1 of a diagram, are left out."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
