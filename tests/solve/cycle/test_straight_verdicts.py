@@ -56,6 +56,16 @@ def test_the_sign_of_a_growth_rate_is_sure_beyond_its_error(w, error, stable, gr
     assert doubt in rod.unproved_stability_text and bool(rod.unproved_stability_text) != bool(rod.stable)
 
 
+@pytest.mark.parametrize("amplitude", [0.06, 0.1])
+def test_a_motion_that_decays_at_the_linear_rate_by_coincidence_is_not_straight(amplitude):
+    """Below the fold of a subcritical branch the growth is g0 + c1 y^2 - c2 y^4, near y = 0.055 again g0. The
+    rod beats with y = 0.0427; by an independent integration (BDF, elements of order 12) y is 0.0476 and
+    0.0486 after 252 returns, and falls more and more slowly.
+    """
+    c = ended(Rod(F=85.6, k1=150.0, k2=1e4, gamma3=1e-4), amplitude)
+    assert c.status in (CycleStatus.cycle, CycleStatus.not_settled)
+
+
 def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
     rod, near = Rod(F=28.0, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=27.5, k1=1e4, k2=1e2, gamma3=1e-2)
     leading = straight_rod_stability(rod)
