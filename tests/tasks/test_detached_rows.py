@@ -153,6 +153,23 @@ def test_an_extension_solves_changed_rows_anew(whole):
 
 
 @pytest.mark.long
+def test_a_merge_leaves_changed_rows_to_the_next_run(whole):
+    beside = DIAGRAM.replace("[0.042, 0.05]", "[0.055, 0.06]")
+    whole.write("beside.yaml", beside)
+    whole.write("all.yaml", DIAGRAM.replace("[0.042, 0.05]", "[0.042, 0.05, 0.055, 0.06]"))
+    assert whole("run", "beside.yaml", "-o", "beside.h5").returncode == 0
+    run = whole("merge", "all.h5", "whole.h5", "beside.h5")
+    assert run.returncode == 75, run.stderr
+    assert "3 points from 2 files, 1 missing" in run.stdout
+    run = whole("run", "all.yaml", "-o", "all.h5")
+    assert run.returncode == 0, run.stderr
+    assert "1 of 4 points to do, 3 kept" in run.stdout
+    with h5py.File(whole.directory / "all.h5") as file:
+        assert file["cycle_detached_row"][...].tolist() == [1]
+        assert file["stable_states"][...].reshape(4, -1)[0].tolist() == [1, 3, 3, 3, 3]
+
+
+@pytest.mark.long
 def test_a_row_whose_branch_is_lost_is_undecided_and_says_why(whole):
     patch = """
 import rodsweep.solve.branch.branch_search as search

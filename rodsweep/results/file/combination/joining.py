@@ -193,21 +193,21 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_config(first: ResultHeader, meant: dict[str, Any], points: Points) -> Config:
     """Config of the first file, for grids with the axes of the joined points. meant:
-    `Config.settings_of_results` of the first file's config; its options of the task replace those of the
-    config."""
+    `Config.settings_of_results` of the first file's config; its options of the task, without derived entries
+    such as the gamma1 of a diagram, replace those of the config."""
     task = first.config["task"]
     parameters = dict(first.config["parameters"])
     if points.is_grid:
         own = config_from_resolved(first.config).parameters.axes
         axes = {name: _axis_from_values(own[name], column) for name, column in points.columns_by_name.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
-    return config_from_resolved(first.config | {"parameters": parameters, task: meant[task]})
+    options = {name: meant[task][name] for name in first.config[task] if name in meant[task]}
+    return config_from_resolved(first.config | {"parameters": parameters, task: options})
 
 
 def _axis_from_values(own: Axis, values: Array) -> Axis:
     """An axis with the given values, (n,): `own` or a range if its values are equal bit by bit, otherwise a
-    list.
-    """
+    list."""
     if np.array_equal(own.array(), values):
         return own
     if len(values) > 2 and np.isfinite(values).all():
