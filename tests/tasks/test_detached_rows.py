@@ -159,7 +159,8 @@ def test_a_merge_leaves_changed_rows_to_the_next_run(whole):
     whole.write("all.yaml", DIAGRAM.replace("[0.042, 0.05]", "[0.042, 0.05, 0.055, 0.06]"))
     assert whole("run", "beside.yaml", "-o", "beside.h5").returncode == 0
     run = whole("merge", "all.h5", "whole.h5", "beside.h5")
-    assert run.returncode == 0, run.stderr
+    assert run.returncode == 75, run.stderr
+    assert "3 points from 2 files, 1 missing" in run.stdout
     run = whole("run", "all.yaml", "-o", "all.h5")
     assert run.returncode == 0, run.stderr
     assert "1 of 4 points to do, 3 kept" in run.stdout
