@@ -117,6 +117,11 @@ class Rod:
         return self.build.relative_least_rotational_drag(self.taper) * self.rotational_drag
 
     @property
+    def least_axial_drag(self) -> float:
+        """Smallest axial drag along the arm, in gamma2."""
+        return self.build.relative_least_axial_drag * self.axial_drag
+
+    @property
     def is_uniform(self) -> bool:
         """Whether stiffnesses and drags are constant along the rod."""
         return self.taper == 1 and self.build.profile is None

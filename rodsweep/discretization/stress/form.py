@@ -27,7 +27,7 @@ class StressFormSettings:
     at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long.
     """
     min_eliminated_axial_drag: float = 1e-4
-    """The axial velocity v1 is eliminated if the axial drag is at least this; with a smaller drag v1 is an
+    """The axial velocity v1 is eliminated if the axial drag is everywhere at least this; otherwise v1 is an
     unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
     the axial drag, because an error of the axial force is divided by the drag: no cycle was found from
     motions at a drag of 1e-5, and none near a Hopf point at 1e-10."""
@@ -67,7 +67,8 @@ class StressForm(RodOnMesh):
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
-        axial = AXIAL_COMPONENT if self.rod.gamma1 < STRESS_FORM_SETTINGS.min_eliminated_axial_drag else ()
+        is_axial_velocity_unknown = self.rod.least_axial_drag < STRESS_FORM_SETTINGS.min_eliminated_axial_drag
+        axial = AXIAL_COMPONENT if is_axial_velocity_unknown else ()
         return (*axial, *(OMEGA_COMPONENT if self.is_omega_unknown else ()))
 
     def stresses(self, x: Array) -> Array:

@@ -124,6 +124,12 @@ class Build:
         """
         return _smallest_factor_along(self.profile, taper, "gamma3")
 
+    @cached_property
+    def relative_least_axial_drag(self) -> float:
+        """Smallest axial drag along an arm, divided by the axial drag at the base; it is the same for all
+        tapers."""
+        return _smallest_factor_along(self.profile, 1.0, "gamma1")
+
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
         shape.
@@ -212,10 +218,10 @@ class Build:
 
 @lru_cache(maxsize=1024)
 def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest k1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at the
-    base.
+    """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
+    the base.
     """
-    power = RADIUS_POWERS[name]
+    power = RADIUS_POWERS.get(name, 0)
     # The power of the radius of a cone is monotone, so its minimum is at an end.
     ends = min(1.0, taper**power)
     if profile is None:

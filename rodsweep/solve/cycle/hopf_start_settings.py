@@ -28,9 +28,9 @@ class HopfStartSettings:
     """Relative accuracy of the normal form's coefficients; the truncation error of the normal form is
     larger."""
     max_drag_of_finer_normal_form: float = 1e-2
-    """At a smaller axial drag the mesh of the normal form is finer in proportion: mesh errors of the axial
-    force are divided by the drag in the axial velocity, and the Landau coefficient would have an error of
-    3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
+    """If the smallest axial drag along the rod is less, the mesh of the normal form is finer in proportion:
+    mesh errors of the axial force are divided by the drag in the axial velocity, and the Landau coefficient
+    would have an error of 3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
     finest_normal_form_accuracy: float = 1e-15
     """Smallest relative accuracy for which the mesh of the normal form is chosen: rounding error."""
     start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
@@ -58,5 +58,5 @@ def normal_form_accuracy(rod: Rod) -> float:
     """Relative accuracy for which the mesh of the normal form of `rod` is chosen, for the start of a
     branch."""
     settings = HOPF_START_SETTINGS
-    finer = min(1.0, rod.gamma1 / settings.max_drag_of_finer_normal_form)
+    finer = min(1.0, rod.least_axial_drag / settings.max_drag_of_finer_normal_form)
     return max(settings.normal_form_accuracy * finer, settings.finest_normal_form_accuracy)

@@ -7,6 +7,8 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
+from rodsweep.model.material.build import Build
+from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
@@ -33,8 +35,19 @@ def period_and_y(rod, accuracy=1e-8):
     return np.array([found.measures.period, found.measures.tip_y_max])
 
 
-def test_the_two_forms_have_the_same_cycle():
-    with_v1, without = (replace(ROD, gamma1=LIMIT * (1 + sign * 1e-9)) for sign in (-1, 1))
+def falling_to(factor):
+    """Build of an arm whose axial drag falls to `factor` at the tip."""
+    rows = [[1.0] * len(FACTOR_NAMES) for _ in range(3)]
+    for row, value in zip(rows, (1.0, factor**0.5, factor), strict=True):
+        row[FACTOR_NAMES.index("gamma1")] = value
+    return Build(profile=Profile((0.0, 0.5, 1.0), tuple(map(tuple, rows))))
+
+
+@pytest.mark.parametrize("factor", [None, 0.01])
+def test_the_two_forms_have_the_same_cycle(factor):
+    arm = replace(ROD, build=falling_to(factor)) if factor else ROD
+    base = LIMIT / (factor or 1)
+    with_v1, without = (replace(arm, gamma1=base * (1 + sign * 1e-9)) for sign in (-1, 1))
     forms = [StressForm(rod, uniform_mesh(1, 8)).unknown_velocities for rod in (with_v1, without)]
     assert forms == [(0,), ()]
     assert period_and_y(with_v1) == pytest.approx(period_and_y(without), rel=2e-8)
@@ -47,6 +60,13 @@ def test_period_and_amplitude_are_linear_in_a_small_drag_down_to_none():
     assert tiny == pytest.approx(none + slope * drags[2], rel=1e-7)
     # The drag of 2 LIMIT is small, too: what is left is quadratic in the drag.
     assert small == pytest.approx(none + slope * drags[1], rel=1e-6)
+
+
+def test_an_arm_whose_axial_drag_falls_to_little_beats():
+    """From 1e-3 at the base to 1e-6 at the tip. In the form without v1 Newton's method found no cycle."""
+    arm = replace(ROD, gamma1=1e-3, build=falling_to(1e-3))
+    assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(arm, 1e-8), rel=2e-6)
+    assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(replace(ROD, gamma1=1e-14)), rel=1e-2)
 
 
 def test_a_stiff_rod_with_little_axial_and_rotational_drag_beats():
