@@ -89,10 +89,13 @@ Answer = dict[str, tuple[float, float]] | None
 """Numbers with their errors, both absolute; None: a status or an exception says that the request failed."""
 
 
-def branch_answer(rod: Rod, start: float, stop: float, accuracy: float) -> Answer:
-    """Special points of all branches: where they are, their period and size, and where a branch ends."""
+def branch_answer(
+    rod: Rod, start: float, stop: float, accuracy: float, known: tuple[Any, ...] = ()
+) -> Answer:
+    """Special points of all branches, also through the points `known`: where they are, their period and size,
+    and where a branch ends."""
     request = BranchRequest("F", start, stop, accuracy, False, 500, 50)
-    found = solve_branches(rod, request)
+    found = solve_branches(rod, request, starts=known)
     if found.status.value:
         return None
     answer: dict[str, tuple[float, float]] = {}
@@ -124,6 +127,11 @@ def fold() -> Any:
     request = BranchRequest("F", 60.0, 110.0, 1e-7, False, 500, 50)
     points = [point for curve in solve_branches(WITH_FOLD, request).curves for point in curve.special_points]
     return next(point for point in points if point.kind is SpecialKind.fold)
+
+
+def detached_branch(accuracy: float) -> Answer:
+    """The branch through a known fold, whose Hopf points lie outside the range."""
+    return branch_answer(WITH_FOLD, 85.3, 85.5, accuracy, (fold(),))
 
 
 def curve_of_folds(accuracy: float) -> Answer:
@@ -480,6 +488,7 @@ class Case(NamedTuple):
 
 
 BRANCH = Case(small_branches, 1e-6, 1e-8)
+DETACHED = Case(detached_branch, 1e-6, 1e-8)
 LOPSIDED = Case(lopsided_branches, 1e-4, 1e-6)
 CURVE = Case(curve_of_folds, 1e-7, 1e-7)
 HOPF = Case(coefficients, 1e-6, 1e-11)
@@ -515,6 +524,7 @@ CASES = {
     "BRANCH_MESH_SETTINGS": BRANCH,
     "BRANCH_ERROR_SETTINGS": BRANCH,
     "BRANCH_END_SETTINGS": LOPSIDED,
+    "DETACHED_BRANCH_SETTINGS": DETACHED,
     "ASYMMETRIC_START_SETTINGS": LOPSIDED,
     "BRANCH_START_SETTINGS": BRANCH,
     "BRANCH_SETTINGS": BRANCH,
