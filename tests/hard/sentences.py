@@ -1006,6 +1006,8 @@ def _state_sentences(view, page, fine, row):
     where = {
         r"straight rod and cycle both stable": (both, np.broadcast_to(v["F"], states.shape)[states == 3])
     }
+    none = states == 0
+    where["no stable state known"] = none.any(axis=1), np.broadcast_to(v["F"], none.shape)[none]
     own = view.variables["stable_states"] == 4  # a smaller accuracy may decide them
     where["stable states undecided"] = own.any(axis=1), np.broadcast_to(v["F"], own.shape)[own]
     for words, kind in CHANGES_OF_CYCLES.items():

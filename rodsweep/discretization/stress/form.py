@@ -26,11 +26,13 @@ class StressFormSettings:
     Division by a smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7
     at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long.
     """
-    min_eliminated_axial_drag: float = 1e-4
+    min_eliminated_axial_drag: float = 2e-3
     """The axial velocity v1 is eliminated if the axial drag is everywhere at least this; otherwise v1 is an
     unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
     the axial drag, because an error of the axial force is divided by the drag: no cycle was found from
-    motions at a drag of 1e-5, and none near a Hopf point at 1e-10."""
+    motions at a drag of 1e-5, and none near a Hopf point at 1e-10. At drags from 1e-4 to 1e-3 the motions of
+    5 of 15 rods had to be integrated again on finer meshes, which took 7 to 22 times as long, and another rod
+    had no cycle; at drags from 3e-3 to 1e-2 none of 13. The form with v1 takes up to twice as long."""
 
 
 STRESS_FORM_SETTINGS = StressFormSettings()

@@ -18,7 +18,11 @@ STABLE_STATE_WORDS = {
     "both": "straight rod and cycle",
 }
 """Phrase for the stable states of a rod, by name; other names are printed as they are."""
-LISTED_STATES = {"straight rod and cycle both stable": "both", "stable states undecided": "undecided"}
+LISTED_STATES = {
+    "straight rod and cycle both stable": "both",
+    "no stable state known": "neither_known",
+    "stable states undecided": "undecided",
+}
 """Values of `stable_states` whose regions are listed, by the phrase in the summary."""
 NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""

@@ -116,8 +116,10 @@ class DiagramCurves:
     def solve_item(self, items: "Stage", item: int) -> dict[str, np.ndarray]:
         """Result of the work item number `item`: of a half curve, arrays with the shapes of
         `TracedHalfCurve`; of a row that is solved again, its variables, and its message as bytes."""
+        from ...determinant.arm.determinant import forget_arm_determinants
         from ...solve.branch.special.detached_rows import DetachedRows
 
+        forget_arm_determinants()  # made for the rows, of which each rank solves others
         if not isinstance(items, DetachedRows):
             return items.solve(item, partial(self._special_points, items), self.workspace)
         number = items.row_of(item)
@@ -138,6 +140,9 @@ class DiagramCurves:
         """All curves as variables of the file, and the rows that are changed because curves lead to further
         branches; both empty if there are no curves, because `plane` is None. view: the file with all rows.
         results: results of all half curves and rows by number, as from `solve_item`."""
+        from ...determinant.arm.determinant import forget_arm_determinants
+
+        forget_arm_determinants()
         plane = self.plane
         if plane is None:
             return SweepWideResult(())

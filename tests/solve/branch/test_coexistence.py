@@ -313,3 +313,23 @@ def test_states_of_a_row_are_known_from_the_pull_on_from_which_it_is_searched():
     assert "the search begins at F = -1000: from F = -1000000 on, no a-priori bound" in row.message
     names = [StableStates(state).name for state in row.stable_states]
     assert names == ["undecided", "straight", "straight", "cycle"]
+
+
+BEYOND = """
+task: phase_diagram
+parameters: {{F: {forces}, k1: [322.11, 322.2], k2: 1.0e4, gamma3: 0.02}}
+material: {{law: neo_hookean, section: swelling}}
+phase_diagram: {{cycles: true, certify: false}}
+"""
+
+
+def test_where_no_stable_state_is_known_is_listed(diagram):
+    """Both branches leave the range with unstable cycles, and the first one turns back beyond it."""
+    diagram.write("beyond.yaml", BEYOND.format(forces=[100, 110, 120]))
+    assert diagram("run", "beyond.yaml", "-o", "beyond.h5").returncode == 0
+    told = " ".join(diagram("show", "beyond.h5").stdout.split())
+    assert "no stable state known: at grid points of 2 of 2 rows, F = 110, k1 = 322.11 to 322.2" in told
+    diagram.write("wider.yaml", BEYOND.format(forces=[50, 100, 110, 120]))
+    assert diagram("run", "wider.yaml", "-o", "wider.h5").returncode == 0
+    with h5py.File(diagram.directory / "wider.h5") as file:
+        assert file["stable_states"][...].reshape(2, -1)[:, 1:].tolist() == [[3, 2, 3]] * 2
