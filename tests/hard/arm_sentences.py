@@ -462,7 +462,7 @@ def _compression(view, page, scales):
     limit, a tenth of the weakest section."""
     limits = np.array([0.1 * rod.crushing_force for rod in _rods_without_load(view)])
     verdicts = {
-        DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO} times its limit, and the model is doubtful",
+        DOUBTFUL_RATIO: f"is more than ({DOUBTFUL_RATIO}) times its limit, and the model is doubtful",
         1.0: "exceeds its limit, and the model does not apply",
     }
     found = []
