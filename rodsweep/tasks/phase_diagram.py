@@ -63,6 +63,8 @@ class PhaseDiagramTask(CertifiedTask):
                 f"gamma1 = {self.config.gamma1:g}, accuracy {options.cycle_accuracy:g}; cycles on branches "
                 "from the Hopf points of each row"
             )
+            if options.curves:
+                cycles += ", and on branches that curves of folds and torus points cross"
         return [
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),

@@ -174,7 +174,18 @@ REFUSED_BY_TASK = [
     (
         "task: spectrum\nparameters: {arm: {length: 0.1, radius: 5.0e-3, young: 1.0e+5, viscosity: 1, "
         "pressure: 100, load_kind: force}}",
-        "parameters.arm.load_kind is given, but parameters.arm.pressure is given too; remove one of them",
+        "parameters.arm.load_kind is given, but parameters.arm.pressure is given too; remove load_kind",
+    ),
+    (
+        "task: spectrum\nparameters: {arm: {length: 0.1, radius: 5.0e-3, young: 1.0e+5, viscosity: 1, "
+        "load_kind: force}}",
+        "parameters.arm.load_kind is given, but the task needs a load; give parameters.arm.force instead",
+    ),
+    (
+        "task: thresholds\nparameters: {arm: {length: 0.1, radius: 5.0e-3, young: 1.0e+5, viscosity: 1, "
+        "force: 0.1, load_kind: force}}",
+        "parameters.arm.force is given, but the task solves for the load; remove it; load_kind: force gives "
+        "the loads in newton, and F_max sets the end of the search (for the task branch, branch.stop)",
     ),
     ("task: [spectrum]", "task = ['spectrum'] is not allowed; it should be spectrum, thresholds"),
     (thresholds() + "spectrum: {modes: 3}", "spectrum is given but the task is thresholds; remove it"),

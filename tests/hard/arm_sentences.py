@@ -458,15 +458,23 @@ def _flutter_answer(view, page, told, start, chosen, scales):
 
 
 def _compression(view, page, scales):
-    """The check of the loads above which a row is compressed by more than a tenth of its weakest section."""
+    """The check of the loads above which compression makes the model doubtful on a row, or exceeds its
+    limit, a tenth of the weakest section."""
     limits = np.array([0.1 * rod.crushing_force for rod in _rods_without_load(view)])
-    if not limits.min() < max(_tops(view)):
-        return [(line, "no load is as large") for line in page if "compression exceeds" in line]
-    pattern = rf"^above RANGE ({UNIT}) compression exceeds its limit, and the model does not apply$"
-    lines = list(read(page, pattern))
-    loads = (limits * scales[force_unit(view)])[np.isfinite(limits)]
-    found = [(line, range_as_stated(match[1], loads / UNITS[match[2]])) for line, match in lines]
-    return found or [("", "it is not said above which load compression exceeds its limit")]
+    verdicts = {
+        DOUBTFUL_RATIO: f"is more than ({DOUBTFUL_RATIO}) times its limit, and the model is doubtful",
+        1.0: "exceeds its limit, and the model does not apply",
+    }
+    found = []
+    for share, verdict in verdicts.items():
+        lines = list(read(page, rf"^above RANGE ({UNIT}) compression {verdict}$"))
+        if not share * limits.min() < max(_tops(view)):
+            found += [(line, "no load is as large") for line, _ in lines]
+            continue
+        loads = (share * limits * scales[force_unit(view)])[np.isfinite(limits)]
+        told = [(line, range_as_stated(match[1], loads / UNITS[match[2]])) for line, match in lines]
+        found += told or [("", f"it is not said above which load compression {verdict}")]
+    return found
 
 
 def _extremes(view, page, start, loads, chosen):

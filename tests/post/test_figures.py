@@ -825,3 +825,22 @@ def test_figures_of_spectra_name_the_infinite_values_that_have_no_place(command,
     shown = draw(read_view(command.directory / "c.h5"), command.directory / "f.png")
     clause = f"; {names} = inf has no place on an axis and is left out"
     assert shown.endswith(clause) if names else "left out" not in shown
+
+
+@pytest.mark.parametrize(
+    ("task", "varied"),
+    [
+        ("thresholds", {"load_kind": "force"}),
+        ("thresholds", {"load_kind": "force", "poisson": [0.4, 0.5]}),
+        ("spectrum", {"force": "40 mN"}),
+        ("spectrum", {"force": rs.linspace("30 mN", "40 mN", 3)}),
+        ("modes", {"force": "40 mN"}),
+        ("criticality", {"load_kind": "force"}),
+    ],
+)
+def test_figures_of_an_arm_name_its_quantities_above_its_parameters(task, varied):
+    arm = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "10 Pa s"}
+    figure = rs.plot(rs.sweep(task, arm=arm | varied, progress=False)).figure()
+    title = figure.get_suptitle().replace("\N{NO-BREAK SPACE}", " ").replace("\n", " ")
+    assert title.startswith("length 14 cm, radius 4 mm, Young's modulus 100 kPa, viscosity 10 Pa s")
+    assert ("force 40 mN" in title) == (varied.get("force") == "40 mN")

@@ -3,6 +3,7 @@
 import re
 from dataclasses import replace
 from math import inf
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,7 +11,9 @@ from conftest import ROOT
 from shown import HOPF, STABLE_AGAIN, shown
 
 import rodsweep as rs
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
+from rodsweep.post.summary import summary_of
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
 from rodsweep.post.summary.stability import stability_lines
@@ -297,3 +300,47 @@ def test_a_branch_is_told_to_be_followed_where_the_rod_is_not_crushed(command, r
 )
 def test_ranges_of_a_parameter_contain_infinity(values, text):
     assert axis_values_text(np.array(values)) == text
+
+
+@pytest.mark.parametrize(
+    ("arm", "material", "lines", "words"),
+    [
+        (
+            None,
+            {"law": "neo_hookean"},
+            ["material: neo-Hookean rubber with a fixed section"],
+            "fixed section",
+        ),
+        (
+            None,
+            {"profile": {"u": [0, 0.4, 0.4, 1], "k3": [1, 1, 0.2, 0.2]}},
+            ["profile of 4 rows along the arm: k3"],
+            "with a profile",
+        ),
+        (
+            {
+                "segments": ["6 cm: radius 6 mm, young 80 kPa", {"length": "8 cm", "radius": "4 mm"}],
+                "law": "neo_hookean",
+                "section": "swelling",
+            },
+            None,
+            [
+                "material: neo-Hookean rubber with a swelling section",
+                "segment 1, 6 cm: radius 6 mm, young 80 kPa",
+                "segment 2, 8 cm: radius 4 mm",
+            ],
+            "neo-Hookean, swelling section, in 2 segments",
+        ),
+        ({"length": "14 cm", "radius": "4 mm"}, None, [], ""),
+    ],
+)
+def test_show_and_figures_name_law_profile_and_segments(arm, material, lines, words):
+    """A result of rubber or of segments was shown as that of a uniform arm of linear material."""
+    given = {"arm": {"young": "100 kPa", "viscosity": "20 Pa s"} | arm} if arm else {"k1": 300, "k2": 1e4}
+    given |= {"gamma3": 1e-4} if arm is None else {}
+    given |= {"material": material} if material else {}
+    data = rs.sweep("thresholds", **given, F_max=20, certify=False, progress=False)
+    view = view_of_dataset(data, Path("arms.h5"))
+    assert list(summary_of(view).material) == lines
+    title = rs.plot(data).figure().get_suptitle().splitlines()[0]
+    assert words in title if words else title.startswith("length")

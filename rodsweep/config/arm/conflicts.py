@@ -20,20 +20,25 @@ def refuse_conflicting_keys(arm: "ArmSection", forced: bool, given_parameters: C
     loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(arm, name) is not None]
     if loads[1:]:
         raise ValueError(f"{loads[0]} and {loads[1]} are both given; give one of them")
-    if arm.load and arm.load_kind:
-        raise ValueError(
-            f"parameters.arm.load_kind is given, but parameters.arm.{arm.load} is given too; remove one "
-            "of them"
-        )
     if "poisson" in arm.varying_quantities and "k2" in given_parameters:
         raise ValueError(
             "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
             "too; give one of them"
         )
     if arm.load and not forced:
+        in_newton = "load_kind: force gives the loads in newton, and " if arm.load == "force" else ""
         raise ValueError(
-            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it, and set "
-            "the end of the search by F_max (for the task branch, by branch.stop)"
+            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it; {in_newton}"
+            "F_max sets the end of the search (for the task branch, branch.stop)"
+        )
+    if arm.load and arm.load_kind:
+        raise ValueError(
+            f"parameters.arm.load_kind is given, but parameters.arm.{arm.load} is given too; remove load_kind"
         )
     if forced and not (arm.load or "F" in given_parameters):
+        if arm.load_kind:
+            raise ValueError(
+                f"parameters.arm.load_kind is given, but the task needs a load; give parameters.arm."
+                f"{arm.load_kind} instead"
+            )
         raise ValueError("parameters.arm.pressure is missing; give the pressure on the tip or a force")

@@ -15,6 +15,7 @@ from ...arrays import Array
 from ...results.file.view import View
 from ..summary.summary_lines import varied_parameters_at_points
 from . import style
+from .arm.quantities import constant_quantities_text
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
@@ -92,7 +93,9 @@ def _curves_figure(view: View, name: str) -> Figure:
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, name)))
+    figure.suptitle(
+        style.heading_text(view, constant_quantities_text(view), style.constant_parameters_text(view, name))
+    )
     return figure
 
 
@@ -132,7 +135,11 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
         if (classes == i).any()
     ]
     style.legend_below(figure, entries, columns=3)
-    figure.suptitle(style.heading_text(view, style.parameter_text(points.common_parameters)))
+    figure.suptitle(
+        style.heading_text(
+            view, constant_quantities_text(view), style.parameter_text(points.common_parameters)
+        )
+    )
     return figure
 
 

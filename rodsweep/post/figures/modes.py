@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import View
+from .arm.quantities import constant_quantities_text
 from .request import FigureRequest
 from .style import BLUE, VERMILION, heading_text, legend_below, number_in_tex, parameter_text, require_content
 
@@ -44,7 +45,8 @@ def draw_modes(request: FigureRequest) -> str:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    figure.suptitle(heading_text(view, *(_point_texts(view, int(drawn[0])) if len(drawn) == 1 else ())))
+    texts = _point_texts(view, int(drawn[0])) if len(drawn) == 1 else ()
+    figure.suptitle(heading_text(view, constant_quantities_text(view), *texts))
     legend_below(figure, _part_entries(view, drawn), columns=2)
     left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
     if points.size > len(drawn) > 1:

@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from ...errors import InputError
 from ...results.file.view import View
 from . import style
+from .arm.quantities import constant_quantities_text
 from .grid_sections import left_out_clause, section_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
@@ -175,6 +176,7 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     figure.suptitle(
         style.heading_text(
             view,
+            constant_quantities_text(view),
             style.constant_parameters_text(view, *names),
             "black: zero growth, interpolated between the points",
         )

@@ -15,6 +15,7 @@ from ...errors import InputError
 from ...model.parameters import PARAMETERS
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING_STATUS
+from ..material_texts import material_words
 
 SYMBOLS = {name: parameter.symbol for name, parameter in PARAMETERS.items()}
 """Symbols of the parameters in TeX, by name."""
@@ -76,28 +77,18 @@ def escape_dollar_signs(text: object) -> str:
 
 
 def heading_text(view: View, *lines: str) -> str:
-    """Text above a figure: title of the result file (if requested), constitutive law and profile (if not
-    standard), and `lines`, one below the other.
+    """Text above a figure: title of the result file (if requested), constitutive law, profile and
+    segments (if not standard), and `lines`, one below the other.
     """
     title = " ".join(escape_dollar_signs(view.attributes.get("title", "")).split())
-    return "\n".join(filter(None, (title, material_text(view), *lines)))
-
-
-def material_text(view: View) -> str:
-    """Constitutive law and profile of the arms of a file as text; empty for uniform arms of linear
-    material.
-    """
-    material = view.config.get("material", {})
-    law = material.get("law", "linear")
-    words = [] if law == "linear" else [f"neo-Hookean, {material.get('section', 'fixed')} section"]
-    return ", ".join([*words, *(["with a profile"] if "profile" in material else [])])
+    return "\n".join(filter(None, (title, material_words(view), *lines)))
 
 
 def file_label(view: View, views: Sequence[View]) -> str:
     """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
     title if all titles differ, else file name.
     """
-    laws = [material_text(each) or "linear" for each in views]
+    laws = [material_words(each) or "linear" for each in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
     titles = [" ".join(escape_dollar_signs(each.attributes.get("title", "")).split()) for each in views]

@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from ...errors import InputError
 from ...results.file.view import View
 from . import style
+from .arm.quantities import constant_quantities_text
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
@@ -122,6 +123,11 @@ def _threshold_maps(view: View, names: list[str], narrow: bool) -> tuple[Figure,
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
     figure.suptitle(
-        style.heading_text(view, style.parameter_text(points.common_parameters), searched_range_clause(view))
+        style.heading_text(
+            view,
+            constant_quantities_text(view),
+            style.parameter_text(points.common_parameters),
+            searched_range_clause(view),
+        )
     )
     return figure, points.left_out

@@ -21,6 +21,7 @@ from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
 from ..cost_and_provenance import provenance_lines, rank_lines, time_lines
+from ..material_texts import material_lines
 from ..tables.alignment import column_cells, point_aligned, rewrap_line, table_blocks
 from .arm.answer import arm_answer
 from .arm.arm import arm_lines
@@ -73,6 +74,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
             ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
         ),
         details=lines.details,
+        material=material_lines(view),
         axes=_axes_table(view),
         numbers=lines.numbers,
         provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *provenance_lines(a)],
@@ -96,7 +98,7 @@ def show_summary(view: View, every_status: bool = False) -> None:
     groups: tuple[tuple[str, Sequence[str], TextTable | None], ...] = (
         ("Reliability", summary.reliability, summary.statuses),
         ("Further results", summary.details, None),
-        ("Parameters", (), summary.axes),
+        ("Parameters", summary.material, summary.axes),
         ("Provenance", summary.provenance, None),
     )
     for heading, lines, table in groups:

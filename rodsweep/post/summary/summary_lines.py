@@ -50,6 +50,8 @@ class Summary:
     """Number of points with each status, and the meaning of the status."""
     details: Sequence[str]
     """Lines about further results."""
+    material: Sequence[str]
+    """Lines about law, profile and segments of the arms; empty for uniform arms of linear material."""
     axes: TextTable
     """Values or ranges of the parameters."""
     provenance: Sequence[str]

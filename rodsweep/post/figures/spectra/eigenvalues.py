@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....results.file.view import View
+from ..arm.quantities import constant_quantities_text
 from ..point_lists import label_point_numbers, shared_parameters
 from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
 
@@ -44,7 +45,7 @@ def draw_eigenvalues(view: View) -> Figure:
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
+    figure.suptitle(_heading(view))
     return figure
 
 
@@ -62,8 +63,13 @@ def draw_list_of_spectra(view: View) -> Figure:
         axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(heading_text(view, parameter_text(shared_parameters(view))))
+    figure.suptitle(_heading(view))
     return figure
+
+
+def _heading(view: View) -> str:
+    """Text above a figure: quantities of an arm and parameters that all points share."""
+    return heading_text(view, constant_quantities_text(view), parameter_text(shared_parameters(view)))
 
 
 def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:

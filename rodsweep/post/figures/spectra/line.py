@@ -15,7 +15,7 @@ from ....results.file.view import View
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
-from ..arm.quantities import NO_BREAK
+from ..arm.quantities import NO_BREAK, constant_quantities_text
 from .eigenvalues import scale_if_spread
 
 ROOT_CHOICE_TEXTS = {
@@ -127,7 +127,12 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     style.legend_below(figure, top.get_legend_handles_labels()[0], 2)
     figure.suptitle(
-        style.heading_text(view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
+        style.heading_text(
+            view,
+            constant_quantities_text(view),
+            style.constant_parameters_text(view, name),
+            ROOT_CHOICE_TEXTS[roots],
+        )
     )
     return figure
 

@@ -12,6 +12,7 @@ from ....results.file.view import View
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
 from .. import style
+from ..arm.quantities import constant_quantities_text
 from ..point_lists import label_point_numbers, shared_parameters
 from .class_colours import CLASS_COLOURS, class_legend_entries
 from .row_classes import class_above_crossing
@@ -55,7 +56,11 @@ def draw_class_bars(view: View) -> Figure:
         axes.set(ylim=(0, end), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, count)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle(style.heading_text(view, style.parameter_text(shared_parameters(view))))
+    figure.suptitle(
+        style.heading_text(
+            view, constant_quantities_text(view), style.parameter_text(shared_parameters(view))
+        )
+    )
     return figure
 
 

@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from ....arrays import Array
 from ....results.file.view import View
 from .. import style
+from ..arm.quantities import constant_quantities_text
 
 CRITICAL_FORCES = (
     ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
@@ -65,7 +66,8 @@ def draw_lines_of_grid(view: View, varied: list[str], searched: str) -> tuple[Fi
     _label_axes(axes, view, along, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *varied), searched))
+    constants = constant_quantities_text(view), style.constant_parameters_text(view, *varied)
+    figure.suptitle(style.heading_text(view, *constants, searched))
     words = f"critical forces against {along}" + (f" for every {other}" if other else "")
     return figure, words + _infinite_values_clause(view, [along])
 
@@ -114,7 +116,8 @@ def draw_selected_lines(view: View, varied: list[str], narrow: bool, searched: s
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, style.constant_parameters_text(view, *varied), searched))
+    constants = constant_quantities_text(view), style.constant_parameters_text(view, *varied)
+    figure.suptitle(style.heading_text(view, *constants, searched))
     shown = (
         f"critical forces against {' and '.join(varied)}, lines for {' and '.join(drawn)} (--what map: all)"
     )

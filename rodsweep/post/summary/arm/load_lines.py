@@ -4,7 +4,7 @@ that compress an arm beyond the limit of the model.
 
 import numpy as np
 
-from ....model.arm.neglected import COMPRESSION_LIMIT
+from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import View
 from ...crushing import build_of_rods
@@ -12,6 +12,11 @@ from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
 """Largest number of significant digits in an answer; a number with a large error has fewer digits."""
+COMPRESSION_VERDICTS = {
+    DOUBTFUL_RATIO: f"is more than {DOUBTFUL_RATIO:g} times its limit, and the model is doubtful",
+    1.0: "exceeds its limit, and the model does not apply",
+}
+"""Verdict on the model, by the share of the limit of compression above which it holds."""
 
 
 def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
@@ -40,8 +45,9 @@ def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest:
 
 
 def compression_lines(view: View, rods: np.ndarray) -> list[str]:
-    """Line with the range of loads above which the rows of a phase diagram are compressed beyond the limit,
-    in a list; empty for other tasks, and if all loads of the rows are smaller. rods: mask of rows, (...,).
+    """Lines with the ranges of loads above which compression makes the model doubtful on the rows of a phase
+    diagram, and above which it exceeds the limit; empty for other tasks, and if all loads of the rows are
+    smaller. rods: mask of rows, (...,).
 
     The validity of a row is that at its first Hopf point, and a row has larger loads. Rubber has no limit of
     compression, because its law includes large compression. Raises InputError if this version of rodsweep
@@ -52,10 +58,13 @@ def compression_lines(view: View, rods: np.ndarray) -> list[str]:
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
     largest = COMPRESSION_LIMIT * columns["k1"] * build_of_rods(view).relative_crushing_forces(tapers)
-    forces = largest.reshape(rods.shape)[rods]
-    if not forces.min() < view.variables["F"].max():
-        return []
+    limits = largest.reshape(rods.shape)[rods]
     kind = view.load_kind
-    loads = forces * np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
-    text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
-    return [f"above {text} compression exceeds its limit, and the model does not apply"]
+    scale = np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
+    lines = []
+    for share, verdict in COMPRESSION_VERDICTS.items():
+        if share * limits.min() < view.variables["F"].max():
+            loads = share * limits * scale
+            text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
+            lines.append(f"above {text} compression {verdict}")
+    return lines
