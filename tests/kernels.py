@@ -24,7 +24,7 @@ ANOTHER = "another"
 TRY = """
 import numpy as np
 from rodsweep.model.rod import Rod
-from rodsweep.solve.backend.blas_kernel import blas_description
+from rodsweep.solve.backend.petsc import blas_description
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 found = solve_spectrum(Rod(F=2000.0, k1=1e4, k2=1e4, gamma3=1e-4), SpectrumRequest(4, 1e-10, True))
