@@ -17,7 +17,7 @@ from .diagram_curves import (
     incomplete_curve_lines,
 )
 from .number_texts import axis_values_text, span_text
-from .stable_states import state_lines
+from .stable_states import MISSED_CYCLES_LINE, state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -44,6 +44,7 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
     reliability = search_lines(view, done, "row")
+    reliability += [MISSED_CYCLES_LINE] if "stable_states" in v else []
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
