@@ -101,8 +101,8 @@ def test_curves_are_stopped_said_to_be_missing_and_resumed(whole, items, ranks, 
     status, out = run_halted(whole, name, items, ranks, how)
     if how != signal.SIGKILL:
         assert status == 75
-        pieces = "1 piece" if items == 1 else f"{items} pieces"
-        kept = f"2 points kept, {pieces} of curves kept, the other curves are missing"
+        results = "1 result" if items == 1 else f"{items} results"
+        kept = f"2 points kept, {results} for the curves kept, the other results are missing"
         assert f"stopped by {how.name}; {kept}" in out
     shown = " ".join(whole("show", name).stdout.split())
     assert "all rows are computed; the curves are missing" in shown

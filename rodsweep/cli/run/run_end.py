@@ -74,8 +74,9 @@ class RunEnd:
     solved_items: dict[str, int] | None
     """Numbers of work items for the curves solved in this run, by phrase, as in `WorkItems.outcome`; None if
     no curves were to be computed."""
-    stored_pieces: int | None
-    """Number of half curves stored for the next run if the curves are incomplete, else None."""
+    stored_items: int | None
+    """Number of results of work items for the curves stored for the next run if the curves are incomplete,
+    else None."""
 
     def time_sentences(self) -> list[str]:
         """Sentences on the times of points and curves; empty if there was nothing to do."""
@@ -87,7 +88,7 @@ class RunEnd:
             pace = f" ({duration(each)} per point on one rank)" if points else ""
             sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
         if self.solved_items is not None:
-            word = "curves in" if self.stored_pieces is None else "curves stopped after"
+            word = "curves in" if self.stored_items is None else "curves stopped after"
             parts = [f"{word} {self.curve_seconds:.2f} s on {ranks}"]
             for outcome, number in self.solved_items.items():
                 noun, _, what = outcome.partition(" ")
@@ -96,11 +97,11 @@ class RunEnd:
         return sentences
 
     def stored_points_clause(self) -> str:
-        """Clause with the numbers of points and half curves that a stopped run has stored."""
+        """Clause with the numbers of points, and of results for the curves, that a stopped run has stored."""
         points = f"{counted(self.stored_points, 'point')} kept"
-        if self.stored_pieces is not None:
-            pieces = counted(self.stored_pieces, "piece")
-            return f"{points}, {pieces} of curves kept, the other curves are missing"
+        if self.stored_items is not None:
+            results = counted(self.stored_items, "result")
+            return f"{points}, {results} for the curves kept, the other results are missing"
         if self.interrupted_points:
             return f"{points}, {self.interrupted_points} interrupted, to be solved again"
         return points

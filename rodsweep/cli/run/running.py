@@ -233,7 +233,7 @@ class _RankRun:
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
             solved_items=solved if pending.is_missing and wide else None,
-            stored_pieces=len(wide.results) if wide and lacks_sweep_wide_variables else None,
+            stored_items=len(wide.results) if wide and lacks_sweep_wide_variables else None,
         )
         for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
             self._print_message(sentence)

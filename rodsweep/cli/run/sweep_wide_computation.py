@@ -76,8 +76,8 @@ class SweepWideComputation:
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
         """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
-        rank. prepare: function called before the first solve. title:
-        text of the progress display; None for no display."""
+        rank. prepare: function called before the first solve. title: text of the progress display; None for
+        no display."""
         found: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
