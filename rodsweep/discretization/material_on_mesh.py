@@ -91,9 +91,10 @@ def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
 
 
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (points, nodes) of the k jumps. points: indices in the `points_inside_elements` of the
-    points before and behind each jump, (k, 2). nodes: node of each jump, (k,).
+    points before and behind each jump, (k, 2). nodes: node of each jump, (k,). Cached.
     """
     jumps = build.jump_positions
     ends = np.array([e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64)

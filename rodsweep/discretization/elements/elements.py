@@ -21,8 +21,9 @@ class ElementSettings:
     """Distance of the first and last `Elements.points_inside_elements` from the ends of an element, in L: a
     few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
-    min_reduced_order: int = 4
-    """Smallest order of an element whose order is less than the order of the mesh."""
+    min_reduced_order: int = 2
+    """Smallest order of an element whose order is less than the order of the mesh. Only coarse meshes, which
+    predict cycles on fine meshes, have elements of orders below 4."""
     max_cached_meshes: int = 64
     """Maximum number of cached meshes, and of cached matrices of each kind; a sweep needs about ten."""
     max_cached_pencils: int = 16

@@ -3,17 +3,15 @@
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
+from .factors import factors_along, smallest_factor_along
 from .laws import LAWS, LINEAR, Law, law_of
-from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile
-
-FACTOR_SAMPLE_COUNT = 256
-"""Number of samples between neighbouring u of a profile in the search for the smallest factor."""
+from .profile import RADIUS_POWERS, Profile
 
 
 class LocalCoefficients(NamedTuple):
@@ -111,7 +109,7 @@ class Build:
 
         taper: taper of the arm.
         """
-        return self.constitutive_law.crushing_load * _smallest_factor_along(self.profile, taper, "k1")
+        return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
     def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
         """F divided by the force that crushes the weakest section; 0 if no force crushes the arm. k1: stretch
@@ -122,13 +120,13 @@ class Build:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
         base.
         """
-        return _smallest_factor_along(self.profile, taper, "gamma3")
+        return smallest_factor_along(self.profile, taper, "gamma3")
 
     @cached_property
     def relative_least_axial_drag(self) -> float:
         """Smallest axial drag along an arm, divided by the axial drag at the base; it is the same for all
         tapers."""
-        return _smallest_factor_along(self.profile, 1.0, "gamma1")
+        return smallest_factor_along(self.profile, 1.0, "gamma1")
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
@@ -143,14 +141,16 @@ class Build:
         at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
         for n arms, (n, 1, ...).
         """
-        factors = self._factors(at_base["taper"], u)
+        factors = factors_along(self.profile, at_base["taper"], u)
         law = self.constitutive_law
         # No load acts along the arm, so the force in every section is F.
         nu = 1 - law.shortening(F / (at_base["k1"] * factors["k1"]))
         c2 = 1 / (at_base["k2"] * factors["k2"])
-        c3 = 1 / (factors["k3"] * law.bending_factor(nu))
+        # With a fixed section the bending factor is 1; a product with an array of ones would take time.
+        c3 = 1 / (factors["k3"] if law.section == "fixed" else factors["k3"] * law.bending_factor(nu))
         gamma3 = at_base["gamma3"] * factors["gamma3"]
-        return LocalCoefficients(nu, c2, c3, factors["gamma2"], gamma3, nu + F * c2)
+        # A copy, because the factors are cached.
+        return LocalCoefficients(nu, c2, c3, factors["gamma2"].copy(), gamma3, nu + F * c2)
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
@@ -159,7 +159,7 @@ class Build:
         The compliances are values of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper,
         by name.
         """
-        factors = self._factors(at_base["taper"], u)
+        factors = factors_along(self.profile, at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
         nu = 1 - self.constitutive_law.shortening(F / stiffness["k1"])
@@ -172,7 +172,7 @@ class Build:
         Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which has
         compliances of 0.
         """
-        factors = self._factors(taper, u)
+        factors = factors_along(self.profile, taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_derivatives(
@@ -183,7 +183,7 @@ class Build:
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
         parameter, by name; the derivative of a missing name is 0.
         """
-        factors = self._factors(taper, u)
+        factors = factors_along(self.profile, taper, u)
         # d log(radius)/d taper.
         growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)
         compliance = np.zeros((3, *u.shape))
@@ -197,43 +197,6 @@ class Build:
         load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
         return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
-
-    def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
-        """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the
-        shape of u. taper: a number, or an array for n arms, (n, 1, ...); factors that depend on the taper
-        then have the shape (n, *u.shape).
-        """
-        if self.profile is None:
-            factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
-        else:
-            factors = dict(zip(FACTOR_NAMES, self.profile.factors_at(u), strict=True))
-        if isinstance(taper, np.ndarray) or taper != 1:
-            radius = 1 - (1 - taper) * u
-            square = radius * radius  # a power of NumPy takes as long as ten products
-            powers = {2: square, 4: square * square}
-            for name, power in RADIUS_POWERS.items():
-                factors[name] = factors[name] * powers[power] if self.profile else powers[power]
-        return factors
-
-
-@lru_cache(maxsize=1024)
-def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
-    """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
-    the base.
-    """
-    power = RADIUS_POWERS.get(name, 0)
-    # The power of the radius of a cone is monotone, so its minimum is at an end.
-    ends = min(1.0, taper**power)
-    if profile is None:
-        return ends
-    column = FACTOR_NAMES.index(name)
-    rows = [
-        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
-    ]
-    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
-    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
-    between = (1 - (1 - taper) * points) ** power * profile.factors_at(points)[column]
-    return min(*rows, float(between.min()))
 
 
 DEFAULT_BUILD = Build()

@@ -142,6 +142,21 @@ class OrbitMesh:
         )
         return replace(self, order=order, interval_count=intervals)
 
+    def with_order(self, order: int) -> "OrbitMesh":
+        """This mesh with another largest order, `order`. The orders of all elements change by at least 1, so
+        that the difference between cycles on both meshes contains the errors of every element."""
+        if order == self.order or not self.order_ratios:
+            return replace(self, order=order)
+        present = element_orders(self.element_count, self.order, self.order_ratios)
+        scaled = element_orders(self.element_count, order, self.order_ratios)
+        if order > self.order:
+            orders = [max(p + 1, q) for p, q in zip(present, scaled, strict=True)]
+        else:
+            orders = [min(p - 1, q) for p, q in zip(present, scaled, strict=True)]
+        # Half an order less, because `element_orders` rounds up: no rounding error can add an order.
+        ratios = tuple(1.0 if p == order else (p - 1 / 2) / order for p in orders)
+        return replace(self, order=order, order_ratios=ratios)
+
     @property
     def finer(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no allowed mesh is predicted to suffice."""
@@ -153,7 +168,7 @@ class OrbitMesh:
         """This mesh with an order increased by 2, or with twice as many elements of lower order if the order
         would exceed its maximum."""
         if self.order + 2 <= RESOLUTION_SETTINGS.max_order:
-            return replace(self, order=self.order + 2)
+            return self.with_order(self.order + 2)
         return replace(
             self,
             edges=halve_elements(self.edges),

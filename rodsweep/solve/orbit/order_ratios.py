@@ -16,15 +16,16 @@ from .tails import coefficients_of_elements
 class OrderRatioSettings:
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
-    added_order: int = 2
-    """Order of an element, minus the order at which its coefficients fall below their aim. With it the errors
-    of a mesh are those of the elements of the largest order."""
-    min_ratio: float = 0.5
-    """Smallest ratio. The errors of a mesh are measured on a mesh whose largest order is larger by 2: the
-    orders of all elements are then larger by 1 at least."""
-    steps: int = 16
-    """Ratios are rounded up to multiples of 1/steps, so that the orders of the elements change seldom along a
-    sweep."""
+    added_order: int = 0
+    """Order of an element, minus the order at which its coefficients fall below their aim. With 0 the errors
+    of a mesh are those of the elements of the largest order; with 2 the elements of two to five segments had
+    a tenth more unknowns at equal errors."""
+    min_order: int = 4
+    """Smallest order of an element that is chosen from coefficients."""
+    min_ratio: float = 0.2
+    """Smallest ratio. Elements of short and stiff segments reach 0.25."""
+    steps: int = 64
+    """Ratios are rounded up to multiples of 1/steps: less than one order at any order that is allowed."""
     ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
 
 
@@ -44,6 +45,7 @@ def order_ratios(orbit: Orbit, order: int, aim: float) -> tuple[float, ...]:
     scales = np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     needed = np.array([_needed_order((c / scales[:, None]).max(axis=0), aim, order) for c in each])
     settings = ORDER_RATIO_SETTINGS
+    needed = np.maximum(needed, settings.min_order)
     ratios = np.ceil(settings.steps * np.maximum(needed / max(needed), settings.min_ratio)) / settings.steps
     return () if min(ratios) == 1 else tuple(ratios.tolist())
 

@@ -115,9 +115,8 @@ class CycleFamily:
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(last.orbit)
             longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
-            finer = replace(
-                mesh, order=mesh.order + CURVE_SECANT_SETTINGS.order_increase, interval_count=longer
-            )
+            larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
+            finer = replace(larger, interval_count=longer)
             if not finer.is_allowed:
                 break
             known = last.normal_derivatives

@@ -41,4 +41,4 @@ def next_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
         ),
         SPECIAL_POINT_SETTINGS.max_order_increase,
     )
-    return replace(mesh, order=mesh.order + more, interval_count=ceil(growth * mesh.interval_count))
+    return replace(mesh.with_order(mesh.order + more), interval_count=ceil(growth * mesh.interval_count))

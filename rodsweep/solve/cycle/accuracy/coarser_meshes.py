@@ -68,7 +68,8 @@ class CoarserMeshes:
         )
         self._max_predicted_order = order + fewer + COARSER_MESH_SETTINGS.max_order_excess
         intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
-        self.coarse_mesh = replace(mesh, order=order, interval_count=intervals)
+        self._fine_mesh = mesh
+        self.coarse_mesh = replace(mesh.with_order(order), interval_count=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
         self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, near)
@@ -83,14 +84,14 @@ class CoarserMeshes:
         )
         return (
             near
-            and mesh.has_elements_of(self.coarse_mesh)
+            and mesh.has_elements_of(self._fine_mesh)
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
 
     def predicted_orbit_and_errors(self, mesh: OrbitMesh) -> tuple[Orbit, Calibration]:
         """Returns (orbit, calibration): predicted orbit on the fine mesh `mesh`, and calibration of this mesh
         with predicted errors; raises Unsolvable."""
-        space = self._cycle_on_mesh(replace(self.coarse_mesh, order=mesh.order))
+        space = self._cycle_on_mesh(replace(mesh, interval_count=self.coarse_mesh.interval_count))
         time = self._cycle_on_mesh(replace(self.coarse_mesh, interval_count=mesh.interval_count))
         fine_in_space = mesh.interpolated_orbit(space.orbit)
         fine_in_time = mesh.interpolated_orbit(time.orbit)

@@ -52,7 +52,7 @@ def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
     share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stage_count + 1)
     return (
-        replace(mesh, order=mesh.order + FINER_MESH_SETTINGS.order_increase),
+        mesh.with_order(mesh.order + FINER_MESH_SETTINGS.order_increase),
         replace(mesh, interval_count=longer),
     ), share
 

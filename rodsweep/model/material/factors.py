@@ -1,0 +1,81 @@
+"""Factors of stiffnesses and drags along an arm with a profile and a taper, cached for points of meshes."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile
+
+FACTOR_SAMPLE_COUNT = 256
+"""Number of samples between neighbouring u of a profile in the search for the smallest factor."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FactorCacheSettings:
+    """Limits of the cache of factors along an arm, which takes at most 13 MB."""
+
+    max_points: int = 1024
+    """Largest number of points at which factors are cached. More points are those of a mesh that is used
+    once."""
+    max_entries: int = 256
+    """Maximum number of arrays of points; a sweep needs about ten."""
+
+
+FACTOR_CACHE_SETTINGS = FactorCacheSettings()
+
+
+def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
+    """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the shape of
+    u, which must not be changed. taper: a number, or an array for n arms, (n, 1, ...); factors that depend on
+    the taper then have the shape (n, *u.shape).
+    """
+    if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
+        return _factors_along(profile, taper, u)
+    return _cached_factors(profile, float(taper), u.tobytes(), u.shape)
+
+
+@lru_cache(maxsize=FACTOR_CACHE_SETTINGS.max_entries)
+def _cached_factors(
+    profile: Profile | None, taper: float, points: bytes, shape: tuple[int, ...]
+) -> dict[str, Array]:
+    """The result of `factors_along`, cached by the bytes of the points, because the arms of a sweep over F
+    are evaluated at the same points. points, shape: bytes and shape of the array of points."""
+    return _factors_along(profile, taper, np.frombuffer(points).reshape(shape))
+
+
+def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
+    """The result of `factors_along`, computed anew."""
+    if profile is None:
+        factors = dict.fromkeys(FACTOR_NAMES, np.ones(u.shape))
+    else:
+        factors = dict(zip(FACTOR_NAMES, profile.factors_at(u), strict=True))
+    if isinstance(taper, np.ndarray) or taper != 1:
+        radius = 1 - (1 - taper) * u
+        square = radius * radius  # a power of NumPy takes as long as ten products
+        powers = {2: square, 4: square * square}
+        for name, power in RADIUS_POWERS.items():
+            factors[name] = factors[name] * powers[power] if profile else powers[power]
+    return factors
+
+
+@lru_cache(maxsize=1024)
+def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
+    """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
+    the base.
+    """
+    power = RADIUS_POWERS.get(name, 0)
+    # The power of the radius of a cone is monotone, so its minimum is at an end.
+    ends = min(1.0, taper**power)
+    if profile is None:
+        return ends
+    column = FACTOR_NAMES.index(name)
+    rows = [
+        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
+    ]
+    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
+    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
+    between = (1 - (1 - taper) * points) ** power * profile.factors_at(points)[column]
+    return min(*rows, float(between.min()))
