@@ -68,7 +68,9 @@ def _arm_lines(job: Job) -> list[str]:
         v.name: values for v, values in job.quantities if v.name == "tau2"
     }
     made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
-    validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
+    validity = validity_sentence(
+        ArmValidity(job.config, job.points).variables_at_rest(), condition=" at rest"
+    )
     load_clause = ", and compression, by the load that it finds"
     if "F" in job.task.coordinates():  # rows along F
         load_clause = ", and compression, by the loads of the rows"
