@@ -81,8 +81,8 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
         yield f"branch {number}, {_ends_phrase(curve, parameter)}: {_extent_text(curve, errors, parameter)}"
         yield from _special_points_between_ends(curve, parameter)
         if curve.stable_ranges:
-            ranges = ranges_text(curve.stable_ranges, curve.parameter_errors)
-            yield f"  stable cycles at {parameter} = {ranges}"
+            text = ranges_text(curve.stable_ranges, curve.parameter_errors)
+            yield f"  stable cycles at {parameter} = {text}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:

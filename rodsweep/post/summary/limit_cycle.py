@@ -169,8 +169,8 @@ def _second_state_lines(view: View, computed: np.ndarray) -> list[str]:
     if cycle.any():
         lines.append(
             f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "
-            f"at F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may "
-            "lead to a cycle; `task: branch` follows the branch of these cycles"
+            f"at F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection "
+            "may lead to a cycle; `task: branch` follows the branch of these cycles"
         )
     return lines
 

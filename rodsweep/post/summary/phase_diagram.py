@@ -120,10 +120,8 @@ def lines_about_rows(view: View, computed: np.ndarray, line: str, row: str) -> l
         if number and has_kind.any():
             is_first = of_kind & (of_kind.cumsum(axis=-1) == 1)
             is_later = of_kind & ~is_first
-            first_text, later_text = (
-                span_text(v["crossing_at"][chosen], v["crossing_error"][chosen])
-                for chosen in (is_first, is_later)
-            )
+            spans = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in (is_first, is_later))
+            first_text, later_text = spans
             bound = "at least " * bool((unknown & ~has_kind).any())
             on_rows = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
             text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {first_text}"
