@@ -80,7 +80,7 @@ class SpectrumTask(CertifiedTask):
         along, shape, columns = self._longitudinal_points()
         modes = self.config.spectrum.modes
         in_closed_form = self.config.is_uniform_and_linear
-        variables = longitudinal_variables(gamma1, *along, in_closed_form=in_closed_form)
+        variables = longitudinal_variables(gamma1, *along, is_closed_form=in_closed_form)
         if in_closed_form:
             rates = [longitudinal_eigenvalues(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
