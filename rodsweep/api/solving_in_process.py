@@ -226,7 +226,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
     shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
-    return ProgressReporter(total, title, live=True) if shown else SilentProgress()
+    return ProgressReporter(total, title, is_bar=True) if shown else SilentProgress()
 
 
 def display_listener(shown: Display, name: str) -> RankListener:
