@@ -151,7 +151,7 @@ def _refuse_grid_without_rods(
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: as in
     `grid_of_arms`. no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`."""
-    section.arm_of(section.first_values, loaded=True)
+    section.arm_of(section.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:
             raise ValueError(f"parameters.arm.{section.load}: {force.failure}")
