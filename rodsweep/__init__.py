@@ -55,9 +55,9 @@ def __getattr__(name: str) -> Any:
     """Imports the public name `name` when it is first used. Raises AttributeError for an unknown name."""
     if name not in _IMPORT_PATHS:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, _, own = _IMPORT_PATHS[name].rpartition(".")
-    found = import_module(f".{module or own}", __name__)
-    globals()[name] = value = getattr(found, own) if module else found
+    module, _, attribute = _IMPORT_PATHS[name].rpartition(".")
+    module_ = import_module(f".{module or attribute}", __name__)
+    globals()[name] = value = getattr(module_, attribute) if module else module_
     return value
 
 

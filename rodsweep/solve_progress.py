@@ -45,11 +45,11 @@ class _SolvePart(NamedTuple):
 
     def position_in_whole(self, inner: SolvePosition) -> SolvePosition:
         """Converts a position within this part into a position within the whole solve."""
-        share = None
+        fraction = None
         if self.shares is not None:
-            begin, end = self.shares
-            share = begin + (end - begin) * (inner.completed_fraction or 0.0)
-        return SolvePosition(": ".join(filter(None, (self.name, inner.words))), share)
+            start, end = self.shares
+            fraction = start + (end - start) * (inner.completed_fraction or 0.0)
+        return SolvePosition(": ".join(filter(None, (self.name, inner.words))), fraction)
 
 
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
@@ -72,13 +72,13 @@ def reporting_to(listener: Listener) -> Iterator[None]:
 
 
 @contextmanager
-def solve_part(name: str, shares: tuple[float, float] | None = None) -> Iterator[None]:
+def solve_part(name: str, fractions: tuple[float, float] | None = None) -> Iterator[None]:
     """Marks the reports in the `with` block as reports of a named part of a larger solve, such as a branch.
 
-    name: prefix of the text of each report. shares: completed fractions of the work of the larger solve at
+    name: prefix of the text of each report. fractions: completed fractions of the work of the larger solve at
     the start and at the end of the part; None if unknown.
     """
-    token = _solve_parts.set((*_solve_parts.get(), _SolvePart(name, shares)))
+    token = _solve_parts.set((*_solve_parts.get(), _SolvePart(name, fractions)))
     try:
         yield
     finally:
@@ -105,6 +105,6 @@ def _position_in_whole_solve(make_position: PositionMaker, outside: int) -> Solv
     position = make_position()
     if not position.words:
         return position
-    for outer in reversed(_solve_parts.get()[outside:]):
-        position = outer.position_in_whole(position)
+    for part in reversed(_solve_parts.get()[outside:]):
+        position = part.position_in_whole(position)
     return position

@@ -34,9 +34,9 @@ def has_or_have(count: int) -> str:
     return "has" if count == 1 else "have"
 
 
-def count_of_total(count: int, whole: int, noun: str) -> str:
-    """`count` out of the total `whole`, with the noun: `count_of_total(2, 4, "row")` is "2 of 4 rows"."""
-    return f"{int(count)} of {counted(whole, noun)}"
+def count_of_total(count: int, total: int, noun: str) -> str:
+    """`count` out of the total `total`, with the noun: `count_of_total(2, 4, "row")` is "2 of 4 rows"."""
+    return f"{int(count)} of {counted(total, noun)}"
 
 
 def enumeration(parts: Sequence[str], conjunction: str = "and") -> str:

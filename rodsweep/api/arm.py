@@ -86,14 +86,14 @@ class Arm(SlenderArm):
         The value None removes a quantity. A new force removes the pressure; width and height remove the
         radius; segments remove radius, width, height and length.
         """
-        gone: dict[str, None] = {}
-        for one, other in EXCLUSIVE_QUANTITIES:
-            for new, old in ((one, other), (other, one)):
-                if any(changed.get(name) is not None for name in new):
-                    gone |= dict.fromkeys(old)
+        removed: dict[str, None] = {}
+        for first, second in EXCLUSIVE_QUANTITIES:
+            for given, replaced in ((first, second), (second, first)):
+                if any(changed.get(name) is not None for name in given):
+                    removed |= dict.fromkeys(replaced)
         if changed.get("segments") is not None:
-            gone["length"] = None
-        return Arm(**(self._given_quantities | gone | changed))
+            removed["length"] = None
+        return Arm(**(self._given_quantities | removed | changed))
 
     @property
     def turned(self) -> "Arm":
@@ -161,12 +161,14 @@ class Arm(SlenderArm):
         from ..tasks.rod_portrait import PortraitRequest
         from .answers.rod_portrait import solved_portrait
 
-        default = {each.name: each.default for each in fields(self)}
+        default = {field.name: field.default for field in fields(self)}
         section = config_tree("thresholds", {"arm": self})["parameters"]["arm"]
         # `load_kind` is no quantity of the arm; the kind of the loads is given to the portrait as `load`.
-        given = {name: value for name, value in section.items() if value != default.get(name, value)}
-        own = DescribedRod(arm=given, load=self.load or LOADS[0])
-        return solved_portrait(repr(self), PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy), progress)
+        quantities = {name: value for name, value in section.items() if value != default.get(name, value)}
+        description = DescribedRod(arm=quantities, load=self.load or LOADS[0])
+        return solved_portrait(
+            repr(self), PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy), progress
+        )
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
@@ -177,8 +179,8 @@ class Arm(SlenderArm):
                 )
         options = dict(options)
         progress = options.pop("progress", None)
-        takes_load = "F" in CONFIGS[task].rod_parameters_used(options)
-        if takes_load and self.load is None:
+        needs_load = "F" in CONFIGS[task].rod_parameters_used(options)
+        if needs_load and self.load is None:
             raise InputError(
                 f"{task} needs a load; give one, such as arm.replace(pressure='2 kPa') or "
                 "arm.replace(pressure='1.2 of flutter')"
@@ -198,7 +200,7 @@ class Arm(SlenderArm):
 
     @property
     def _quantity_names(self) -> list[str]:
-        return [each.name for each in fields(self) if each.init]
+        return [field.name for field in fields(self) if field.init]
 
     @property
     def _given_quantities(self) -> dict[str, Any]:
@@ -206,8 +208,8 @@ class Arm(SlenderArm):
         return {name: getattr(self, name) for name in self._quantity_names if getattr(self, name) is not None}
 
     def __repr__(self) -> str:
-        default = {each.name: each.default for each in fields(self)}
-        given = (
+        default = {field.name: field.default for field in fields(self)}
+        arguments = (
             f"{name}={value!r}" for name, value in self._given_quantities.items() if value != default[name]
         )
-        return f"Arm({', '.join(given)})"
+        return f"Arm({', '.join(arguments)})"

@@ -49,10 +49,10 @@ def open_result(path: str | Path) -> xr.Dataset:
     return read_file_and_journals(path, lambda: _open_result_file(path))
 
 
-def named_file_path(given: object, example: str) -> Path:
-    """Path of a file named by the user; InputError, with `example`, if `given` is no file name."""
-    if not isinstance(given, str | os.PathLike) or not isinstance(name := os.fspath(given), str):
-        raise InputError(f"{short_repr(given)} is not the name of a file; write it as in {example}")
+def named_file_path(argument: object, example: str) -> Path:
+    """Path of a file named by the user; InputError, with `example`, if `argument` is no file name."""
+    if not isinstance(argument, str | os.PathLike) or not isinstance(name := os.fspath(argument), str):
+        raise InputError(f"{short_repr(argument)} is not the name of a file; write it as in {example}")
     if not name or "\0" in name:
         raise InputError(f"{name!r} is not the name of a file; write it as in {example}")
     path = Path(name)
@@ -95,9 +95,11 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
     config: the config as a tree of keys.
     """
-    declared = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
-    places = {name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in declared)])}
-    names = sorted(data.variables, key=lambda name: places.get(str(name), len(places)))
+    layout_variables = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
+    order = {
+        name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in layout_variables)])
+    }
+    names = sorted(data.variables, key=lambda name: order.get(str(name), len(order)))
     variables = {name: data.variables[name] for name in names}
     coords = {name: variables.pop(name) for name in names if name in data.coords}
     return xr.Dataset(variables, coords, data.attrs)
@@ -114,9 +116,9 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
                 data = stored.load()
         except Exception as error:  # xarray and its engine raise many types on foreign attributes
             raise ValueError(one_line_message(error)) from error
-        found = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
+        stored_digests = json.loads(with_checksums(data).attrs[SEAL_ATTRIBUTE])["variables"]
         for name, digest in digests.items():
-            if found.get(name) != digest:
+            if stored_digests.get(name) != digest:
                 raise ValueError(f"its variable {name} was changed after rodsweep wrote it")
     return data
 
@@ -143,8 +145,8 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
     try:
         layout = layout_of(json.loads(data.attrs["config_resolved"]))
         status = data["status"]
-        words = str(status.attrs["flag_meanings"]).split()
-        flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), words, strict=True))
+        status_words = str(status.attrs["flag_meanings"]).split()
+        flags = dict(zip(map(int, np.atleast_1d(status.attrs["flag_values"])), status_words, strict=True))
     except (LookupError, ValueError, TypeError):
         raise InputError(
             "the data are not a complete rodsweep result: all variables and attributes are needed"
@@ -159,7 +161,7 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
                 "draw a selection with xarray's own plot"
             )
     variables = {str(name): array.values for name, array in data.variables.items()}
-    typed = {
+    typed_units = {
         str(name): str(v.attrs[TYPED_UNIT]) for name, v in data.variables.items() if TYPED_UNIT in v.attrs
     }
-    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed)
+    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed_units)

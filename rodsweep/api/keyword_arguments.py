@@ -24,11 +24,7 @@ from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Type variable for the class of an arm: an argument and the result of a function have the same class."""
-DEFAULT_VALUES = {
-    "drag": DRAG_NAMES[0],
-    "law": DEFAULT_BUILD.law,
-    "section": DEFAULT_BUILD.section,
-}
+DEFAULT_VALUES = {"drag": DRAG_NAMES[0], "law": DEFAULT_BUILD.law, "section": DEFAULT_BUILD.section}
 """Default values of drag, law and section. A key of an arm with its default value is not written into the
 config tree."""
 ConfigTree = dict[str, Any]
@@ -47,11 +43,11 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
     if not isinstance(task, str) or task not in CONFIGS:
         return tree
     sections = _allowed_keys_by_section(task)
-    for given, value in keywords.items():
-        name = plain_value(given)
+    for keyword, value in keywords.items():
+        name = plain_value(keyword)
         if name in sections and isinstance(value, Mapping):
-            for key, one in plain_keyword(name, dict(value)).items():
-                _add_key(tree.setdefault(name, {}), key, one)
+            for key, entry in plain_keyword(name, dict(value)).items():
+                _add_key(tree.setdefault(name, {}), key, entry)
             continue
         section = _section_of(name, sections)
         if section is None:
@@ -76,16 +72,20 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
-        loaded = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
-        left_out = (*LOAD_OF_RATIO, "load_kind", *(() if loaded else LOADS))
-        names = [name for name in ArmSection.model_fields if name not in left_out]
-        known = with_load_in_si(arm) if loaded else arm
-        given = {name: getattr(known, name) for name in names}
+        has_load = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
+        omitted = (*LOAD_OF_RATIO, "load_kind", *(() if has_load else LOADS))
+        names = [name for name in ArmSection.model_fields if name not in omitted]
+        complete_arm = with_load_in_si(arm) if has_load else arm
+        quantities = {name: getattr(complete_arm, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
-            given[name] = None if given[name] == default else given[name]
-        if not loaded and arm.load == "force":  # thresholds have the unit of the load that the arm would take
-            given["load_kind"] = arm.load
-        parameters["arm"] = {name: plain_value(value) for name, value in given.items() if value is not None}
+            quantities[name] = None if quantities[name] == default else quantities[name]
+        if (
+            not has_load and arm.load == "force"
+        ):  # thresholds have the unit of the load that the arm would take
+            quantities["load_kind"] = arm.load
+        parameters["arm"] = {
+            name: plain_value(value) for name, value in quantities.items() if value is not None
+        }
 
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
@@ -133,17 +133,17 @@ def point_count_of_valid_tree(tree: ConfigTree) -> int | None:
 def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     """Allowed keys of each section of a task's config, by name of the section; "" is the top level."""
     fields = CONFIGS[task].model_fields
-    inner: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
-    inner["material"] = MaterialSection
-    top = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
-    return {name: tuple(section.model_fields) for name, section in inner.items()} | {"": top}
+    sections: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
+    sections["material"] = MaterialSection
+    top_keys = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
+    return {name: tuple(section.model_fields) for name, section in sections.items()} | {"": top_keys}
 
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
     """Name of the first section with the key `name`; None if no section has this key. sections: allowed keys
     by name of the section.
     """
-    return next((section for section, known in sections.items() if name in known), None)
+    return next((section for section, allowed in sections.items() if name in allowed), None)
 
 
 def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
@@ -152,11 +152,11 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
     For a quantity of an arm, whose section is not in `sections`, the first allowed key may be returned:
     validation then names the right section. Raises InputError with a list of all keys if no key is similar.
     """
-    known = [key for keys in sections.values() for key in keys]
-    close = similar_keys(name, known)
-    if not close and name not in ArmSection.model_fields:
-        raise unknown_argument_error(name, known)
-    return close[0] if close else known[0]
+    allowed = [key for keys in sections.values() for key in keys]
+    similar = similar_keys(name, allowed)
+    if not similar and name not in ArmSection.model_fields:
+        raise unknown_argument_error(name, allowed)
+    return similar[0] if similar else allowed[0]
 
 
 class AxisRange(TypedDict):

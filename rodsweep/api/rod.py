@@ -66,26 +66,28 @@ class SoftRod:
         profile: str | Mapping[str, Any] | None = None,
         **parameters: float | None,
     ):
-        everything: dict[str, Any] = {**parameters, "arm": arm}
-        given = {name: value for name, value in everything.items() if value is not None}
+        arguments: dict[str, Any] = {**parameters, "arm": arm}
+        given_values = {name: value for name, value in arguments.items() if value is not None}
         for name in parameters:
             if name not in PARAMETERS:
-                left = [other for other in (*PARAMETERS, "arm") if other not in given]
-                hint = unknown_key_hint(name, left if similar_keys(name, left) else (*PARAMETERS, "arm"))
-                raise InputError(f"a rod has no parameter {name}; {hint}")
+                missing = [other for other in (*PARAMETERS, "arm") if other not in given_values]
+                suggestion = unknown_key_hint(
+                    name, missing if similar_keys(name, missing) else (*PARAMETERS, "arm")
+                )
+                raise InputError(f"a rod has no parameter {name}; {suggestion}")
         material = {"law": law, "section": section, "profile": profile}
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
-            given = rod_parameters_of(with_load_in_si(arm)) | given
-            beside = {name: value for name, value in material.items() if value is not None}
-            material = material_config_of(arm) | beside
+            given_values = rod_parameters_of(with_load_in_si(arm)) | given_values
+            material_values = {name: value for name, value in material.items() if value is not None}
+            material = material_config_of(arm) | material_values
         for name in REQUIRED_PARAMETERS:
-            if name not in given:
+            if name not in given_values:
                 raise InputError(
                     f"{name} is missing; give {enumeration(REQUIRED_PARAMETERS, 'and')}, or an arm"
                 )
-        values = {name: given.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
+        values = {name: given_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
         self._values = {
             name: _parameter_value(name, value) for name, value in values.items() if value is not None
         }
@@ -159,8 +161,8 @@ class SoftRod:
         from ..tasks.rod_portrait import PortraitRequest
         from .answers.rod_portrait import solved_portrait
 
-        own = DescribedRod(parameters=self._values, material=self._given_material)
-        request = PortraitRequest(rod=own, F_max=F_max, accuracy=accuracy)
+        description = DescribedRod(parameters=self._values, material=self._given_material)
+        request = PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy)
         return solved_portrait(repr(self), request, progress)
 
     if not TYPE_CHECKING:  # hidden from type checkers, which should report a misspelt task
@@ -173,8 +175,8 @@ class SoftRod:
                     f"rod.replace({name}=...) makes another rod"
                 )
             if name not in CONFIGS:
-                known = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
-                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(known)}")
+                task_names = [task for task, config in CONFIGS.items() if not config.needs_several_rods]
+                raise AttributeError(f"a rod has no {name!r}; its tasks are {', '.join(task_names)}")
             return lambda **options: self._answer(name, options)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
@@ -187,14 +189,14 @@ class SoftRod:
                     f"rod.replace({name}=...) makes another rod"
                 )
         section: Any = CONFIGS[task].model_fields[task].annotation
-        known = [*section.model_fields, "accuracy", "title", "progress"]
+        allowed = [*section.model_fields, "accuracy", "title", "progress"]
         for name in options:
-            if name not in known and not similar_keys(name, known):
-                raise unknown_argument_error(name, known)
+            if name not in allowed and not similar_keys(name, allowed):
+                raise unknown_argument_error(name, allowed)
         options = dict(options)
         progress = options.pop("progress", None)
-        taken = CONFIGS[task].rod_parameters_used(options)
-        names = [name for name in (*taken, *OPTIONAL_PARAMETERS) if name in self._values]
+        used_names = CONFIGS[task].rod_parameters_used(options)
+        names = [name for name in (*used_names, *OPTIONAL_PARAMETERS) if name in self._values]
         values: dict[str, Any] = {name: self._values[name] for name in names}
         tree = config_tree(task, values | self._given_material | options)
         solved = solve_in_process(job_of_tree(tree), progress=progress)
@@ -214,18 +216,18 @@ class SoftRod:
         return hash((*self._values.items(), repr(self._given_material)))
 
 
-def _material_section(given: Mapping[str, Any]) -> MaterialSection | None:
-    """The validated section `material` of a rod; None if all values in `given` are None. Raises InputError
+def _material_section(values: Mapping[str, Any]) -> MaterialSection | None:
+    """The validated section `material` of a rod; None if all values in `values` are None. Raises InputError
     for invalid values.
     """
     tree = {
-        name: plain_keyword(f"material.{name}", value) for name, value in given.items() if value is not None
+        name: plain_keyword(f"material.{name}", value) for name, value in values.items() if value is not None
     }
     if not tree:
         return None
-    read = with_profile_read({"material": tree}, Path())["material"]
+    material = with_profile_read({"material": tree}, Path())["material"]
     try:
-        return MaterialSection.model_validate(read)
+        return MaterialSection.model_validate(material)
     except ValidationError as error:
         problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
         in_config = problem | {"loc": ("material", *problem["loc"])}

@@ -77,8 +77,8 @@ class SolvedPoints:
             "config_resolved": json.dumps(self.plan.config),
         }
         attributes = file_attributes(self.job, self.statuses, blas_kernels())
-        whole = xr.Dataset(variables, coordinates, header | attributes | dict(self.run_attributes))
-        return with_arm_indexes(with_checksums(in_layout_order(whole, self.plan.layout, self.plan.config)))
+        result = xr.Dataset(variables, coordinates, header | attributes | dict(self.run_attributes))
+        return with_arm_indexes(with_checksums(in_layout_order(result, self.plan.layout, self.plan.config)))
 
     @cached_property
     def view(self) -> View:

@@ -44,10 +44,10 @@ def solve_in_process(
     notebook. Raises InputError for any other value of `progress`, and EnvironmentIncomplete if PETSc or SLEPc
     is missing.
     """
-    shown = progress_display(progress, job.points.count, job.title)
+    display = progress_display(progress, job.points.count, job.title)
     require_solvers()
     solver = job.solver()
-    started = utc_time()
+    start_time = utc_time()
     if note is not None:
         solver = guarded_solver(solver, job.layout, note)
     plan = plan_in_memory(job, solver.statuses)
@@ -56,28 +56,28 @@ def solve_in_process(
         _compiled_tasks.add(job.config.task)
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
-        shown(0)
+        display(0)
         try:
-            values, messages, reasons = _solve_points(job, solver, plan, shown)
+            values, messages, reasons = _solve_points(job, solver, plan, display)
             sweep_wide = SweepWideResult(())
             if solver.sweep_wide_solver:
                 view = view_in_memory(job, plan, values)
-                sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, shown)
+                sweep_wide = _sweep_wide_result(solver.sweep_wide_solver, view, display)
                 _change_points(sweep_wide, job, plan, values, messages)
                 reasons += reasons_of_changed_points(sweep_wide, solver.statuses, _point_text_of(job))
         except BaseException:  # a solve was interrupted, by Ctrl-C too: cached solvers may be half changed
             destroy_pooled_solvers()
             raise
         finally:
-            shown.close()
-        filled = (*plan.variables_from_config(), *sweep_wide.variables, *plan.variables_from_points(values))
+            display.close()
+        from_config, from_points = plan.variables_from_config(), plan.variables_from_points(values)
     return SolvedPoints(
         job=job,
         plan=plan,
         statuses=solver.statuses,
         values=values,
-        filled=filled,
-        run_attributes=_solve_attributes(started, reasons),
+        filled=(*from_config, *sweep_wide.variables, *from_points),
+        run_attributes=_solve_attributes(start_time, reasons),
         messages=messages,
     )
 
@@ -87,9 +87,9 @@ def _point_text_of(job: Job) -> Callable[[int], str]:
     return lambda index: parameters_text(job.points.values(index))
 
 
-def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a result whose solve ends now. started: time at which the solve started. reasons: reasons
-    why points failed.
+def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
+    """Attributes of a result whose solve ends now. start_time: time at which the solve started. reasons:
+    reasons why points failed.
     """
     from ..solve.backend import petsc
 
@@ -97,7 +97,7 @@ def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
         "petsc_options": petsc.user_options_text(),
         "ranks": 1,
         "hosts": socket.gethostname(),
-        "started": started,
+        "started": start_time,
         "stopped": "",
         **joined_failure_reasons("\n".join(reasons)),
         "finished": utc_time(),
@@ -105,63 +105,65 @@ def _solve_attributes(started: str, reasons: Sequence[str]) -> dict[str, Any]:
 
 
 def _solve_points(
-    job: Job, solver: Solver, plan: Plan, shown: Display
+    job: Job, solver: Solver, plan: Plan, display: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
-    of the points first. messages: one message for each point. reasons: reasons why points failed. shown:
+    of the points first. messages: one message for each point. reasons: reasons why points failed. display:
     progress display.
     """
     reasons = FailureReasons(_point_text_of(job))
     count = job.points.count
-    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
+    columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
     messages = [""] * count
-    unsolved = range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, flat, shown)
-    for done, (index, outcome) in enumerate(
-        _solve_outcomes(unsolved, count, solver, shown), count - len(unsolved) + 1
+    unsolved = (
+        range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, columns, display)
+    )
+    for solved_count, (index, outcome) in enumerate(
+        _solve_outcomes(unsolved, count, solver, display), count - len(unsolved) + 1
     ):
         record = solver.record(index, outcome)
-        for name, array in flat.items():
+        for name, array in columns.items():
             array[index] = record[name]
         messages[index] = outcome.message
         reasons.add(index, outcome)
-        shown(done)
+        display(solved_count)
     shape = job.points.shape
     return (
-        {name: array.reshape(*shape, *array.shape[1:]) for name, array in flat.items()},
+        {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()},
         messages,
         [*reasons.examples.values()],
     )
 
 
 def _solve_stretches(
-    stretches: Stretches, solve_stretch: SolveStretch, flat: dict[str, np.ndarray], shown: Display
+    stretches: Stretches, solve_stretch: SolveStretch, columns: dict[str, np.ndarray], display: Display
 ) -> Sequence[int]:
     """Fills the variables of all points that are solved together; returns the flat indices of all other
     points.
 
-    flat: variables by name, (points, ...). shown: progress display.
+    columns: variables by name, (points, ...). display: progress display.
     """
     unsolved: list[int] = []
-    done = 0
+    solved_count = 0
     for indices in map(stretches.indices, range(stretches.count)):
-        found = solve_stretch(indices)
-        here = np.flatnonzero(found.is_solved)
-        for name, column in found.part_at(here).values.items():
-            flat[name][indices[here]] = column
-        unsolved += indices[~found.is_solved].tolist()
-        done += len(here)
-        shown(done)
+        result = solve_stretch(indices)
+        solved_indices = np.flatnonzero(result.is_solved)
+        for name, column in result.part_at(solved_indices).values.items():
+            columns[name][indices[solved_indices]] = column
+        unsolved += indices[~result.is_solved].tolist()
+        solved_count += len(solved_indices)
+        display(solved_count)
     return unsolved
 
 
-def _sweep_wide_result(solver: SweepWideSolver, view: View, shown: Display) -> SweepWideResult:
+def _sweep_wide_result(solver: SweepWideSolver, view: View, display: Display) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
-    points. shown: progress display.
+    points. display: progress display.
     """
     results = dict[int, NamedArrays]()
     while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
-        with solve_part(name), reporting_to(display_listener(shown, name)):
+        with solve_part(name), reporting_to(display_listener(display, name)):
             results[chosen[0]] = solver.solve_item(items, chosen[0])
     return solver.result(view, results)
 
@@ -172,29 +174,29 @@ def _change_points(
     """Replaces variables and messages of the points that change. values: variables by name, with the
     dimensions of the points first. messages: message of each point."""
     for index, changed in result.changed_points.items():
-        at = np.unravel_index(index, job.points.shape)
+        position = np.unravel_index(index, job.points.shape)
         for variable in plan.layout.variables:
-            values[variable.name][at] = changed[variable.name]
+            values[variable.name][position] = changed[variable.name]
         messages[index] = result.messages[index]
 
 
 def _solve_outcomes(
-    unsolved: Sequence[int], count: int, solver: Solver, shown: Display
+    unsolved: Sequence[int], count: int, solver: Solver, display: Display
 ) -> Iterator[tuple[int, Any]]:
     """Solves the points with flat indices `unsolved`; yields (flat index, outcome) of each point. Along a
     chain, each point starts from the solution of the previous point.
 
-    count: number of all points. shown: progress display.
+    count: number of all points. display: progress display.
     """
-    done = count - len(unsolved)
+    solved_count = count - len(unsolved)
 
     @contextmanager
     def point_progress() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
-        name = f"point {done + 1} of {count}" if count > 1 else ""
+        name = f"point {solved_count + 1} of {count}" if count > 1 else ""
         with (
-            solve_part(name, (done / count, (done + 1) / count)),
-            reporting_to(display_listener(shown, name)),
+            solve_part(name, (solved_count / count, (solved_count + 1) / count)),
+            reporting_to(display_listener(display, name)),
         ):
             yield
 
@@ -202,7 +204,7 @@ def _solve_outcomes(
         for index in unsolved:
             with point_progress():
                 outcome = solver.solve(index)
-            done += 1
+            solved_count += 1
             yield index, outcome
         return
     chains = solver.chained.chains
@@ -212,7 +214,7 @@ def _solve_outcomes(
         for index in map(int, chains.indices(chain)):
             with point_progress():
                 outcome, state = solve_from(index, state)
-            done += 1
+            solved_count += 1
             yield index, outcome
 
 
@@ -225,17 +227,17 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     progress = plain_keyword("progress", progress)
     if not (progress is None or isinstance(progress, bool)):
         raise InputError(f"progress = {progress!r} is not allowed; it should be True, False or None")
-    shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
-    return ProgressReporter(total, title, live=True) if shown else SilentProgress()
+    is_shown = sys.stderr.isatty() or in_notebook() if progress is None else progress
+    return ProgressReporter(total, title, is_bar=True) if is_shown else SilentProgress()
 
 
-def display_listener(shown: Display, name: str) -> RankListener:
-    """Listener that shows the progress of the solve `name` in the display `shown`. Ctrl-C still raises
+def display_listener(display: Display, name: str) -> RankListener:
+    """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
     KeyboardInterrupt.
     """
     return RankListener(
         SingleRankCommunication(
-            lambda position: shown.show_position(position.words, position.completed_fraction or 0.0)
+            lambda position: display.show_position(position.words, position.completed_fraction or 0.0)
         ),
         StopRequest(),
         lambda: name,

@@ -86,18 +86,18 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
 def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
     """Raises InputError if there are more than ALWAYS_ALLOWED_RANKS ranks and most of them would be idle,
     because both the points and the processors of this machine are fewer. points: None if not known."""
-    useful = max(os.cpu_count() or 1, points or 0, ALWAYS_ALLOWED_RANKS)
-    if points is not None and ranks > useful:
+    max_ranks = max(os.cpu_count() or 1, points or 0, ALWAYS_ALLOWED_RANKS)
+    if points is not None and ranks > max_ranks:
         raise InputError(
             f"ranks = {ranks} is not allowed for {counted(points, 'point')}; ranks would be idle; it should "
-            f"be at most {useful}"
+            f"be at most {max_ranks}"
         )
 
 
-def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown: Display) -> xr.Dataset:
+def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, display: Display) -> xr.Dataset:
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
-    directory. tree: config tree. strict: as in `sweep`. shown: progress display. Raises EnvironmentIncomplete
-    if mpiexec cannot be started, or the exception of `_run_failure_exception`.
+    directory. tree: config tree. strict: as in `sweep`. display: progress display. Raises
+    EnvironmentIncomplete if mpiexec cannot be started, or the exception of `_run_failure_exception`.
     """
     points = tree["parameters"].get("points")
     if points is not None:
@@ -106,20 +106,20 @@ def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, shown
         config = Path(folder, f"{task}.yaml")
         output = Path(folder, f"{task}.h5")
         config.write_text(tree_yaml(tree), encoding="utf-8")
-        words = [_mpiexec_path(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
-        words += ["-o", str(output), *(["--strict"] if strict else [])]
+        command = [_mpiexec_path(), "-n", str(ranks), sys.executable, "-m", "rodsweep", "run", str(config)]
+        command += ["-o", str(output), *(["--strict"] if strict else [])]
         try:
-            status, errors = _run_with_progress(words, folder, shown)
+            status, errors = _run_with_progress(command, folder, display)
         except OSError as error:
-            raise EnvironmentIncomplete(f"{words[0]} cannot be started: {error.strerror}") from None
+            raise EnvironmentIncomplete(f"{command[0]} cannot be started: {error.strerror}") from None
         if status not in COMPLETE_STATUSES:
-            raise _run_failure_exception(words[0], status, errors, begun=output.exists())
+            raise _run_failure_exception(command[0], status, errors, is_file_created=output.exists())
         if (log := log_file(output)).exists():
             warnings.warn(log.read_text(encoding="utf-8"), RuntimeWarning, stacklevel=2)
         return open_result(output)
 
 
-def _run_with_progress(words: list[str], folder: str, shown: Display) -> tuple[int, str]:
+def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple[int, str]:
     """Runs the command `words` in the directory `folder` and shows its progress; returns (exit status,
     standard error).
     """
@@ -129,30 +129,30 @@ def _run_with_progress(words: list[str], folder: str, shown: Display) -> tuple[i
     )
     assert run.stderr is not None
     errors: list[str] = []
-    shown(0)
+    display(0)
     try:
         for line in run.stderr:
             errors.append(line)
-            shown.show_position(line.strip())
+            display.show_position(line.strip())
         return run.wait(), "".join(errors)
     except BaseException:  # Ctrl-C: the launcher ends its ranks within a second
         run.terminate()
         run.wait()
         raise
     finally:
-        shown.close()
+        display.close()
 
 
-def _run_failure_exception(launcher: str, status: int, errors: str, begun: bool) -> Exception:
+def _run_failure_exception(launcher: str, status: int, errors: str, is_file_created: bool) -> Exception:
     """Exception for a run that did not complete.
 
-    begun: whether the ranks had created the result file. launcher: path of mpiexec. status: exit status of
-    the launcher. errors: standard error of the run.
+    is_file_created: whether the ranks had created the result file. launcher: path of mpiexec. status: exit
+    status of the launcher. errors: standard error of the run.
     """
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
-    if begun or "Traceback" in errors:
+    if is_file_created or "Traceback" in errors:
         return RuntimeError(errors[-MAX_QUOTED_LENGTH:])
     output = " ".join(errors.split()) or f"exit status {status}"
     return EnvironmentIncomplete(f"{launcher} did not start the ranks: {output[-MAX_QUOTED_LENGTH:]}")
@@ -162,10 +162,10 @@ def _mpiexec_path() -> str:
     """Path of mpiexec in the folder of this Python, else on the search path; EnvironmentIncomplete if mpiexec
     is not found.
     """
-    beside = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
-    found = beside or shutil.which("mpiexec")
-    if found is None:
+    next_to_python = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
+    path = next_to_python or shutil.which("mpiexec")
+    if path is None:
         raise EnvironmentIncomplete(
             "mpiexec, which starts the ranks, is not found; `make install` provides it"
         )
-    return found
+    return path

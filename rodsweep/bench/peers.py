@@ -70,27 +70,27 @@ def peer_package(directory: Path | None) -> ModuleType | None:
     """
     if directory is not None:
         return _import_directory(directory)
-    own = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
-    there = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (own / "__init__.py").is_file()
-    return _import_directory(own) if there else None
+    package_path = CHECKOUT_FOLDER / PEER_PACKAGE_NAME
+    is_checkout = (CHECKOUT_FOLDER / "pyproject.toml").is_file() and (package_path / "__init__.py").is_file()
+    return _import_directory(package_path) if is_checkout else None
 
 
 def _import_directory(directory: Path) -> ModuleType:
-    refusal = InputError(
+    error = InputError(
         f"--peers {directory} must be the folder `{PEER_PACKAGE_NAME}` of a checkout of rodsweep"
     )
     start = directory.resolve() / "__init__.py"
-    known = sys.modules.get(PEER_PACKAGE_NAME)
-    if known is not None and known.__file__ and Path(known.__file__).resolve() == start:
-        return known
+    imported = sys.modules.get(PEER_PACKAGE_NAME)
+    if imported is not None and imported.__file__ and Path(imported.__file__).resolve() == start:
+        return imported
     spec = spec_from_file_location(PEER_PACKAGE_NAME, start, submodule_search_locations=[str(start.parent)])
     if not start.is_file() or spec is None or spec.loader is None:
-        raise refusal
+        raise error
     package = module_from_spec(spec)
     sys.modules[PEER_PACKAGE_NAME] = package  # needed by imports in its modules
     spec.loader.exec_module(package)
     if not hasattr(package, "versions"):
-        raise refusal
+        raise error
     return package
 
 
@@ -102,8 +102,8 @@ def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: 
     module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
-    found: Peers = import_module(module).peers(quick, folder)
-    return found
+    peers: Peers = import_module(module).peers(quick, folder)
+    return peers
 
 
 def peers_left_out(studies: Sequence[str]) -> str:

@@ -126,20 +126,22 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
         if first[i].median < SHORT_RUN_SECONDS:
             runs[i]()
         seconds[i] += _timed(runs[i]).seconds
-    return [TimedRuns(a.outcome, tuple(more) or a.seconds) for a, more in zip(first, seconds, strict=True)]
+    return [
+        TimedRuns(a.outcome, tuple(further) or a.seconds) for a, further in zip(first, seconds, strict=True)
+    ]
 
 
 def timing_order(rounds: Sequence[int]) -> Iterator[int]:
     """Indices of functions in the order of timing: round by round, so that a slow period of the machine
     affects all functions. rounds: number of rounds of each function."""
-    for turn in range(max(rounds)):
-        yield from (i for i, most in enumerate(rounds) if turn < most)
+    for round_number in range(max(rounds)):
+        yield from (i for i, round_count in enumerate(rounds) if round_number < round_count)
 
 
 def _timed(run: Callable[[], Outcome]) -> TimedRuns[Outcome]:
-    began = processor_seconds_with_children()
+    start = processor_seconds_with_children()
     outcome = run()
-    return TimedRuns(outcome, (processor_seconds_with_children() - began,))
+    return TimedRuns(outcome, (processor_seconds_with_children() - start,))
 
 
 def processor_seconds_with_children() -> float:
@@ -181,12 +183,14 @@ def measure_cases(
     rounds."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
-    raced = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
+    times = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
     measurements = []
-    for (entry, c), timed in zip(pairs, raced, strict=True):
-        least = min(timed.seconds)
+    for (entry, c), timed in zip(pairs, times, strict=True):
+        min_seconds = min(timed.seconds)
         failed = isinstance(timed.outcome, Exception)
-        empty = Measurement(entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=least)
+        empty = Measurement(
+            entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=min_seconds
+        )
         failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
         measurements.append(replace(empty, **(failure if failed else entry.judge(timed.outcome))))
     return measurements
@@ -229,13 +233,13 @@ class BlankIfNan(float):
         return "" if isnan(self) else super().__format__(form)
 
 
-def markdown_table(head: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
+def markdown_table(titles: str, line: str, rows: Iterable[Mapping[str, object]]) -> str:
     """Table in Markdown.
 
-    head: titles of the columns, separated by |. line: format string of a row, such as "{method} |
+    titles: titles of the columns, separated by |. line: format string of a row, such as "{method} |
     {seconds:.2f}". rows: values of each row, by name.
     """
-    lines = [f"| {head} |", "|" + "---|" * (head.count("|") + 1)]
+    lines = [f"| {titles} |", "|" + "---|" * (titles.count("|") + 1)]
     for row in rows:
         cells = {
             k: BlankIfNan(value) if isinstance(value, int | float) else value for k, value in row.items()

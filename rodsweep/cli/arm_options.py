@@ -37,17 +37,17 @@ CommandFunction = Callable[..., Any]
 
 
 def arm_options(
-    left_out: Collection[str] = (), is_needed: bool = True
+    omitted: Collection[str] = (), is_required: bool = True
 ) -> Callable[[CommandFunction], CommandFunction]:
     """Decorator that adds the options of an arm's material, and an option for each quantity except the
-    quantities in `left_out`.
+    quantities in `omitted`.
 
-    is_needed: whether the options of indispensable quantities are required.
+    is_required: whether the options of indispensable quantities are required.
     """
 
     def add_options(command: CommandFunction) -> CommandFunction:
-        for name in reversed([name for name in UNITS if name not in left_out]):
-            command = _quantity_option(name, is_needed and QUANTITIES[name].is_required)(command)
+        for name in reversed([name for name in UNITS if name not in omitted]):
+            command = _quantity_option(name, is_required and QUANTITIES[name].is_required)(command)
         for option, settings in reversed(MATERIAL_OPTIONS.items()):
             command = click.option(option, **settings)(command)
         return command

@@ -12,16 +12,16 @@ LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 """Text styles of the printed lines, by kind of line."""
 
 
-def print_arm_report(given: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
+def print_arm_report(typed_values: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
-    given: values of the options by name of the quantity or law, None if not given. poisson, segments: as in
-    `SlenderArm`. Raises InputError, whose message names the options.
+    typed_values: values of the options by name of the quantity or law, None if not given. poisson, segments:
+    as in `SlenderArm`. Raises InputError, whose message names the options.
     """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import arm_report
 
-    quantities: dict[str, Any] = {name: text for name, text in given.items() if text is not None}
+    quantities: dict[str, Any] = {name: text for name, text in typed_values.items() if text is not None}
     try:
         report = arm_report(SlenderArm(**quantities, poisson=poisson, segments=segments or None))
     except InputError as error:
@@ -43,6 +43,6 @@ def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
     quantities.
     """
-    named = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
-    named = named.replace("--segments", "--segment")
-    return named if named.startswith("--") else f"--{named}"
+    text = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
+    text = text.replace("--segments", "--segment")
+    return text if text.startswith("--") else f"--{text}"

@@ -23,12 +23,12 @@ a table, not times between machines, and read each time together with its error:
 equal accuracy. An HDF5 file beside the text has every number with all settings."""
 
 
-def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path | None) -> None:
+def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directory: Path | None) -> None:
     """Runs benchmarks; writes `output` (Markdown) and, in the same folder, one file .h5 with the numbers of
     all studies, and a figure _STUDY.png for each study that can be drawn.
 
-    what: name of the study, None for all studies. quick: whether fewer rounds are run, on fewer rods,
-    sizes or settings. directory: folder of the peers, None for the folder `benchmarks` of the running
+    study_name: name of the study, None for all studies. is_quick: whether fewer rounds are run, on fewer
+    rods, sizes or settings. directory: folder of the peers, None for the folder `benchmarks` of the running
     checkout. Raises EnvironmentIncomplete if a package of the benchmark is missing.
     """
     try:
@@ -48,10 +48,10 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,
-        "sweep": lambda quick, _: sweep_study(quick, MEASURED_COMMAND),
+        "sweep": lambda is_quick, _: sweep_study(is_quick, MEASURED_COMMAND),
     }
     package = peer_package(directory)
-    names = [what] if what else list(studies)
+    names = [study_name] if study_name else list(studies)
     tables = {}
     blocks = [REPORT_HEADING, machine_and_versions_line(package.versions() if package else {})]
     if package is None and (sentence := peers_left_out(names)):
@@ -59,7 +59,7 @@ def run_benchmarks(what: str | None, quick: bool, output: Path, directory: Path 
     click.echo("\n\n".join(blocks[1:]))
     for name in names:
         with TemporaryDirectory(prefix="rodsweep-bench-") as folder:
-            study = studies[name](quick, peers_of_study(package, name, quick, Path(folder)))
+            study = studies[name](is_quick, peers_of_study(package, name, is_quick, Path(folder)))
         tables[name] = study.table()
         blocks += [f"## {name}", study.text]
         click.echo("\n" + "\n\n".join(blocks[-2:]))
@@ -80,6 +80,6 @@ def machine_attributes() -> dict[str, str]:
 def machine_and_versions_line(peers: Mapping[str, str]) -> str:
     """Processor, date and versions in one line of text. peers: versions of the peers by name."""
     versions = petsc.versions() | {k.removesuffix("_version"): v for k, v in provenance().items()}
-    shown = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
-    where = ", ".join(f"{name} {its}" for name, its in (shown | dict(peers)).items())
+    versions_to_print = {name: versions[name] for name in ("rodsweep", "petsc", "slepc", "numpy", "python")}
+    where = ", ".join(f"{name} {version}" for name, version in (versions_to_print | dict(peers)).items())
     return f"One core of {cpu_name()}, {platform.system()}, {utc_time()[:10]}; {where}. Threads: one."

@@ -33,8 +33,8 @@ def print_job_check(job: Job) -> None:
         print_lines(console, [arms])
     print_lines(console, _arm_lines(job) if job.quantities else [])
     table = Table("part", "modelled", "why", box=None, pad_edge=False)
-    for part, is_modelled, why in job.task.check_rows():
-        table.add_row(part, "yes" if is_modelled else "no", why)
+    for quantity, is_modelled, reason in job.task.check_rows():
+        table.add_row(quantity, "yes" if is_modelled else "no", reason)
     console.print(table)
     cost = job.task.cost()
     if cost.unknowns is not None:
@@ -67,8 +67,10 @@ def _arm_lines(job: Job) -> list[str]:
     columns = job.points.columns_by_name | {
         v.name: values for v, values in job.quantities if v.name == "tau2"
     }
-    made = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
-    validity = validity_sentence(ArmValidity(job.config, job.points).variables_at_rest(), when=" at rest")
+    texts = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
+    validity = validity_sentence(
+        ArmValidity(job.config, job.points).variables_at_rest(), condition=" at rest"
+    )
     load_clause = ", and compression, by the load that it finds"
     if "F" in job.task.coordinates():  # rows along F
         load_clause = ", and compression, by the loads of the rows"
@@ -79,7 +81,7 @@ def _arm_lines(job: Job) -> list[str]:
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
         *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
-        f"the arm as a rod: {', '.join(made)} s",
+        f"the arm as a rod: {', '.join(texts)} s",
         *_lines_on_points_without_rod(job.points),
         f"{validity}; the run also tests inertia, by the frequency of the arm's motion{load_clause}",
     ]
@@ -101,13 +103,13 @@ def _wall_lines(arm: ArmSection) -> list[str]:
     values = [
         arm.quantity_axes[name].array() if name in arm.quantity_axes else np.array([0.5]) for name in names
     ]
-    length, radius, bore, poisson = np.meshgrid(*values)
-    tubes = bore < radius
-    effect = wall_flattening_effect(length[tubes], radius[tubes], bore[tubes], poisson[tubes])
-    worst = int(np.argmax(effect.value))
-    warning = tube_wall_check(replace(effect, value=effect.value[worst])).text
-    some = int((effect.validity > 0).sum())
-    return [f"{warning} Of {counted(effect.value.size, 'tube')} this is the worst."] if some else []
+    length, radius, inner_radius, poisson = np.meshgrid(*values)
+    tubes = inner_radius < radius
+    effect = wall_flattening_effect(length[tubes], radius[tubes], inner_radius[tubes], poisson[tubes])
+    worst_index = int(np.argmax(effect.value))
+    warning = tube_wall_check(replace(effect, value=effect.value[worst_index])).text
+    affected_count = int((effect.validity > 0).sum())
+    return [f"{warning} Of {counted(effect.value.size, 'tube')} this is the worst."] if affected_count else []
 
 
 def _lines_on_points_without_rod(points: Points) -> list[str]:
@@ -117,9 +119,9 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:
-        there = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
-        different = counted(len(np.unique(there)), "different rod")
-        lines.append(f"{different} at {len(there)} points; rods that are equal are solved once")
+        modelled_rods = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
+        rods_text = counted(len(np.unique(modelled_rods)), "different rod")
+        lines.append(f"{rods_text} at {len(modelled_rods)} points; rods that are equal are solved once")
     for status in NoRodStatus:
         number = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
         if number:

@@ -63,10 +63,10 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
             "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
             "points to it"
         )
-    part = parsed_shard(shard)
-    suffix = f"-{part.number}-of-{part.shard_count}.h5" if part.shard_count > 1 else ".h5"
+    parsed = parsed_shard(shard)
+    suffix = f"-{parsed.number}-of-{parsed.shard_count}.h5" if parsed.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
-    code = run_config(config, output, RunRequest(overrides=overrides, shard=part, **options), stop)
+    code = run_config(config, output, RunRequest(overrides=overrides, shard=parsed, **options), stop)
     stop.ignore()  # the status is decided
     sys.exit(code)
 
@@ -81,16 +81,16 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
     from ..tasks.running.job import plan_without_solver
 
     output = result_file_path(output)
-    merged = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
+    result = merge_files(output, tuple(map(link_target, shards)), plan_without_solver)
     sources = counted(len(shards), "file")
-    points = counted(merged.point_count, "point")
-    click.echo(f"{output}: {points} from {sources}, {merged.missing_count} missing")
-    if merged.kernel_warning:
-        click.echo(f"{output}: {merged.kernel_warning}")
-    if merged.missing_count:
+    points = counted(result.point_count, "point")
+    click.echo(f"{output}: {points} from {sources}, {result.missing_count} missing")
+    if result.kernel_warning:
+        click.echo(f"{output}: {result.kernel_warning}")
+    if result.missing_count:
         click.echo(f"`rodsweep run CONFIG -o {output}` computes the missing points")
         sys.exit(STOPPED_STATUS)
-    if not merged.is_finished:
+    if not result.is_finished:
         click.echo(f"`rodsweep run CONFIG -o {output}` adds the variables that need all points")
 
 
@@ -102,8 +102,8 @@ def snapshot(file: Path, output: Path | None) -> None:
     from ..results.file.current_state import write_snapshot
 
     output = result_file_path(output or with_suffix_replaced(file, f"-snapshot{file.suffix}"))
-    done, points = write_snapshot(link_target(file), output)
-    click.echo(f"wrote {output}: {done} of {points} points are done")
+    stored_count, points = write_snapshot(link_target(file), output)
+    click.echo(f"wrote {output}: {stored_count} of {points} points are done")
 
 
 @commands.command()
@@ -158,8 +158,8 @@ def bench(what: str | None, quick: bool, output: Path | None, directory: Path | 
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
-    unfit = output.exists() and not output.is_file()
-    if unfit or not output.parent.is_dir() or output.suffix != ".md":
+    is_not_a_file = output.exists() and not output.is_file()
+    if is_not_a_file or not output.parent.is_dir() or output.suffix != ".md":
         raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
     run_benchmarks(what, quick, output, directory)
 

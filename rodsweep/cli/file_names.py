@@ -23,11 +23,11 @@ def result_file_path(path: Path) -> Path:
     return link_target(path)
 
 
-def with_suffix_replaced(file: Path, ending: str) -> Path:
-    """Path of `file` with its suffix replaced by `ending`; InputError for a directory."""
+def with_suffix_replaced(file: Path, suffix: str) -> Path:
+    """Path of `file` with its suffix replaced by `suffix`; InputError for a directory."""
     if file.is_dir():
         raise InputError(f"{file} is a directory; name a file")
-    return file.with_name(file.stem + ending)
+    return file.with_name(file.stem + suffix)
 
 
 def link_target(path: Path) -> Path:

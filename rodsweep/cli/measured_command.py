@@ -45,7 +45,9 @@ class InstantSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        parts = np.random.default_rng(1).standard_normal((OUTCOME_COUNT, 3, self.config.spectrum.modes))
+        random_numbers = np.random.default_rng(1).standard_normal(
+            (OUTCOME_COUNT, 3, self.config.spectrum.modes)
+        )
         outcomes = [
             Spectrum(
                 status=SpectrumStatus.ok,
@@ -57,7 +59,7 @@ class InstantSpectra(SpectrumTask):
                 order=20,
                 seconds=1e-7,
             )
-            for a, b, c in parts
+            for a, b, c in random_numbers
         ]
 
         def solve(index: int) -> Spectrum:
@@ -92,11 +94,11 @@ def peak_memory() -> int:
 
 def run_measured() -> None:
     """Runs `rodsweep` with the arguments of this process, and records the peak memory at the end."""
-    directory, kind, *words = sys.argv[1:]
+    directory, kind, *command = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:
         TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
-    sys.argv = ["rodsweep", *words]
+    sys.argv = ["rodsweep", *command]
     try:
         main()
     finally:

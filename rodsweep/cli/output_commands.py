@@ -80,28 +80,28 @@ def plot(
     output = output or with_suffix_replaced(files[0], ".gif" if what == "animation" else ".png")
     values = _parsed_at_values(at)
     views = [section_at_values(read_view(link_target(file)), values) for file in files]
-    drawn = draw(
+    message = draw(
         views, output, look=FigureLook(**look), shapes=with_shapes, roots=roots, what=what, points=points
     )
-    click.echo(drawn)
+    click.echo(message)
 
 
 def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
     """Values of the options `--at NAME=VALUE`, by name; InputError for a text without "=", or a name that is
     given twice."""
-    found: dict[str, str] = {}
+    values: dict[str, str] = {}
     for text in at:
-        name, equals, value = text.partition("=")
-        if not equals:
+        name, separator, value = text.partition("=")
+        if not separator:
             raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
         name = name.strip()
-        if name in found:
+        if name in values:
             raise InputError(
-                f"--at {printable(name)} is given twice ({printable(found[name])} and "
+                f"--at {printable(name)} is given twice ({printable(values[name])} and "
                 f"{printable(value.strip())}); give one value for each parameter"
             )
-        found[name] = value.strip()
-    return found
+        values[name] = value.strip()
+    return values
 
 
 @click.command()
@@ -141,7 +141,7 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 
 @click.command()
 @parameter_options
-@arm_options(QUANTITIES_WITHOUT_OPTION, is_needed=False)
+@arm_options(QUANTITIES_WITHOUT_OPTION, is_required=False)
 @click.option("--poisson", type=float, help="Poisson's ratio of the arm; by default 0.5.")
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=DEFAULT_F_MAX, show_default=True, help="Largest force.")

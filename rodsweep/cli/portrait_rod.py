@@ -38,30 +38,30 @@ def rod_of_options(
     from ..post.rod_portrait.results import DescribedRod
     from .arm_report import with_option_names
 
-    own = _options_that_are_set(parameters)
-    for name, value in own.items():
+    parameter_values = _options_that_are_set(parameters)
+    for name, value in parameter_values.items():
         allowed = PARAMETERS[name].allowed
         if not allowed.contains(value):
             raise InputError(f"--{name} = {value:g} is not {allowed.description_for(value)}")
-    words = _options_that_are_set(material)
+    material_values = _options_that_are_set(material)
     of_arm = _options_that_are_set(quantities)
     if of_arm:
-        of_arm |= {name: words.pop(name) for name in ("law", "section") if name in words}
+        of_arm |= {name: material_values.pop(name) for name in ("law", "section") if name in material_values}
         if "viscosity" not in of_arm:
             raise InputError("--viscosity is missing; an arm needs the viscosity of its fluid")
         try:
             SlenderArm(**of_arm)
         except InputError as error:
             raise InputError(with_option_names(str(error))) from None
-        return DescribedRod(parameters=own, material=_read_material(words), arm=of_arm)
+        return DescribedRod(parameters=parameter_values, material=_read_material(material_values), arm=of_arm)
     for name in REQUIRED_PARAMETERS:
-        if name not in own:
+        if name not in parameter_values:
             raise InputError(
                 f"--{name} is missing; give {', '.join(f'--{each}' for each in REQUIRED_PARAMETERS)}, "
                 "or the quantities of an arm, such as --length"
             )
-    values = {name: own.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
-    return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(words))
+    values = {name: parameter_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
+    return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(material_values))
 
 
 def _read_material(material: Mapping[str, Any]) -> Any:
@@ -77,22 +77,22 @@ def _options_that_are_set(options: Mapping[str, Any]) -> dict[str, Any]:
 
 
 @contextmanager
-def solve_with_progress(shown: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
+def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Iterator[SolveJob]":
     """Yields `solve` with a progress display: number of solved jobs, and position of a long solve."""
     numbers = count(1)
 
     def show(position: SolvePosition) -> None:
-        shown.show_position(position.words, position.completed_fraction or 0.0)
+        reporter.show_position(position.words, position.completed_fraction or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")
         with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
             view = solve(job)
-        shown(next(numbers))
+        reporter(next(numbers))
         return view
 
-    shown(0)
+    reporter(0)
     try:
         yield solve_and_show
     finally:
-        shown.close()
+        reporter.close()

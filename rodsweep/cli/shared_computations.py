@@ -49,9 +49,9 @@ def with_variables_from_config(plan: Plan, task: Task, team: Team, stop: StopReq
 
     None if a stop signal came before the computation ended.
     """
-    shared = _SharedComputations(team, stop)
-    found = task.variables_from_config(shared.gather_in_order)
-    return None if shared.any_rank_stopped else replace(plan, variables_from_config=lambda: found)
+    computations = _SharedComputations(team, stop)
+    variables = task.variables_from_config(computations.gather_in_order)
+    return None if computations.any_rank_stopped else replace(plan, variables_from_config=lambda: variables)
 
 
 def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
@@ -65,9 +65,9 @@ def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> Flut
     ):  # a rank without a rod must start PETSc with the others
         team.require_on_all_ranks(require_solvers)
         team.require_on_all_ranks(start_solvers)
-    shared = _SharedComputations(team, stop)
-    found = shared.gather_in_order(rods, flutter_force_of_rod)
-    return None if shared.any_rank_stopped else dict(zip(rods, found, strict=True))
+    computations = _SharedComputations(team, stop)
+    forces = computations.gather_in_order(rods, flutter_force_of_rod)
+    return None if computations.any_rank_stopped else dict(zip(rods, forces, strict=True))
 
 
 def report_stop(team: Team, stop: StopRequest) -> None:
@@ -75,6 +75,6 @@ def report_stop(team: Team, stop: StopRequest) -> None:
 
     Collective: all ranks call together.
     """
-    signal = max(team.gather_on_all_ranks(stop.name))
+    signal_name = max(team.gather_on_all_ranks(stop.name))
     if team.is_first:
-        click.echo(f"stopped by {signal}; no point is computed yet, the same command starts again")
+        click.echo(f"stopped by {signal_name}; no point is computed yet, the same command starts again")

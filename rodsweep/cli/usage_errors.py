@@ -17,8 +17,8 @@ class CommandGroup(click.Group):
             return super().resolve_command(ctx, args)
         from ..config.document.refusals import dotted_key, unknown_key_hint
 
-        hint = unknown_key_hint(name, self.list_commands(ctx), "the commands are")
-        raise click.UsageError(f"unknown command {dotted_key([name])}; {hint}", ctx)
+        suggestion = unknown_key_hint(name, self.list_commands(ctx), "the commands are")
+        raise click.UsageError(f"unknown command {dotted_key([name])}; {suggestion}", ctx)
 
 
 def usage_error_text(error: click.UsageError) -> str:

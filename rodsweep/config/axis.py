@@ -79,9 +79,9 @@ class Axis(StrictSection):
     @property
     def json_value(self) -> dict[str, Any]:
         """The axis as JSON-compatible keys and values, with `factor` applied to start and stop of a range."""
-        tree = self.model_dump(mode="json", exclude_none=True)
+        axis = self.model_dump(mode="json", exclude_none=True)
         ends = {} if self.values is not None else {"start": self.start, "stop": self.stop}
-        return tree | {name: self.factor * value for name, value in ends.items()}
+        return axis | {name: self.factor * value for name, value in ends.items()}
 
     def scaled(self, scale: float) -> "Axis":
         """A copy of the axis with all values multiplied by `scale`."""
@@ -120,8 +120,8 @@ def as_axis(value: Any) -> Axis:
         return Axis(values=(as_float(value),))
     if not value:
         raise ValueError("the list is empty; give at least one number")
-    numbers = tuple(as_float(item) for item in value)
-    if any(b <= a for a, b in zip(numbers[:-1], numbers[1:], strict=True)):
+    numbers = tuple(as_float(entry) for entry in value)
+    if any(high <= low for low, high in zip(numbers[:-1], numbers[1:], strict=True)):
         raise ValueError(
             f"{short_repr(value)} is not sorted; list the numbers in increasing order, each once"
         )
@@ -129,11 +129,11 @@ def as_axis(value: Any) -> Axis:
 
 
 def _axis_from_range(value: dict) -> Axis:
-    known = (*RANGE_ENDS, "num", "spacing")
+    allowed = (*RANGE_ENDS, "num", "spacing")
     for key in value:
-        if key not in known:
-            raise ValueError(f"unknown key {short_repr(key)} in a range; its keys are {', '.join(known)}")
-    for key in known[:3]:
+        if key not in allowed:
+            raise ValueError(f"unknown key {short_repr(key)} in a range; its keys are {', '.join(allowed)}")
+    for key in allowed[:3]:
         if key not in value:
             raise ValueError(f"a range needs start, stop and num, and {key} is missing")
     start = as_float(value["start"])
@@ -162,10 +162,10 @@ def _axis_from_range(value: dict) -> Axis:
     return Axis(start=start, stop=stop, num=num, spacing=spacing)
 
 
-def axis_from_resolved(resolved: dict[str, Any]) -> Axis:
+def axis_from_resolved(axis_dict: dict[str, Any]) -> Axis:
     """The `Axis` from its keys and values in a resolved config; ValueError or TypeError if invalid."""
-    values = resolved.get("values")
-    return Axis(**resolved | ({} if values is None else {"values": tuple(map(as_float, values))}))
+    values = axis_dict.get("values")
+    return Axis(**axis_dict | ({} if values is None else {"values": tuple(map(as_float, values))}))
 
 
 ParameterAxis = Annotated[Axis, BeforeValidator(as_axis)]

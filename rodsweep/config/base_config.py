@@ -58,9 +58,11 @@ class Config(StrictSection):
     def optional_parameters_in_use(self) -> tuple[str, ...]:
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
-        made = () if arm is None else arm.cone_parameters
+        cone_parameters = () if arm is None else arm.cone_parameters
         return tuple(
-            n for n in OPTIONAL_PARAMETERS if n in self.parameters.given_optional_parameters or n in made
+            n
+            for n in OPTIONAL_PARAMETERS
+            if n in self.parameters.given_optional_parameters or n in cone_parameters
         )
 
     @property
@@ -122,9 +124,9 @@ class Config(StrictSection):
         if self.parameters.arm is None:
             return settings
         if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
-            given = self.parameters.given_axes
+            given_axes = self.parameters.given_axes
             given_values = {
-                name: float(given[name].array()[0]) if name in given else None
+                name: float(given_axes[name].array()[0]) if name in given_axes else None
                 for name in self.parameter_names
             }
             settings["parameters"] |= {
@@ -132,22 +134,22 @@ class Config(StrictSection):
             }
         return settings | {"arm": self.parameters.arm.settings_of_results}
 
-    def refuse_solved_parameter(self, name: str, why: str) -> None:
-        """Raises ValueError, with the reason `why`, if the config gives the parameter `name`, for which the
-        task solves.
+    def refuse_solved_parameter(self, name: str, reason: str) -> None:
+        """Raises ValueError, with the reason `reason`, if the config gives the parameter `name`, for which
+        the task solves.
         """
         if name in self.parameters.given_axes:
-            raise ValueError(f"parameters.{name} is given but the task {self.task} {why}")
+            raise ValueError(f"parameters.{name} is given but the task {self.task} {reason}")
 
     @model_validator(mode="after")
     def _refuse_two_materials(self) -> "Config":
         arm = self.parameters.arm
         if arm is None:
             return self
-        own = next((name for name in (*MATERIAL_KEYS, *SHAPE_KEYS) if getattr(arm, name) is not None), "")
-        if self.material is not None and own:
+        key = next((name for name in (*MATERIAL_KEYS, *SHAPE_KEYS) if getattr(arm, name) is not None), "")
+        if self.material is not None and key:
             raise ValueError(
-                f"material and parameters.arm.{own} are both given; give law and section in parameters.arm"
+                f"material and parameters.arm.{key} are both given; give law and section in parameters.arm"
             )
         refuse_misused_shape(arm, self.parameters.given_axes)
         refuse_compressible(arm, self.build.section)

@@ -58,14 +58,14 @@ def json_schema() -> dict[str, Any]:
     for section in definitions.values():
         add_parameter_bounds(section.get("properties", {}), definitions["Axis"])
     add_arm_conditions(definitions["ArmSection"], definitions["Axis"])
-    whole = {"oneOf": tasks, "definitions": definitions}
-    for node in iterate_subschemas(whole):
+    complete_schema = {"oneOf": tasks, "definitions": definitions}
+    for node in iterate_subschemas(complete_schema):
         for ours, theirs in BOUND_KEYWORDS.items():
             if ours in node:
                 bound = node.pop(ours)
                 if isfinite(bound):
                     node[theirs] = bound
-    return {"$schema": DIALECT, "title": "A config of rodsweep", **whole}
+    return {"$schema": DIALECT, "title": "A config of rodsweep", **complete_schema}
 
 
 def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
@@ -79,7 +79,7 @@ def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
 
 def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
     """Docstring of every key of a section, by key, including keys of base classes."""
-    found: dict[str, str] = {}
+    docstrings: dict[str, str] = {}
     for kind in reversed(section.__mro__):
         if not (issubclass(kind, BaseModel) and kind.__module__.startswith("rodsweep.")):
             continue
@@ -89,12 +89,12 @@ def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
             continue
         body = ast.parse(textwrap.dedent(source)).body[0]
         assert isinstance(body, ast.ClassDef)
-        for key, below in zip(body.body, body.body[1:], strict=False):
+        for key, docstring_node in zip(body.body, body.body[1:], strict=False):
             if not (isinstance(key, ast.AnnAssign) and isinstance(key.target, ast.Name)):
                 continue
-            if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant):
-                found[key.target.id] = inspect.cleandoc(str(below.value.value))
-    return found
+            if isinstance(docstring_node, ast.Expr) and isinstance(docstring_node.value, ast.Constant):
+                docstrings[key.target.id] = inspect.cleandoc(str(docstring_node.value.value))
+    return docstrings
 
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
@@ -119,23 +119,25 @@ def no_key_given(names: Iterable[str]) -> Schema:
     return {"not": {"anyOf": [key_is_given(name) for name in names]}}
 
 
-def all_keys_given(names: Iterable[str], *more: Schema) -> Schema:
-    """JSON schema of the condition that all keys in `names` are given and all schemas in `more` are
+def all_keys_given(names: Iterable[str], *conditions: Schema) -> Schema:
+    """JSON schema of the condition that all keys in `names` are given and all schemas in `conditions` are
     satisfied.
     """
-    return {"allOf": [*map(key_is_given, names), *more]}
+    return {"allOf": [*map(key_is_given, names), *conditions]}
 
 
-def with_axis_bounds(schema: Schema, bound: Mapping[str, float], words: tuple[str, ...] = ()) -> Schema:
+def with_axis_bounds(
+    schema: Schema, bound: Mapping[str, float], allowed_texts: tuple[str, ...] = ()
+) -> Schema:
     """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
-    bounds. words: allowed spellings of inf.
+    bounds. allowed_texts: allowed spellings of inf.
     """
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
         kinds = node.get("anyOf", [])
         if any("enum" in kind and "inf" in kind["enum"] for kind in kinds):
-            kept = [{"enum": list(words)}] if words else []
-            node["anyOf"] = [*(k for k in kinds if "inf" not in k.get("enum", [])), *kept]
+            options = [{"enum": list(allowed_texts)}] if allowed_texts else []
+            node["anyOf"] = [*(k for k in kinds if "inf" not in k.get("enum", [])), *options]
         if node.get("type") == "number":
             node.update(bound)
     return copy
@@ -149,9 +151,9 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
-            words = ("inf", "+inf") if parameter.rigid_adjective else ()
+            allowed_texts = ("inf", "+inf") if parameter.rigid_adjective else ()
             properties[name]["anyOf"] = [
-                with_axis_bounds(kind, parameter.allowed.schema_bounds, words) for kind in kinds
+                with_axis_bounds(kind, parameter.allowed.schema_bounds, allowed_texts) for kind in kinds
             ]
 
 
@@ -173,38 +175,40 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
         for node in iterate_subschemas(key):
             if node.get("type") == "string":
                 node["pattern"] = pattern
-    of_one = ["length", "young"]
-    circle = all_keys_given([*of_one, "radius"], no_key_given(["width", "height", "segments"]))
+    required = ["length", "young"]
+    circle = all_keys_given([*required, "radius"], no_key_given(["width", "height", "segments"]))
     rectangle = all_keys_given(
-        [*of_one, "width", "height"], no_key_given([*SECTION_SIZE_NAMES[0], "segments"])
+        [*required, "width", "height"], no_key_given([*SECTION_SIZE_NAMES[0], "segments"])
     )
-    pieces = all_keys_given(["segments"], no_key_given([*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]]))
+    segments_condition = all_keys_given(
+        ["segments"], no_key_given([*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]])
+    )
     section["allOf"] = [
-        {"oneOf": [circle, rectangle, pieces]},
+        {"oneOf": [circle, rectangle, segments_condition]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},
         *({"not": all_keys_given(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
     ]
 
 
-def points_condition(needed: Iterable[str], lists: bool) -> Schema:
+def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
-    needed: names of the parameters of the task. lists: whether the task accepts a file of points. If F is
-    needed, either the arm has a load or F is given; otherwise both are forbidden.
+    parameter_names: names of the parameters of the task. lists: whether the task accepts a file of points. If
+    F is needed, either the arm has a load or F is given; otherwise both are forbidden.
     """
-    axes = tuple(name for name in needed if PARAMETERS[name].default is None)
+    axes = tuple(name for name in parameter_names if PARAMETERS[name].default is None)
     loads = [all_keys_given([name]) for name in LOAD_KEYS]
-    loaded = {"properties": {"arm": {"anyOf": loads}}}
+    arm_with_load = {"properties": {"arm": {"anyOf": loads}}}
     unloaded = {"properties": {"arm": no_key_given(LOAD_KEYS)}}
-    load = {"oneOf": [key_is_given("F"), loaded]} if "F" in axes else unloaded
+    load = {"oneOf": [key_is_given("F"), arm_with_load]} if "F" in axes else unloaded
     none_listed = no_key_given(["points", "columns"])
-    ways = [
+    alternatives = [
         all_keys_given(axes, no_key_given(["arm"]), none_listed),
         all_keys_given(["arm"], none_listed, load),
     ]
     if lists:
-        ways.append(all_keys_given(["points"], no_key_given(["arm", *LINEAR_PARAMETERS])))
-    return {"anyOf": ways} if "F" in axes else {"anyOf": ways, **no_key_given(["F"])}
+        alternatives.append(all_keys_given(["points"], no_key_given(["arm", *LINEAR_PARAMETERS])))
+    return {"anyOf": alternatives} if "F" in axes else {"anyOf": alternatives, **no_key_given(["F"])}
 
 
 def iterate_subschemas(schema: Any) -> Iterable[Schema]:
@@ -212,5 +216,5 @@ def iterate_subschemas(schema: Any) -> Iterable[Schema]:
     if isinstance(schema, dict):
         yield schema
     if isinstance(schema, dict | list):
-        for inner in list(schema.values() if isinstance(schema, dict) else schema):
-            yield from iterate_subschemas(inner)
+        for subschema in list(schema.values() if isinstance(schema, dict) else schema):
+            yield from iterate_subschemas(subschema)

@@ -83,8 +83,8 @@ class Axes(LinearAxes):
     @property
     def given_optional_parameters(self) -> tuple[str, ...]:
         """Names of the optional parameters that are given as an axis or as a column of the file of points."""
-        given = (*self.given_axes, *(self.columns or ()))
-        return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
+        names = (*self.given_axes, *(self.columns or ()))
+        return tuple(name for name in OPTIONAL_PARAMETERS if name in names)
 
     @property
     def axes(self) -> dict[str, Axis]:
@@ -111,8 +111,8 @@ class Axes(LinearAxes):
         """Names of the axes of a grid over an arm's quantities; empty for a grid of parameters or a list."""
         if self.arm is None:
             return ()
-        given = self.arm.quantity_axes | self.given_axes
-        return grid_axis_names({name: axis.size for name, axis in given.items()}, self.in_diagram)
+        axes = self.arm.quantity_axes | self.given_axes
+        return grid_axis_names({name: axis.size for name, axis in axes.items()}, self.in_diagram)
 
     @property
     def single_parameter_sizes(self) -> dict[str, int]:
@@ -120,8 +120,8 @@ class Axes(LinearAxes):
         axis of an arm that changes several parameters, such as its length, is left out."""
         if self.arm is None or not self.arm_axes:
             return {name: axis.size for name, axis in self.axes.items()}
-        given = self.arm.quantity_axes | self.given_axes
-        return {name: given[axis].size for axis in self.arm_axes if (name := parameter_of_axis(axis))}
+        axes = self.arm.quantity_axes | self.given_axes
+        return {name: axes[axis].size for axis in self.arm_axes if (name := parameter_of_axis(axis))}
 
     @property
     def constant_parameters(self) -> dict[str, float]:
@@ -141,25 +141,27 @@ class Axes(LinearAxes):
         if self.points is not None and self.arm is not None:
             raise ValueError("parameters.points and parameters.arm are both given; give one of them")
         if self.points is not None and self.axes:
-            both = f"parameters.points and parameters.{next(iter(self.axes))}"
-            raise ValueError(f"{both} are both given; give the axes or the file, not both")
+            keys_text = f"parameters.points and parameters.{next(iter(self.axes))}"
+            raise ValueError(f"{keys_text} are both given; give the axes or the file, not both")
         if self.arm is not None:
             self._require_arm(self.arm, "F" in names)
             return
         missing = [name for name in names if name not in self.axes]
         if missing and self.points is None:
-            hint = ", or points: FILE.csv" if or_points else ""
-            raise ValueError(f"parameters.{missing[0]} is missing; give {enumeration(names, 'and')}{hint}")
+            points_hint = ", or points: FILE.csv" if or_points else ""
+            raise ValueError(
+                f"parameters.{missing[0]} is missing; give {enumeration(names, 'and')}{points_hint}"
+            )
 
-    def _require_arm(self, arm: ArmSection, forced: bool) -> None:
+    def _require_arm(self, arm: ArmSection, needs_force: bool) -> None:
         """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
 
-        forced: whether F is a parameter of the task.
+        needs_force: whether F is a parameter of the task.
         """
         arm.require_allowed_values()
-        refuse_conflicting_keys(arm, forced, self.given_axes)
-        varied = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = arm.grid_point_count(math.prod(axis.size for axis in varied.values()))
+        refuse_conflicting_keys(arm, needs_force, self.given_axes)
+        varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
+        count = arm.grid_point_count(math.prod(axis.size for axis in varied_axes.values()))
         if self.arm_axes and count > MAX_ARM_GRID_POINTS:
             raise ValueError(
                 f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "

@@ -69,51 +69,53 @@ class AnswersFromFile:
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
             return None
-        places = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
-        point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, places, strict=True)})
+        position = np.unravel_index(numbers[0], self.data["status"].shape) if self.dims else ()
+        point = self.data.isel({name: [int(i)] for name, i in zip(self.dims, position, strict=True)})
         is_filmed = flag_words(point["status"]).item() == "cycle" and point.sizes["shape"] >= MIN_SHAPES
         return point if is_filmed else None
 
-    def load_near(self, state: PageState, at: float) -> float:
-        """Load that a click at the load `at` selects, in the unit of the control: the nearest stored load if
-        its distance is small, see `CLICK_TOLERANCE`; otherwise `at`. Also `at` if the file has no cycles,
-        fewer than two loads for the rod of `state`, or results of the other tab."""
+    def load_near(self, state: PageState, load: float) -> float:
+        """Load that a click at the load `load` selects, in the unit of the control: the nearest stored load
+        if its distance is small, see `CLICK_TOLERANCE`; otherwise `load`. Also `load` if the file has no
+        cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
-            return at
+            return load
         stored = np.unique(
             self._control_values(state.tab, state.load)[self._matching_points(state, (state.load,))]
         )
         if len(stored) < 2:
-            return at
-        nearest = float(stored[np.argmin(np.abs(stored - at))])
+            return load
+        nearest = float(stored[np.argmin(np.abs(stored - load))])
         spacing = float(np.min(np.diff(stored)))
-        return nearest if abs(nearest - at) < CLICK_TOLERANCE * spacing else at
+        return nearest if abs(nearest - load) < CLICK_TOLERANCE * spacing else load
 
     def _control_values(self, tab: str, name: str) -> Array:
         """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the
         control on the tab `tab`. If the file lacks `name`: the default of the parameter, or nan."""
         default = PARAMETERS[name].default if name in PARAMETERS else None
         missing = nan if default is None else default
-        own = self.data[name] if name in self.data.variables else missing
-        everywhere = (self.data["status"] * 0.0 + own).transpose(*self.dims)
-        values: Array = everywhere.values.ravel() * SCALES[tab][name].factor
+        stored = self.data[name] if name in self.data.variables else missing
+        at_points = (self.data["status"] * 0.0 + stored).transpose(*self.dims)
+        values: Array = at_points.values.ravel() * SCALES[tab][name].factor
         return values
 
-    def _matching_points(self, state: PageState, free: Collection[str] = ()) -> NDArray[np.integer]:
+    def _matching_points(self, state: PageState, free_controls: Collection[str] = ()) -> NDArray[np.integer]:
         """Indices, (n,), of the points of the file that have the parameters of `state`.
 
-        The parameters in `free`, and the parameter along a row of a phase diagram, may have any value.
+        The parameters in `free_controls`, and the parameter along a row of a phase diagram, may have any
+        value.
         """
-        same = np.ones(self.data["status"].size, dtype=bool)
+        is_matching = np.ones(self.data["status"].size, dtype=bool)
         along_rows = {name for name in state.values if self._is_along_rows(name)}
         for name, text in state.values.items():
-            if name not in free and name not in along_rows:
+            if name not in free_controls and name not in along_rows:
                 value = SCALES[state.tab][name].value(text)
-                own = self._control_values(state.tab, name)
-                same &= np.array(
-                    [value is not None and _matches_control(value, each) for each in own], dtype=bool
+                control_values = self._control_values(state.tab, name)
+                is_matching &= np.array(
+                    [value is not None and _matches_control(value, number) for number in control_values],
+                    dtype=bool,
                 )
-        return np.flatnonzero(same)
+        return np.flatnonzero(is_matching)
 
     def _is_along_rows(self, name: str) -> bool:
         """Whether a point of the file is a row of rods with several values of the parameter `name`."""
@@ -143,13 +145,13 @@ class AnswersFromFile:
         is_drawn = np.isfinite(point["shape_x"].values).all()
         if status == "missing" or (not is_drawn and not (state.law == "linear" and "taper" not in point)):
             return None
-        found: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
-        u = point["u"].values
-        return found | {
+        answer: AnswerVariables = {str(name): array.values for name, array in point.variables.items()}
+        nodes = point["u"].values
+        return answer | {
             "status": status, "sentence": status_sentences_in(self.data.attrs).get(status, ""),
             "message": f"stored in {self.path.name}",
             "units": {str(name): array.attrs["units"] for name, array in point.data_vars.items()},
-            "x": (1 - F / k1) * u, "y": np.zeros(len(u)),
+            "x": (1 - F / k1) * nodes, "y": np.zeros(len(nodes)),
         }  # fmt: skip
 
     def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
@@ -161,11 +163,11 @@ class AnswersFromFile:
             return None
         line = self._data_at(numbers)
         y = line["tip_y_max"].values
-        words = flag_words(line["status"])
-        y = np.where(words == "straight", 0.0, y)
-        known = np.isfinite(y)
-        stable = np.where(words[known] == "unstable", 0, 1)
-        cycles = {"F": line["F"].values[known], "y": y[known], "stable": stable}
+        statuses = flag_words(line["status"])
+        y = np.where(statuses == "straight", 0.0, y)
+        is_finite = np.isfinite(y)
+        stable = np.where(statuses[is_finite] == "unstable", 0, 1)
+        cycles = {"F": line["F"].values[is_finite], "y": y[is_finite], "stable": stable}
         return {"pieces": [], "special": [], "cycles": cycles, **self._source_variables()}
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
@@ -179,9 +181,9 @@ class AnswersFromFile:
         point = self._data_at(numbers[:1]).isel({POINT_DIMENSION: 0})
         if flag_words(point["status"]) == "missing":
             return None
-        stop = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
+        end = float(json.loads(self.data.attrs["config_resolved"])["branch"]["stop"])
         return (
-            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), stop)
+            drawn_branches(RodBranches(view_of_dataset(self.data, self.path), rod), end)
             | self._source_variables()
         )
 
@@ -195,5 +197,6 @@ def _matches_control(value: float, stored: float) -> bool:
     """
     rounded = [float(f"{stored:.{digits}g}") for digits in CONTROL_DIGITS]
     return any(
-        each == value or abs(each - value) <= EQUALITY_TOLERANCE * abs(each) for each in (stored, *rounded)
+        number == value or abs(number - value) <= EQUALITY_TOLERANCE * abs(number)
+        for number in (stored, *rounded)
     )

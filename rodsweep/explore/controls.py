@@ -56,16 +56,16 @@ class SliderField:
         finally:
             self._is_updating = False
 
-    def _on_text_change(self, attribute: str, old: str, new: str) -> None:
+    def _on_text_change(self, attribute: str, previous: str, text: str) -> None:
         if not self._is_updating:
-            self.changed(self.scale.name, new)
+            self.changed(self.scale.name, text)
 
-    def _on_slider_change(self, attribute: str, old: float, new: float) -> None:
+    def _on_slider_change(self, attribute: str, previous: float, position: float) -> None:
         if self._is_updating:
             return
         self._sliding = True
         try:
-            self.changed(self.scale.name, self.scale.text_at(new))
+            self.changed(self.scale.name, self.scale.text_at(position))
         finally:
             self._sliding = False
 
@@ -94,11 +94,11 @@ class Controls:
         ]
         self.tabs = Tabs(tabs=panels, sizing_mode="stretch_width", name="tabs", stylesheets=sheets)
         self.tabs.on_change("active", self._tab_changed)
-        choice = partial(Select, sizing_mode="stretch_width", stylesheets=sheets)
-        self.law = choice(
+        new_select = partial(Select, sizing_mode="stretch_width", stylesheets=sheets)
+        self.law = new_select(
             title="Law of the material", name="law", options=list(MATERIAL_CHOICE_NAMES.items())
         )
-        self.across = choice(title="Second parameter of the diagram", name="across")
+        self.across = new_select(title="Second parameter of the diagram", name="across")
         self.F_max = TextInput(
             title=LARGEST_FORCE, name="F_max", sizing_mode="stretch_width", stylesheets=sheets
         )
@@ -132,13 +132,13 @@ class Controls:
     def _field_changed(self, name: str, text: str) -> None:
         self._changed(values={name: text})
 
-    def _tab_changed(self, attribute: str, old: int, new: int) -> None:
+    def _tab_changed(self, attribute: str, previous: int, tab: int) -> None:
         if not self._is_updating:
-            self._changed(tab=list(TAB_DEFAULTS)[new])
+            self._changed(tab=list(TAB_DEFAULTS)[tab])
 
-    def _choice_changed(self, key: str, attribute: str, old: Any, new: Any) -> None:
+    def _choice_changed(self, key: str, attribute: str, previous: Any, choice: Any) -> None:
         if not self._is_updating:
-            self._changed(**{key: new})
+            self._changed(**{key: choice})
 
 
 PAUSE_MILLISECONDS = 900

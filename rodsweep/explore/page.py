@@ -67,8 +67,8 @@ class Page:
     def load(self, text: str) -> None:
         """Shows the rod or the arm of a config, or an error message; text: the config in YAML."""
         try:
-            loaded = state_from_config_text(text, self.state.F_max)
-            self._change_to(replace(loaded, across=loaded.across or self.state.across))
+            loaded_state = state_from_config_text(text, self.state.F_max)
+            self._change_to(replace(loaded_state, across=loaded_state.across or self.state.across))
         except InputError as error:
             self._show_error(str(error))
 
@@ -102,9 +102,9 @@ class Page:
     def drag(self, kind: str, tip: Tip) -> None:
         """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
         released there (kind "motion"). A question of the other kind is cancelled."""
-        for other in kinds.TIP_KINDS:
-            if other != kind:
-                self._cancel_question(other)
+        for tip_kind in kinds.TIP_KINDS:
+            if tip_kind != kind:
+                self._cancel_question(tip_kind)
         self._send_question(kind, tip)
         self._show_solving()
 
@@ -132,9 +132,9 @@ class Page:
         self.state = state
         self.contents.controls.show(state)
         try:
-            subject = state.subject()
+            rod_or_arm = state.subject()
             state.largest_force()
-            if (F := rod_of(subject).get("F")) is None:
+            if (F := rod_of(rod_or_arm).get("F")) is None:
                 section = "parameters.arm" if state.tab == "arm" else "parameters"
                 raise InputError(f"{section}.{state.load} is missing; give the load")
         except InputError as error:
@@ -181,16 +181,16 @@ class Page:
         `is_solved_again`. tip: position of the dragged tip, in L.
         """
         state = state_to_solve(kind, self.state, self.drawn_around)
-        filmed = self.stored if (kind, tip) == ("film", None) else None
-        question = Question(kind, state, tip, None if filmed is None else filmed.cycle_to_film(state))
-        needed = answer_inputs(question)
-        if self.latest_inputs.get(kind) == needed:
+        cycle_file = self.stored if (kind, tip) == ("film", None) else None
+        question = Question(kind, state, tip, None if cycle_file is None else cycle_file.cycle_to_film(state))
+        inputs = answer_inputs(question)
+        if self.latest_inputs.get(kind) == inputs:
             return
-        self.latest_inputs[kind] = needed
+        self.latest_inputs[kind] = inputs
         stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
         if stored is not None:
             self._cancel_question(kind)
-            self.latest_inputs[kind] = needed
+            self.latest_inputs[kind] = inputs
             self.contents.show(kind, stored, self.state)
             return
         self.solving.add(kind)
@@ -231,8 +231,8 @@ class Page:
         self._show_solving()
 
     def _show_solving(self) -> None:
-        shown = (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
-        solving = [kind for kind in shown if kind in self.solving]
+        shown_kinds = (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS, *kinds.MANUAL_KINDS)
+        solving = [kind for kind in shown_kinds if kind in self.solving]
         is_stoppable = any(kind in kinds.STOPPABLE_KINDS for kind in solving)
         text = solving_text(solving, self.progress)
         self.contents.sign.update(text=text, kinds=solving, is_stoppable=is_stoppable)
@@ -240,11 +240,11 @@ class Page:
     def _move_in_diagram(self, event: Tap | Pan) -> None:
         if event.x is None or event.y is None or event.y <= 0:
             return
-        at = {self.state.load: event.x, self.state.second: event.y}
-        self.change({name: SCALES[self.state.tab][name].text(value) for name, value in at.items()})
+        values = {self.state.load: event.x, self.state.second: event.y}
+        self.change({name: SCALES[self.state.tab][name].text(value) for name, value in values.items()})
 
     def _move_load(self, event: Tap) -> None:
         """Sets the load to the horizontal position of a click."""
         if event.x is not None:
-            at = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
-            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(at)})
+            load = event.x if self.stored is None else self.stored.load_near(self.state, event.x)
+            self.change({self.state.load: SCALES[self.state.tab][self.state.load].text(load)})

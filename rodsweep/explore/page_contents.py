@@ -31,11 +31,11 @@ NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in
 class PageContents:
     """All Bokeh models of a page: controls, pictures, table, texts and buttons.
 
-    changed: callback for a change of a control. loaded: callback for the text of a config file that the user
+    changed: callback for a change of a control. on_load: callback for the text of a config file that the user
     loads.
     """
 
-    def __init__(self, changed: ChangeCallback, loaded: Callable[[str], None]):
+    def __init__(self, changed: ChangeCallback, on_load: Callable[[str], None]):
         widgets = style_sheet("widgets.css")
         texts = style_sheet("text.css")
         self.controls = Controls(changed, widgets)
@@ -47,7 +47,7 @@ class PageContents:
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
         self.sign = SolvingSign(name="working")
-        self.sharing = Sharing(self.cards, self.beating.arm_line, loaded)
+        self.sharing = Sharing(self.cards, self.beating.arm_line, on_load)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
             for kind, name, label in (
@@ -67,16 +67,16 @@ class PageContents:
         pictures = (self.spectrum, self.mode, self.growth, self.beating, self.branches, self.diagram)
         return [picture.card for picture in pictures]
 
-    def connect(self, document: Document, react: Mapping[str, Callable[..., None]]) -> None:
-        """Adds all models to a Bokeh document. react: callbacks, by name of the button; "diagram_point" and
-        "load" for clicks in pictures.
+    def connect(self, document: Document, callbacks: Mapping[str, Callable[..., None]]) -> None:
+        """Adds all models to a Bokeh document. callbacks: callbacks, by name of the button; "diagram_point"
+        and "load" for clicks in pictures.
         """
         for kind, button in self.buttons.items():
-            button.on_click(react[kind])
+            button.on_click(callbacks[kind])
         for event in (Tap, Pan):
-            self.diagram.card.figure.on_event(event, react["diagram_point"])
+            self.diagram.card.figure.on_event(event, callbacks["diagram_point"])
         for picture in (self.growth, self.branches):
-            picture.card.figure.on_event(Tap, react["load"])
+            picture.card.figure.on_event(Tap, callbacks["load"])
         # Add models last: a document subscribes only to events that its models already handle.
         # Freeze: otherwise the document goes through all models after each root, which takes a second in all.
         with document.models.freeze():
@@ -97,46 +97,46 @@ class PageContents:
         the load, in k3/L^2.
         """
         axis = load_axis(state)
-        at = F * axis.factor
+        load_on_axis = F * axis.factor
         self.controls.show_largest_load(state, axis)
-        self.growth.move_load_line(at)
-        self.branches.move_load_line(at)
+        self.growth.move_load_line(load_on_axis)
+        self.branches.move_load_line(load_on_axis)
         load = SCALES[state.tab][state.load]
-        second = SCALES[state.tab][state.second]
+        second_scale = SCALES[state.tab][state.second]
         x = load.value(state.values[state.load])
-        y = second.value(state.values[state.second])
+        y = second_scale.value(state.values[state.second])
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
         self.sharing.update_hidden_texts(state)
 
-    def show(self, kind: str, found: dict[str, Any], state: PageState) -> None:
-        """Draws the answer `found` to a question of the kind `kind` in all pictures that show this answer,
+    def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
+        """Draws the answer `answer` to a question of the kind `kind` in all pictures that show this answer,
         and updates the table of numbers; the answer "film" is saved as a file.
         """
         if kind == "spectrum":
-            self.spectrum.show(found)
-            self.mode.show(found)
+            self.spectrum.show(answer)
+            self.mode.show(answer)
         elif kind == "cycle":
-            self.beating.show(found, length_axis(state))
+            self.beating.show(answer, length_axis(state))
         elif kind == "bent":
-            self.beating.show_bent(found)
+            self.beating.show_bent(answer)
         elif kind == "motion":
-            self.beating.show_motion(found)
+            self.beating.show_motion(answer)
         elif kind == "film":
-            self.sharing.save_film(found["gif"])
+            self.sharing.save_film(answer["gif"])
         elif kind == "thresholds":
-            self.growth.show_thresholds(found, load_axis(state))
+            self.growth.show_thresholds(answer, load_axis(state))
         elif kind == "growth":
-            self.growth.show_rates(found, load_axis(state))
+            self.growth.show_rates(answer, load_axis(state))
         elif kind == "branch":
-            self.branches.show(found, load_axis(state), length_axis(state))
+            self.branches.show(answer, load_axis(state), length_axis(state))
         else:
             scales = SCALES[state.tab]
-            self.diagram.show(found, scales[state.load], scales[state.second])
-            if kind == "cycles" and len(found["cycle_curve_x"]) == 0:
+            self.diagram.show(answer, scales[state.load], scales[state.second])
+            if kind == "cycles" and len(answer["cycle_curve_x"]) == 0:
                 self.diagram.card.show_sentence_above(NO_CYCLE_CURVES_SENTENCE)
-        self.numbers.show(kind, found)
+        self.numbers.show(kind, answer)
 
     def show_message(self, kind: str, sentence: str) -> None:
         """Shows a sentence in place of the pictures for questions of the kind `kind`; for questions on cycle

@@ -137,8 +137,8 @@ def _page_query(arguments: dict[str, list[bytes]]) -> str:
     """
     from urllib.parse import urlencode
 
-    own = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}
-    return urlencode({name: text for name, text in own.items() if not name.startswith("bokeh-")})
+    values_by_name = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}
+    return urlencode({name: text for name, text in values_by_name.items() if not name.startswith("bokeh-")})
 
 
 def _bound_sockets(port: int) -> list[socket.socket]:

@@ -50,12 +50,12 @@ class ExportedLines(DataModel):
 class Sharing:
     """Texts and buttons with which the user exports and imports the state of the page.
 
-    cards: pictures that can be saved. arm: animated line of the arm. loaded: callback for the text of a
+    cards: pictures that can be saved. arm: animated line of the arm. on_load: callback for the text of a
     config file that the user loads.
     """
 
-    def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, loaded: Callable[[str], None]):
-        self._loaded = loaded
+    def __init__(self, cards: Sequence[Card], arm: GlyphRenderer, on_load: Callable[[str], None]):
+        self._loaded = on_load
         self._state = PageState()
         widgets = style_sheet("widgets.css")
         texts = style_sheet("text.css")
@@ -79,8 +79,8 @@ class Sharing:
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._load_chosen_file)
         copies = [
-            Button(label=f"Copy the {what}", name=f"copy_{name}", stylesheets=[widgets])
-            for what, name in (("config", "yaml"), ("Python lines", "python"))
+            Button(label=f"Copy the {label}", name=f"copy_{name}", stylesheets=[widgets])
+            for label, name in (("config", "yaml"), ("Python lines", "python"))
         ]
         for button, name in zip(copies, ("config", "python"), strict=True):
             button.js_on_click(CustomJS(args={"lines": self.shared_lines}, code=COPY_SCRIPT.format(name)))
@@ -108,8 +108,11 @@ class Sharing:
         """
         address = self._state.address()
         self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
-        for shown, lines in ((self.python, self.shared_lines.python), (self.yaml, self.shared_lines.config)):
-            shown.text = f"<pre>{escape(lines)}</pre>"
+        for text_field, lines in (
+            (self.python, self.shared_lines.python),
+            (self.yaml, self.shared_lines.config),
+        ):
+            text_field.text = f"<pre>{escape(lines)}</pre>"
 
     def save_film(self, gif: bytes) -> None:
         """Makes the browser save a film; gif: content of the file."""
@@ -117,7 +120,7 @@ class Sharing:
         # Remove half a megabyte from the page; removal in the same message would prevent saving.
         self.film.document.add_next_tick_callback(lambda: self.film.update(tags=[""]))
 
-    def _choose_task(self, attribute: str, old: str, new: str) -> None:
+    def _choose_task(self, attribute: str, previous: str, task: str) -> None:
         """Shows the config of the task that the user has chosen; the arguments, from Bokeh, are not used."""
         self.shared_lines.config = self._config()
         self.show_texts()
@@ -127,12 +130,12 @@ class Sharing:
         text = self._state.yaml(self.task.value)
         return text + FILM_COMMANDS if self.task.value == CONFIG_TASKS[0] else text
 
-    def _load_chosen_file(self, attribute: str, old: str, new: str) -> None:
-        """Passes the text of the chosen file to the page. new: content in base64; empty after a clearing.
+    def _load_chosen_file(self, attribute: str, previous: str, content: str) -> None:
+        """Passes the text of the chosen file to the page. content: content in base64; empty after a clearing.
         The other arguments, from Bokeh, are not used.
         """
-        if new:
-            self._loaded(b64decode(new).decode(errors="replace"))
+        if content:
+            self._loaded(b64decode(content).decode(errors="replace"))
             self.file.clear()  # otherwise a browser does not report the same file when it is chosen again
 
 
@@ -143,23 +146,23 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
-    choice = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
+    selection = Select(title="Picture", name="picture", options=names, value=names[0], stylesheets=[widgets])
     buttons = []
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
         code = template_text("download.js") + template_text("picture.js")
-        arguments = {"figures": figures, "choice": choice, "type": kind, "animated": arm}
+        arguments = {"figures": figures, "choice": selection, "type": kind, "animated": arm}
         button.js_on_click(CustomJS(args=arguments, code=code))
         buttons.append(button)
-    return [choice, Row(*buttons)]
+    return [selection, Row(*buttons)]
 
 
 def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
     invalid config, raises the same InputError as the command line.
     """
-    where = "the loaded file"
-    tree = parsed_yaml(text, where)
+    source = "the loaded file"
+    tree = parsed_yaml(text, source)
     if not isinstance(tree, dict):
-        raise InputError(f"{where} does not consist of keys and values; give task and parameters")
-    return state_from_config(validated_config(tree), Path(where), F_max)
+        raise InputError(f"{source} does not consist of keys and values; give task and parameters")
+    return state_from_config(validated_config(tree), Path(source), F_max)

@@ -44,10 +44,10 @@ class ControlScale:
             if self.unit:
                 quantity = QUANTITIES[self.name]
                 return quantity_in_si(self.name, text, quantity.unit, quantity.example) * self.factor
-            found = float_or_text(text)
+            number = float_or_text(text)
         except InputError:
             return None
-        return found if isinstance(found, float) else None
+        return number if isinstance(number, float) else None
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -90,8 +90,8 @@ def load_axis(state: PageState) -> PictureAxis:
     """Axis of the load: the force F for a rod, the pressure in kPa for an arm."""
     if state.tab == "rod":
         return PictureAxis("force F (k3/L^2)", 1.0)
-    subject = state.with_values(pressure="1 kPa").subject()
-    return PictureAxis("pressure (kPa)", 1 / rod_of(subject)["F"])
+    arm = state.with_values(pressure="1 kPa").subject()
+    return PictureAxis("pressure (kPa)", 1 / rod_of(arm)["F"])
 
 
 def length_axis(state: PageState) -> PictureAxis:

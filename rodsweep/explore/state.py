@@ -107,8 +107,8 @@ class PageState:
         """Parameters of the tab "rod" as numbers by name, without a taper of 1. A text that is not a number
         is returned as text.
         """
-        found = {name: float_or_text(text) for name, text in self.rod.items()}
-        return {name: value for name, value in found.items() if name != "taper" or value != 1}
+        values = {name: float_or_text(text) for name, text in self.rod.items()}
+        return {name: value for name, value in values.items() if name != "taper" or value != 1}
 
     def largest_force(self) -> float:
         """`F_max` as a number. Raises InputError unless the number is finite and positive."""
@@ -126,27 +126,30 @@ class PageState:
 
     def yaml(self, task: str) -> str:
         """Config for `rodsweep run`, in YAML, with the rod or arm of the visible tab and the given task."""
-        taken = (*CONFIGS[task].rod_parameters_used({}), *OPTIONAL_PARAMETERS)
-        values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in taken}
+        used_names = (*CONFIGS[task].rod_parameters_used({}), *OPTIONAL_PARAMETERS)
+        values: dict[str, Any] = {n: v for n, v in self.parameters().items() if n in used_names}
         if self.tab == "arm":
-            values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in taken}
-        tree: dict[str, Any] = {"task": task, "parameters": values if self.tab == "rod" else {"arm": values}}
-        tree |= {"material": dict(MATERIAL_CHOICES[self.law])} if MATERIAL_CHOICES[self.law] else {}
+            values = {n: text for n, text in self.arm.items() if n != "pressure" or "F" in used_names}
+        document: dict[str, Any] = {
+            "task": task,
+            "parameters": values if self.tab == "rod" else {"arm": values},
+        }
+        document |= {"material": dict(MATERIAL_CHOICES[self.law])} if MATERIAL_CHOICES[self.law] else {}
         if task in LARGEST_FORCE_KEYS:
-            tree[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
-        return tree_yaml(tree)
+            document[task] = {LARGEST_FORCE_KEYS[task]: self.largest_force()}
+        return tree_yaml(document)
 
     def python(self) -> str:
         """Python lines that solve the rod or arm of the visible tab with `rodsweep`."""
-        made = f"{self.tab} = rs.{self.subject()!r}"
-        return f"import rodsweep as rs\n\n{made}\n" + "".join(
+        line = f"{self.tab} = rs.{self.subject()!r}"
+        return f"import rodsweep as rs\n\n{line}\n" + "".join(
             f"print({self.tab}.{method}())\n" for method in ("spectrum", "thresholds", "cycle")
         )
 
 
-def rod_of(subject: SoftRod | Arm) -> Mapping[str, float]:
+def rod_of(rod_or_arm: SoftRod | Arm) -> Mapping[str, float]:
     """Dimensionless parameters, by name, of a rod or an arm."""
-    return subject.parameters if isinstance(subject, SoftRod) else SoftRod(arm=subject).parameters
+    return rod_or_arm.parameters if isinstance(rod_or_arm, SoftRod) else SoftRod(arm=rod_or_arm).parameters
 
 
 def float_or_text(text: str) -> Any:
@@ -166,26 +169,26 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
     """State of the page from the query string of its address. Raises InputError for an unknown name or
     choice. default: state whose values replace missing values of the query; None: `PageState()`."""
     state = default or PageState()
-    given = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
-    tab = _require_choice("tab", given.pop("tab", state.tab), TAB_DEFAULTS)
+    query_values = dict(parse_qsl(query.lstrip("?"), keep_blank_values=True))
+    tab = _require_choice("tab", query_values.pop("tab", state.tab), TAB_DEFAULTS)
     state = replace(state, tab=tab)
-    law = _require_choice("law", given.pop("law", state.law), MATERIAL_CHOICES)
-    across = _require_choice("across", given.pop("across", state.second), SECOND_PARAMETERS[tab])
-    state = replace(state, law=law, across=across, F_max=given.pop("F_max", state.F_max))
-    known = TAB_DEFAULTS[tab]
-    for name in given:
-        if name not in known:
+    law = _require_choice("law", query_values.pop("law", state.law), MATERIAL_CHOICES)
+    second = _require_choice("across", query_values.pop("across", state.second), SECOND_PARAMETERS[tab])
+    state = replace(state, law=law, across=second, F_max=query_values.pop("F_max", state.F_max))
+    defaults = TAB_DEFAULTS[tab]
+    for name in query_values:
+        if name not in defaults:
             raise InputError(
                 f"unknown key {short_repr(name)} in the address; "
-                f"{unknown_key_hint(name, [*PAGE_KEYS, *known])}"
+                f"{unknown_key_hint(name, [*PAGE_KEYS, *defaults])}"
             )
-    return state.with_values(**given)
+    return state.with_values(**query_values)
 
 
-def _require_choice(key: str, given: str, known: Any) -> str:
-    """Returns `given` if it is one of `known`; raises InputError otherwise. key: name of the choice, for the
-    message.
+def _require_choice(key: str, value: str, allowed: Any) -> str:
+    """Returns `value` if it is one of `allowed`; raises InputError otherwise. key: name of the choice, for
+    the message.
     """
-    if given not in known:
-        raise InputError(f"{key} = {short_repr(given)} is not allowed; it must be {' or '.join(known)}")
-    return given
+    if value not in allowed:
+        raise InputError(f"{key} = {short_repr(value)} is not allowed; it must be {' or '.join(allowed)}")
+    return value

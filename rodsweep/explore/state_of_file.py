@@ -74,8 +74,8 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     rod = {
         name: _middle_value_text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()
     }
-    across = _second_parameter("rod", axes)
-    state = PageState(rod=rod, law=material, across=across, F_max=F_max)
+    second = _second_parameter("rod", axes)
+    state = PageState(rod=rod, law=material, across=second, F_max=F_max)
     F = axes.get("F", np.zeros(1))
     if len(F) > 1:
         if material == "linear":
@@ -98,22 +98,22 @@ def _largest_force(config: Config, default: str) -> str:
 
 
 def _state_of_arm(config: Config, path: Path) -> PageState:
-    if beside := list(config.parameters.given_axes):
+    if other_axes := list(config.parameters.given_axes):
         raise InputError(
-            f"{path}: the page cannot show an arm with {beside[0]} of its own; "
-            f"it calculates {beside[0]} from the arm's {', '.join(DEFAULT_ARM)}"
+            f"{path}: the page cannot show an arm with {other_axes[0]} of its own; "
+            f"it calculates {other_axes[0]} from the arm's {', '.join(DEFAULT_ARM)}"
         )
     section: Any = config.parameters.arm
-    given = {name: getattr(section, name) for name in type(section).model_fields}
-    given = {name: value for name, value in given.items() if value is not None}
-    left_out = [name for name in given if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
-    if left_out:
+    quantities = {name: getattr(section, name) for name in type(section).model_fields}
+    quantities = {name: value for name, value in quantities.items() if value is not None}
+    omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
+    if omitted:
         raise InputError(
-            f"{path}: the page cannot show an arm with {left_out[0]}; "
+            f"{path}: the page cannot show an arm with {omitted[0]}; "
             f"its controls are {', '.join(DEFAULT_ARM)}"
         )
     texts = dict(DEFAULT_ARM)
-    axes = {name: given[name].array() for name in DEFAULT_ARM if name in given}
+    axes = {name: quantities[name].array() for name in DEFAULT_ARM if name in quantities}
     for name, values in axes.items():
         scale = SCALES["arm"][name]
         value = scale.factor * float(values[len(values) // 2])
@@ -124,8 +124,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
 def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
     """The parameter with the most values in `axes`, among the possible second parameters of the diagram on
     the tab `tab`; "" if none of these parameters has several values. axes: values, (n,), by name."""
-    several = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
-    return max(several, key=lambda name: len(axes[name]), default="")
+    candidates = [name for name in SECOND_PARAMETERS[tab] if name in axes and len(axes[name]) > 1]
+    return max(candidates, key=lambda name: len(axes[name]), default="")
 
 
 def _law_key(config: Config, path: Path) -> str:
@@ -134,8 +134,8 @@ def _law_key(config: Config, path: Path) -> str:
     build = config.build
     if build.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
-    words = {"law": build.law, "section": build.section}
-    return next((key for key, value in MATERIAL_CHOICES.items() if value == words), "linear")
+    law_values = {"law": build.law, "section": build.section}
+    return next((key for key, value in MATERIAL_CHOICES.items() if value == law_values), "linear")
 
 
 def _middle_value_text(values: np.ndarray) -> str:
@@ -152,23 +152,27 @@ def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     """Diagram of a result file over the load and the second parameter of `state`, at the middle values of all
     other parameters; None if the file contains no such diagram.
     """
-    second = state.second
+    second_name = state.second
     dims = set(data["status"].dims)
-    if second not in dims or data.sizes[second] < 2:
+    if second_name not in dims or data.sizes[second_name] < 2:
         return None
-    middle = {n: data.sizes[n] // 2 for n in state.values if n in dims and n not in (state.load, second)}
-    data = data.isel(middle)
+    middle_indices = {
+        n: data.sizes[n] // 2 for n in state.values if n in dims and n not in (state.load, second_name)
+    }
+    data = data.isel(middle_indices)
     if state.tab == "arm":
         scale = SCALES["arm"]["pressure"]
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
         return (
-            diagram_from_arm_result(data, data[second].values, pressure)
+            diagram_from_arm_result(data, data[second_name].values, pressure)
             if "crossing_pressure" in data
             else None
         )
     over_F = data.sizes.get("F", 1) > 1
     if "crossing_F" in data:
-        return diagram_from_row_result(data, data[second].values, "crossing_F", float(data["F_end"].max()))
+        return diagram_from_row_result(
+            data, data[second_name].values, "crossing_F", float(data["F_end"].max())
+        )
     if "unstable_count" in data and over_F:
-        return diagram_from_phase_result(data, second)
+        return diagram_from_phase_result(data, second_name)
     return None

@@ -37,10 +37,10 @@ def add_texts(document: Document, texts: Sequence[PageText]) -> None:
     """Adds texts to a Bokeh document, with a browser script that displays every change."""
     for text in texts:
         document.add_root(text)
-        shown = CustomJS(args={"text": text}, code=template_text("text.js"))
+        callback = CustomJS(args={"text": text}, code=template_text("text.js"))
         for name in text.properties() & {"text", "kinds", "is_stoppable"}:
-            text.js_on_change(name, shown)
-        document.js_on_event(DocumentReady, shown)
+            text.js_on_change(name, callback)
+        document.js_on_event(DocumentReady, callback)
 
 
 def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
@@ -51,9 +51,9 @@ def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
     return f"solving {', '.join(names)} ..." if names else ""
 
 
-def progress_text(words: str, completed_fraction: float | None) -> str:
-    """Progress of a solve as text in parentheses. words: present step of the solve. completed_fraction:
+def progress_text(step: str, completed_fraction: float | None) -> str:
+    """Progress of a solve as text in parentheses. step: present step of the solve. completed_fraction:
     completed fraction of the work; None if unknown.
     """
     percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
-    return f" ({escape(words)}{percent})"
+    return f" ({escape(step)}{percent})"

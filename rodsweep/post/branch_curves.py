@@ -65,8 +65,8 @@ class StoredBranch:
     @property
     def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
-        pieces = np.flatnonzero(self.stable == 1)
-        return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in pieces)
+        stable_indices = np.flatnonzero(self.stable == 1)
+        return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in stable_indices)
 
     @property
     def parameter_errors(self) -> dict[float, float]:
@@ -84,18 +84,18 @@ class StoredBranch:
         at_H, a: parameter and amplitude coefficient of the Hopf point. Hopf points with unknown or zero a are
         skipped, and the vertex of the Hopf point is left out. Shapes (n,), (n,) and (n - 1,), n > 1.
         """
-        found = []
+        curves = []
         for special, order in ((self.special[0], slice(None)), (self.special[-1], slice(None, None, -1))):
             a = special.amplitude_coefficient
             y = self.y[order]
             if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
                 continue
-            away = np.sign(a) * (self.at[order] / special.at - 1)
-            turns = np.flatnonzero(np.diff(away) <= 0)
-            end = int(turns[0]) + 1 if len(turns) else len(away)
+            relative_distance = np.sign(a) * (self.at[order] / special.at - 1)
+            turning_indices = np.flatnonzero(np.diff(relative_distance) <= 0)
+            end = int(turning_indices[0]) + 1 if len(turning_indices) else len(relative_distance)
             if end > 2:
-                found.append((away[1:end], y[1:end] / abs(a), self.stable[order][1 : end - 1]))
-        return found
+                curves.append((relative_distance[1:end], y[1:end] / abs(a), self.stable[order][1 : end - 1]))
+        return curves
 
 
 def followed_parameter(view: View) -> str:
@@ -121,28 +121,28 @@ class RodBranches:
         self.index = rod
         self._v = view.point_values(rod)
         count = max(int(self._v["branch_count"]), 0)
-        listed = self._v["special_branch"][self._v["special_kind"] > 0]
+        numbers = self._v["special_branch"][self._v["special_kind"] > 0]
         # If the list is full, special points of the last listed branch and of later branches may be missing.
-        complete = count if len(listed) >= self._v["special_count"] else int(listed.max(initial=1)) - 1
+        complete = count if len(numbers) >= self._v["special_count"] else int(numbers.max(initial=1)) - 1
         self.hidden_count = count - complete
-        along = followed_parameter(view)
-        self.curves = [_stored_branch(self._v, along, number) for number in range(1, complete + 1)]
+        parameter = followed_parameter(view)
+        self.curves = [_stored_branch(self._v, parameter, number) for number in range(1, complete + 1)]
 
     @property
     def parameter_errors(self) -> dict[float, float]:
         """Absolute error of the parameter at each special point of all branches, by parameter value."""
-        return {at: error for curve in self.curves for at, error in curve.parameter_errors.items()}
+        return {value: error for curve in self.curves for value, error in curve.parameter_errors.items()}
 
     @property
     def stable_cycle_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the rod has a stable cycle."""
-        return union_of_ranges(piece for curve in self.curves for piece in curve.stable_ranges)
+        return union_of_ranges(stable_range for curve in self.curves for stable_range in curve.stable_ranges)
 
     @property
     def two_cycle_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which stable cycles exist on two branches."""
         pairs = combinations([curve.stable_ranges for curve in self.curves], 2)
-        return union_of_ranges(piece for one, other in pairs for piece in intersection_of_ranges(one, other))
+        return union_of_ranges(common for a, b in pairs for common in intersection_of_ranges(a, b))
 
     @property
     def coexistence_ranges(self) -> list[ParameterRange]:
@@ -154,8 +154,8 @@ class RodBranches:
     @property
     def coexistence_is_decided(self) -> bool:
         """Whether the stability of all cycles and of the straight rod is known in the followed range."""
-        after = self._v["special_unstable_after"][self._v["special_kind"] == HOPF]
-        straight = int(self._v["unstable_at_start"]) >= 0 and bool((after >= 0).all())
+        counts = self._v["special_unstable_after"][self._v["special_kind"] == HOPF]
+        straight = int(self._v["unstable_at_start"]) >= 0 and bool((counts >= 0).all())
         return straight and all(curve.is_decided for curve in self.curves)
 
     def straight_ranges(self, ends: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
@@ -163,18 +163,18 @@ class RodBranches:
 
         Both lists are empty if special points of some branch are not stored.
         """
-        pieces = [] if self.hidden_count else self.straight_pieces(ends)
-        stable, unstable = ([(a, b) for a, b, s in pieces if s == kind] for kind in (1, 0))
+        intervals = [] if self.hidden_count else self.straight_pieces(ends)
+        stable, unstable = ([(a, b) for a, b, value in intervals if value == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)
 
     def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
         """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""
         v = self._v
-        hopf = v["special_kind"] == HOPF
-        at, first = np.unique(v["special_at"][hopf], return_index=True)
-        after = v["special_unstable_after"][hopf][first]
-        edges = [ends[0], *(float(a) for a in at), max(ends[1], *at) if len(at) else ends[1]]
-        counts = [int(v["unstable_at_start"]), *(int(count) for count in after)]
+        is_hopf = v["special_kind"] == HOPF
+        values, indices = np.unique(v["special_at"][is_hopf], return_index=True)
+        after_counts = v["special_unstable_after"][is_hopf][indices]
+        edges = [ends[0], *(float(a) for a in values), max(ends[1], *values) if len(values) else ends[1]]
+        counts = [int(v["unstable_at_start"]), *(int(count) for count in after_counts)]
         return [
             (low, high, -1 if count < 0 else int(count == 0))
             for (low, high), count in zip(pairwise(edges), counts, strict=True)
@@ -187,50 +187,50 @@ def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
     yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
 
 
-def _stored_branch(v: dict[str, Array], along: str, number: int) -> StoredBranch:
-    """Branch with the given number, from 1. v: variables of the rod. along: followed parameter."""
+def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBranch:
+    """Branch with the given number, from 1. v: variables of the rod. parameter: followed parameter."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
-    before = special[v["special_point"][special] == 0]
-    order: list[tuple[bool, int]] = [(False, int(i)) for i in before]
+    special_before = special[v["special_point"][special] == 0]
+    order: list[tuple[bool, int]] = [(False, int(i)) for i in special_before]
     for index in cycles:
         order.append((True, int(index)))
         order += [(False, int(i)) for i in special[v["special_point"][special] == index + 1]]
     values = [
-        (v[f"branch_{along}"][i], v["tip_y_max"][i], v["period"][i])
+        (v[f"branch_{parameter}"][i], v["tip_y_max"][i], v["period"][i])
         if is_cycle
         else (v["special_at"][i], v["special_tip_y_max"][i], v["special_period"][i])
         for is_cycle, i in order
     ]
-    at, y, period = np.array(values, dtype=float).reshape(-1, 3).T
-    own = np.array([v[f"branch_{along}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
-    at = _within_special_points(at, own * np.abs(at), np.array([not is_cycle for is_cycle, _ in order]))
+    x, y, period = np.array(values, dtype=float).reshape(-1, 3).T
+    errors = np.array([v[f"branch_{parameter}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
+    x = _within_special_points(x, errors * np.abs(x), np.array([not is_cycle for is_cycle, _ in order]))
     crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
-    outside = [min_unstable_count(int(count), float(m), float(error)) for count, m, error in crossing]
+    outside = [min_unstable_count(int(count), float(size), float(error)) for count, size, error in crossing]
     counts = [outside[i] if is_cycle else None for is_cycle, i in order]
     is_cycle = np.array([cycle for cycle, _ in order], dtype=bool)
     points = tuple(_special_point(v, i) for i in special)
-    return StoredBranch(at, y, period, stability_between_vertices(counts), is_cycle, points)
+    return StoredBranch(x, y, period, stability_between_vertices(counts), is_cycle, points)
 
 
-def _within_special_points(at: Array, error: Array, special: NDArray[np.bool_]) -> Array:
+def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
     """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
-    into the range between the special points before and after them. special: mask of the special points,
+    into the range between the special points before and after them. is_special: mask of the special points,
     (n,).
     """
-    at = at.copy()
-    for start, end in pairwise(np.flatnonzero(special)):
-        part = slice(start + 1, end)
-        inside = np.clip(at[part], *sorted((at[start], at[end])))
-        at[part] = np.where(np.abs(inside - at[part]) <= 2 * error[part], inside, at[part])
-    return at
+    x = x.copy()
+    for start, end in pairwise(np.flatnonzero(is_special)):
+        interior = slice(start + 1, end)
+        new = np.clip(x[interior], *sorted((x[start], x[end])))
+        x[interior] = np.where(np.abs(new - x[interior]) <= 2 * error[interior], new, x[interior])
+    return x
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
     """Special point at index `index` of the stored list. v: variables of the rod."""
     values = {field.name: v[f"special_{field.name}"][index].item() for field in fields(StoredSpecialPoint)}
-    words = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
-    return StoredSpecialPoint(**values | words)
+    texts = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
+    return StoredSpecialPoint(**values | texts)
 
 
 def stability_between_vertices(counts: list[int | None]) -> NDArray[np.integer]:
@@ -239,11 +239,11 @@ def stability_between_vertices(counts: list[int | None]) -> NDArray[np.integer]:
     counts: least number of unstable multipliers at n vertices; -1 if unknown, None at special points.
     """
     stable = [-1] * (len(counts) - 1)
-    special = [i for i, count in enumerate(counts) if count is None]
-    for start, end in pairwise([0, *special, len(counts) - 1]):
-        known = [count for count in counts[start : end + 1] if count is not None and count >= 0]
+    unknown_indices = [i for i, count in enumerate(counts) if count is None]
+    for start, end in pairwise([0, *unknown_indices, len(counts) - 1]):
+        known_counts = [count for count in counts[start : end + 1] if count is not None and count >= 0]
         for i in range(start, end):
-            beside = [count for count in counts[i : i + 2] if count in known] or known
-            if len({count == 0 for count in beside}) == 1:
-                stable[i] = int(beside[0] == 0)
+            neighbours = [count for count in counts[i : i + 2] if count in known_counts] or known_counts
+            if len({count == 0 for count in neighbours}) == 1:
+                stable[i] = int(neighbours[0] == 0)
     return np.array(stable, dtype=int)

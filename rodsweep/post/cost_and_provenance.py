@@ -11,14 +11,14 @@ from ..results.file.view import View
 from ..wording import counted, duration, plural
 
 
-def time_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
-    """Lines about the computing time of the points in the mask `done`, of any shape; an empty list if no
-    point is computed. noun: noun for a point.
+def time_lines(view: View, is_computed: np.ndarray, noun: str) -> list[str]:
+    """Lines about the computing time of the points in the mask `is_computed`, of any shape; an empty list if
+    no point is computed. noun: noun for a point.
     """
-    if not done.any():
+    if not is_computed.any():
         return []
-    seconds = view.variables["seconds"][done]
-    if done.sum() == 1:
+    seconds = view.variables["seconds"][is_computed]
+    if is_computed.sum() == 1:
         return [f"time of the {noun}: {duration(float(seconds.max()))}"]
     return [
         f"time per {noun}: median {duration(float(np.median(seconds)))}, longest "
@@ -43,8 +43,10 @@ def _dates_clause(a: dict[str, Any]) -> str:
         return "not finished yet"
     if "finished" in a:
         return f"{a['started']} to {a['finished']}"
-    whole = a.get("shard") and not a.get("stopped")
-    return f"from {a['started']} on, all points of shard {a['shard']}" if whole else "not finished yet"
+    is_whole_shard = a.get("shard") and not a.get("stopped")
+    return (
+        f"from {a['started']} on, all points of shard {a['shard']}" if is_whole_shard else "not finished yet"
+    )
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
@@ -53,18 +55,18 @@ def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
     """
     if RANK_STATISTICS[0] not in a:
         return []
-    points, busy, idle = (np.atleast_1d(a[name]) for name in RANK_STATISTICS)
-    share = 100 * busy / np.maximum(busy + idle, 1e-9)
-    least = int(share.argmin())
+    points, busy_seconds, idle_seconds = (np.atleast_1d(a[name]) for name in RANK_STATISTICS)
+    percent = 100 * busy_seconds / np.maximum(busy_seconds + idle_seconds, 1e-9)
+    worst = int(percent.argmin())
     ranks = counted(int(a["ranks"]), "rank")
     hosts = counted(len(str(a["hosts"]).split()), "host")
     text = f"last run: {ranks} on {hosts}, {counted(int(points.sum()), noun)}"
     text += f"; shard {a['shard']}" if a.get("shard") else ""
     text += f"; stopped by {a['stopped']}" if a.get("stopped") else ""
     if int(a["ranks"]) == 1:
-        return [text, f"the rank was busy {share[0]:.1f} % of its time"]
-    solved = f"{np.median(share):.1f} % of the time (median; least {share[least]:.1f} %, rank {least})"
+        return [text, f"the rank was busy {percent[0]:.1f} % of its time"]
+    busy_text = f"{np.median(percent):.1f} % of the time (median; least {percent[worst]:.1f} %, rank {worst})"
     ends = dict.fromkeys(f"{number:.6g}" for number in (points.min(), points.max()))
-    each = " to ".join(ends)
-    things = noun if each == "1" else plural(noun)
-    return [text, f"the ranks were busy {solved}; each finished {each} {things}"]
+    count_text = " to ".join(ends)
+    points_noun = noun if count_text == "1" else plural(noun)
+    return [text, f"the ranks were busy {busy_text}; each finished {count_text} {points_noun}"]

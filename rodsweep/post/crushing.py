@@ -28,11 +28,11 @@ def uncrushed_ranges(view: View, rods: Iterable[int]) -> list[ParameterRange]:
     rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
     """
     low, high = branch_ends(view)
-    along = followed_parameter(view)
+    parameter = followed_parameter(view)
     build = build_of_rods(view)
     columns = {name: values.ravel() for name, values in view.point_columns.items()}
-    each = ({name: float(column[index]) for name, column in columns.items()} for index in rods)
-    return [uncrushed_interval(build, rod, (along, low, high)) for rod in each]
+    rods_values = ({name: float(column[index]) for name, column in columns.items()} for index in rods)
+    return [uncrushed_interval(build, rod, (parameter, low, high)) for rod in rods_values]
 
 
 def crushing_ratio(view: View, line: str, row: str, x: Array, y: Array) -> Array:
@@ -43,5 +43,5 @@ def crushing_ratio(view: View, line: str, row: str, x: Array, y: Array) -> Array
     """
     fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
     values = {"taper": np.asarray(1.0)} | fixed | {line: x, row: y}
-    share = build_of_rods(view).relative_crushing_forces(values["taper"])
-    return np.asarray(values["F"] / (values["k1"] * share) + 0 * (x + y))
+    force_per_k1 = build_of_rods(view).relative_crushing_forces(values["taper"])
+    return np.asarray(values["F"] / (values["k1"] * force_per_k1) + 0 * (x + y))

@@ -47,9 +47,9 @@ class LocatedThreshold:
         oscillation."""
         return self.kind != "onset"
 
-    def equals_within_errors(self, other: "LocatedThreshold") -> bool:
+    def equals_within_errors(self, point: "LocatedThreshold") -> bool:
         """Whether two located thresholds have equal kinds, and positions that are equal within the errors."""
-        return self.kind == other.kind and abs(self.position - other.position) <= self.error + other.error
+        return self.kind == point.kind and abs(self.position - point.position) <= self.error + point.error
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +83,8 @@ class StoredThresholds:
         points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"
         self.growth_rates = v[growth].reshape(points, -1)[:, 0]
-        absent = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
-        self.other_parameters = [other for other in TRANSVERSE_PARAMETERS if other not in {name, *absent}]
+        missing = {o for o in OPTIONAL_PARAMETERS if not {f"hopf_{o}", f"change_{o}"} & v.keys()}
+        self.other_parameters = [other for other in TRANSVERSE_PARAMETERS if other not in {name, *missing}]
         self.thresholds_by_rod: dict[tuple[float, ...], list[LocatedThreshold]] = {}
         if "hopf_along" in v:  # a user may have dropped the variable from a Dataset
             self._add_thresholds(v, name, "hopf", v["hopf_along"] == TRANSVERSE_PARAMETERS.index(name))
@@ -92,22 +92,22 @@ class StoredThresholds:
             self._add_thresholds(v, name, "change", np.ones(len(v["change_kind"]), bool))
 
     def _add_thresholds(
-        self, v: Mapping[str, np.ndarray], name: str, prefix: str, chosen: NDArray[np.bool_]
+        self, v: Mapping[str, np.ndarray], name: str, prefix: str, is_chosen: NDArray[np.bool_]
     ) -> None:
-        """Adds the onsets and changes of stability in the mask `chosen`, (changes,), of the variables whose
-        names start with `prefix`. name: parameter along which the thresholds are located. v: variables of the
-        file.
+        """Adds the onsets and changes of stability in the mask `is_chosen`, (changes,), of the variables
+        whose names start with `prefix`. name: parameter along which the thresholds are located. v: variables
+        of the file.
         """
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
         fields = (name, "error", "frequency", "kind")
-        at, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
-        after = v["hopf_unstable_after"] if prefix == "hopf" else None
-        for i in np.flatnonzero(chosen):
-            parameter = float(at[i])
+        positions, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
+        counts = v["hopf_unstable_after"] if prefix == "hopf" else None
+        for i in np.flatnonzero(is_chosen):
+            parameter = float(positions[i])
             word = CROSSING_KINDS[int(kind[i])]
             if word == "onset":
                 point = LocatedThreshold(parameter, float(error[i]) * (abs(parameter) or 1.0), word)
-            elif after is None or (word, int(after[i])) in STABILITY_CHANGES:
+            elif counts is None or (word, int(counts[i])) in STABILITY_CHANGES:
                 point = LocatedThreshold(
                     parameter, float(error[i]) * (abs(parameter) or 1.0), word, float(frequency[i])
                 )
@@ -135,18 +135,20 @@ class StoredThresholds:
         if not len(line.x):
             return []
         stored = self._stored_between(line, line.x.min())
-        found: list[LocatedThreshold | BracketedThreshold] = [*stored]
+        thresholds: list[LocatedThreshold | BracketedThreshold] = [*stored]
         changes = [point for point in stored if point.changes_stability]
-        known = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
-        ordered = known[np.argsort(line.x[known], kind="stable")]
-        x = line.x[ordered]
-        grows = self.growth_rates[line.indices[ordered]] > 0
-        for i in np.flatnonzero(grows[1:] != grows[:-1]):
+        finite_indices = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
+        sorted_indices = finite_indices[np.argsort(line.x[finite_indices], kind="stable")]
+        x = line.x[sorted_indices]
+        is_growing = self.growth_rates[line.indices[sorted_indices]] > 0
+        for i in np.flatnonzero(is_growing[1:] != is_growing[:-1]):
             low = float(x[i])
             high = float(x[i + 1])
             if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
-                found.append(BracketedThreshold(low, high, "hopf" if grows[i + 1] else "restabilization"))
-        return sorted(found, key=sort_position)
+                thresholds.append(
+                    BracketedThreshold(low, high, "hopf" if is_growing[i + 1] else "restabilization")
+                )
+        return sorted(thresholds, key=sort_position)
 
 
 def _lies_between(point: LocatedThreshold, low: float, high: float) -> bool:

@@ -10,16 +10,16 @@ RANGE_GAP_TOLERANCE = 1e-9
 
 def union_of_ranges(ranges: Iterable[ParameterRange]) -> list[ParameterRange]:
     """Union of ranges, in increasing order. Ranges that overlap or touch are joined."""
-    found: list[ParameterRange] = []
-    for low, high in sorted((float(a), float(b)) for a, b in ranges):
-        if found and low <= found[-1][1] * (1 + RANGE_GAP_TOLERANCE):
-            found[-1] = found[-1][0], max(high, found[-1][1])
+    union: list[ParameterRange] = []
+    for low, high in sorted((float(start), float(end)) for start, end in ranges):
+        if union and low <= union[-1][1] * (1 + RANGE_GAP_TOLERANCE):
+            union[-1] = union[-1][0], max(high, union[-1][1])
         else:
-            found.append((low, high))
-    return found
+            union.append((low, high))
+    return union
 
 
 def intersection_of_ranges(first: list[ParameterRange], second: list[ParameterRange]) -> list[ParameterRange]:
     """Intersection of two unions of ranges; ranges of zero length are left out."""
-    common = [(max(a, c), min(b, d)) for a, b in first for c, d in second]
-    return [(low, high) for low, high in common if high > low * (1 + RANGE_GAP_TOLERANCE)]
+    overlaps = [(max(low1, low2), min(high1, high2)) for low1, high1 in first for low2, high2 in second]
+    return [(low, high) for low, high in overlaps if high > low * (1 + RANGE_GAP_TOLERANCE)]

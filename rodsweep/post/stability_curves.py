@@ -18,29 +18,32 @@ def curves_bounding_stability(view: View, line: str, row: str) -> dict[int, bool
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
-    found = dict.fromkeys(numbers, False)
+    is_bound = dict.fromkeys(numbers, False)
     rows = view.point_columns[row]
-    kinds, after, at = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    on = {number: v["curve_number"] == number for number in numbers}
-    paths = {number: (v[f"curve_{line}"][own], v[f"curve_{row}"][own]) for number, own in on.items()}
-    for index, i in zip(*np.nonzero(np.isfinite(at)), strict=True):
+    kinds, counts, positions = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
+    masks = {number: v["curve_number"] == number for number in numbers}
+    paths = {
+        number: (v[f"curve_{line}"][is_of_curve], v[f"curve_{row}"][is_of_curve])
+        for number, is_of_curve in masks.items()
+    }
+    for index, i in zip(*np.nonzero(np.isfinite(positions)), strict=True):
         kind = CROSSING_KINDS[int(kinds[index, i])]
-        if numbers and (kind, int(after[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
-            position = float(at[index, i]), float(rows[index])
+        if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
+            position = float(positions[index, i]), float(rows[index])
             distances = {n: _distance_along_row(x, y, *position) for n, (x, y) in paths.items()}
-            found[min(distances, key=distances.__getitem__)] = True
-    return found
+            is_bound[min(distances, key=distances.__getitem__)] = True
+    return is_bound
 
 
-def _distance_along_row(x: Array, y: Array, at: float, height: float) -> float:
-    """Distance, along the row y = `height`, between x = `at` and a curve; inf if the curve does not cross the
-    row. x, y: vertices of the curve, (n,).
+def _distance_along_row(x: Array, y: Array, position: float, height: float) -> float:
+    """Distance, along the row y = `height`, between x = `position` and a curve; inf if the curve does not
+    cross the row. x, y: vertices of the curve, (n,).
     """
     low = np.minimum(y[:-1], y[1:])
     high = np.maximum(y[:-1], y[1:])
-    pieces = np.flatnonzero((low <= height) & (height <= high))
-    if not len(pieces):
+    segments = np.flatnonzero((low <= height) & (height <= high))
+    if not len(segments):
         return float("inf")
-    rise = np.where(y[pieces + 1] != y[pieces], y[pieces + 1] - y[pieces], 1.0)
-    crossings = x[pieces] + (height - y[pieces]) / rise * (x[pieces + 1] - x[pieces])
-    return float(np.abs(crossings - at).min())
+    height_increments = np.where(y[segments + 1] != y[segments], y[segments + 1] - y[segments], 1.0)
+    crossings = x[segments] + (height - y[segments]) / height_increments * (x[segments + 1] - x[segments])
+    return float(np.abs(crossings - position).min())

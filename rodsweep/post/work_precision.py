@@ -28,41 +28,43 @@ PANEL_TITLE_WIDTH = 36
 """Largest length of a line in the title of a panel, in characters."""
 
 
-def draw_work_precision(measured: Table, xlabel: str, target: float | None, output: Path) -> None:
+def draw_work_precision(measurements: Table, xlabel: str, target: float | None, output: Path) -> None:
     """Writes a figure with a panel for each case, a curve for each method, and a horizontal line at the error
     `target` to the file `output`.
 
-    measured: table with columns case, method, group, seconds and error. Rows without a finite error are left
-    out. xlabel: label of the time axis. Raises EnvironmentIncomplete if the file cannot be written.
+    measurements: table with columns case, method, group, seconds and error. Rows without a finite error are
+    left out. xlabel: label of the time axis. Raises EnvironmentIncomplete if the file cannot be written.
     """
-    columns = {name: np.array(measured[name]) for name in ("case", "method", "group", "seconds", "error")}
+    columns = {name: np.array(measurements[name]) for name in ("case", "method", "group", "seconds", "error")}
     cases, methods, groups, seconds, errors = (
         values[np.isfinite(columns["error"])] for values in columns.values()
     )
-    looks = _curve_looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
+    curve_looks = _curve_looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
-    wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
-    across = ceil(sqrt(len(titles)))
-    down = ceil(len(titles) / across)
+    is_wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
+    column_count = ceil(sqrt(len(titles)))
+    row_count = ceil(len(titles) / column_count)
     with matplotlib.rc_context(FIGURE_STYLE):
-        figure = Figure(figsize=(PANEL_SIZE * across + 3.0, PANEL_SIZE * down + 0.5), layout="constrained")
-        grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
+        figure = Figure(
+            figsize=(PANEL_SIZE * column_count + 3.0, PANEL_SIZE * row_count + 0.5), layout="constrained"
+        )
+        grid = figure.subplots(row_count, column_count, sharex=True, sharey=True, squeeze=False)
         for axes, title in zip(grid.flat, titles, strict=False):
             axes.set(xscale="log", yscale="log")
             axes.set_title(fill(title, PANEL_TITLE_WIDTH), fontsize=10)
             if target is not None:
                 axes.axhline(target, color="0.75", lw=0.8, zorder=0)
-            for method, look in looks.items():
-                own = (cases == title) & (methods == method)
-                axes.plot(1e3 * seconds[own], np.maximum(errors[own], MIN_DRAWN_ERROR), **look)
-            axes.xaxis.set_major_locator(LogLocator(subs=(1,) if wide else (1, 2, 5)))
+            for method, curve_look in curve_looks.items():
+                mask = (cases == title) & (methods == method)
+                axes.plot(1e3 * seconds[mask], np.maximum(errors[mask], MIN_DRAWN_ERROR), **curve_look)
+            axes.xaxis.set_major_locator(LogLocator(subs=(1,) if is_wide else (1, 2, 5)))
             axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.xaxis.set_minor_formatter(NullFormatter())
         for axes in grid.flat[len(titles) :]:
             axes.set_axis_off()
         figure.supxlabel(xlabel)
         figure.supylabel("relative error")
-        handles = [Line2D([], [], label=method, **look) for method, look in looks.items()]
+        handles = [Line2D([], [], label=method, **curve_look) for method, curve_look in curve_looks.items()]
         figure.legend(handles=handles, loc="outside right center", frameon=False, fontsize=9)
         save_figure(figure, output)
 
@@ -72,17 +74,17 @@ def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
     of a group. groups: group of each method.
     """
     order = list(dict.fromkeys(groups.values()))
-    looks = {}
+    curve_looks = {}
     for method, group in groups.items():
-        index = [other for other, its in groups.items() if its == group].index(method)
-        first = group == order[0]
+        index = [method_ for method_, group_ in groups.items() if group_ == group].index(method)
+        is_first_group = group == order[0]
         colour = GROUP_COLOURS[order.index(group) % len(GROUP_COLOURS)]
-        looks[method] = {
+        curve_looks[method] = {
             "color": colour,
             "marker": METHOD_MARKERS[index % len(METHOD_MARKERS)],
             "ms": 5,
-            "lw": 2.2 if first else 1.1,
-            "mfc": colour if first else "white",
-            "zorder": 3 if first else 2,
+            "lw": 2.2 if is_first_group else 1.1,
+            "mfc": colour if is_first_group else "white",
+            "zorder": 3 if is_first_group else 2,
         }
-    return looks
+    return curve_looks

@@ -32,26 +32,26 @@ MAX_MEASURED_LOAD = 0.9
 holds."""
 
 
-def branches_cost(points: Points, along: str, reach: tuple[float, float], accuracy: float) -> CostEstimate:
-    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `along`.
+def branches_cost(points: Points, name: str, limits: tuple[float, float], accuracy: float) -> CostEstimate:
+    """Estimated cost of the branches of limit cycles of all rods in `points`, along the parameter `name`.
 
-    reach: smallest and largest value of this parameter. accuracy: relative accuracy of the cycles. For kinds
+    limits: smallest and largest value of this parameter. accuracy: relative accuracy of the cycles. For kinds
     of rods whose times were not measured the estimate has a `doubt`. The estimate is 0 s if no sampled point
     has a rod.
     """
     indices = sampled_points(points)
-    values: dict[str, Array | float] = points.values_of(indices) | {along: reach[along in COSTLIER_IF_LARGER]}
+    values: dict[str, Array | float] = points.values_of(indices) | {name: limits[name in COSTLIER_IF_LARGER]}
     taper = np.asarray(values.get("taper", 1.0))
-    weakest = np.minimum(taper, 1.0) ** 2
-    F = np.clip(values["F"], 0.0, values["k1"] * weakest)  # a rod under tension has no cycles
+    min_area = np.minimum(taper, 1.0) ** 2
+    F = np.clip(values["F"], 0.0, values["k1"] * min_area)  # a rod under tension has no cycles
     per_force = BRANCH_SECONDS_PER_FORCE * (accuracy / 1e-7) ** BRANCH_ACCURACY_EXPONENT
     # A cone has as many waves along its length as a uniform rod under the force F/taper^2.
-    each = per_force * F / taper**2 * (1 + F / (values["k2"] * weakest)) ** BRANCH_BENDING_EXPONENT
+    seconds = per_force * F / taper**2 * (1 + F / (values["k2"] * min_area)) ** BRANCH_BENDING_EXPONENT
     if not indices.size:
         return CostEstimate(0.0)
     builds = [points.build_of(int(index)) for index in indices]
     return CostEstimate(
-        float(np.mean(each)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper)
+        float(np.mean(seconds)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper)
     )
 
 
@@ -61,12 +61,12 @@ def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], ta
 
     builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,).
     """
-    narrowest, widest = MEASURED_TAPERS
+    min_taper, max_taper = MEASURED_TAPERS
     if any(build.constitutive_law is not LINEAR for build in builds):
         return "branches of rubber"
     if any(build.profile is not None for build in builds):
         return "branches of arms with a profile"
-    if bool(((taper < narrowest) | (taper > widest)).any()):
-        return f"branches of cones with a taper outside {narrowest:g} to {widest:g}"
+    if bool(((taper < min_taper) | (taper > max_taper)).any()):
+        return f"branches of cones with a taper outside {min_taper:g} to {max_taper:g}"
     load = np.asarray(values["F"] / (values["k1"] * np.minimum(taper, 1.0) ** 2))
     return "branches near the crushing force" if bool((load > MAX_MEASURED_LOAD).any()) else ""

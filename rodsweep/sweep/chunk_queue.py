@@ -60,13 +60,13 @@ class RankReport:
 
 
 class ChunkQueue:
-    """Queue of the unsolved items, on the first rank; safe to use from two threads. todo: ranges of items.
+    """Queue of the unsolved items, on the first rank; safe to use from two threads. ranges: ranges of items.
     ranks: number of ranks.
     """
 
-    def __init__(self, todo: list[IndexRange], ranks: int):
-        self.unsolved = deque(todo)
-        self.items_left = index_count(todo)
+    def __init__(self, ranges: list[IndexRange], ranks: int):
+        self.unsolved = deque(ranges)
+        self.items_left = index_count(ranges)
         self.ranks = ranks
         self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
@@ -87,13 +87,13 @@ class ChunkQueue:
             self.stored_points += report.stored_points
             if report.finished_items:
                 self.seconds_per_item[rank] = report.seconds / report.finished_items
-            first, end = report.returned_items
-            if end > first and not self.is_stopped:
+            start, end = report.returned_items
+            if end > start and not self.is_stopped:
                 self.seconds_per_item[rank] = (
                     report.seconds
                 )  # pessimistic, so that its next chunk is one item
                 self.unsolved.appendleft(report.returned_items)
-                self.items_left += end - first
+                self.items_left += end - start
             self.change.notify_all()
 
     def next_chunk(self, rank: int) -> IndexRange | None:
@@ -115,11 +115,11 @@ class ChunkQueue:
     def _pop_chunk(self, rank: int) -> IndexRange:
         """Removes and returns the next chunk, sized by the rank's time per item; the lock must be held."""
         # At most half of an equal division: chunks shrink toward the end, where waiting costs most.
-        share = max(1, self.items_left // (2 * self.ranks))
-        pace = self.seconds_per_item.get(rank)
-        size = 1 if pace is None else int(chunk_seconds(self.ranks) / max(pace, 1e-7))
+        fair_size = max(1, self.items_left // (2 * self.ranks))
+        seconds_per_item = self.seconds_per_item.get(rank)
+        size = 1 if seconds_per_item is None else int(chunk_seconds(self.ranks) / max(seconds_per_item, 1e-7))
         first, last = self.unsolved.popleft()
-        end = min(last, first + max(1, min(size, share, MAX_CHUNK_ITEMS)))
+        end = min(last, first + max(1, min(size, fair_size, MAX_CHUNK_ITEMS)))
         if end < last:
             self.unsolved.appendleft((end, last))
         self.items_left -= end - first
@@ -161,8 +161,8 @@ class DependentItemQueue(ChunkQueue):
         """Items that `item_chooser` has chosen and that no rank is solving, the most urgent item first."""
         if self._items_to_solve is None:
             self._items_to_solve = self.item_chooser.items_to_solve(self.results)
-        in_hand = {first for first, _ in self.in_progress.values()}
-        return [item for item in self._items_to_solve if item not in in_hand]
+        taken_items = {start for start, _ in self.in_progress.values()}
+        return [item for item in self._items_to_solve if item not in taken_items]
 
     def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; an item without a result can be chosen again."""
@@ -180,9 +180,9 @@ class DependentItemQueue(ChunkQueue):
         with self.change:
             if self.is_stopped:
                 return NO_WORK_LEFT
-            ready = self.ready_items
-            if ready:
-                self.in_progress[rank] = (ready[0], ready[0] + 1)
+            items = self.ready_items
+            if items:
+                self.in_progress[rank] = (items[0], items[0] + 1)
                 return self.in_progress[rank]
             return None if self.in_progress else NO_WORK_LEFT
 

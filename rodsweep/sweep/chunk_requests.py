@@ -48,14 +48,16 @@ QUEUE_WAIT_SECONDS = 0.05
 class FirstRankRequests:
     """Takes chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
-    def __init__(self, team: Team, queue: ChunkQueue, stop: StopRequest, show: Callable[[str, float], None]):
-        """show: function (text on the progress of a long point, fractions of all unfinished points done,
-        summed) that displays the progress.
+    def __init__(
+        self, team: Team, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
+    ):
+        """show_position: function (text on the progress of a long point, fractions of all unfinished points
+        done, summed) that displays the progress.
         """
         self.team = team
         self.queue = queue
         self.stop = stop
-        self.show_position = show
+        self.show_position = show_position
         self.waiting_ranks: deque[int] = deque()
         """Ranks that wait for a chunk, in the order of their requests."""
         self.answered_in_advance: set[int] = set()
@@ -181,8 +183,8 @@ class FirstRankRequests:
         with self.team.abort_all_ranks_on_error():
             while self.working_ranks:
                 self._serve()
-                answering = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
-                time.sleep(POLL_SECONDS_IF_ANSWERED if answering else POLL_SECONDS)
+                is_polled = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
+                time.sleep(POLL_SECONDS_IF_ANSWERED if is_polled else POLL_SECONDS)
 
 
 class OtherRankRequests:
@@ -200,11 +202,11 @@ class OtherRankRequests:
         """
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
-        pause = FIRST_CHUNK_POLL_SECONDS
+        wait_seconds = FIRST_CHUNK_POLL_SECONDS
         while not self.comm.Iprobe(source=0, tag=ANSWER_TAG):
             self.poll_messages()
-            time.sleep(pause)
-            pause = min(CHUNK_POLL_GROWTH * pause, LONGEST_CHUNK_POLL_SECONDS)
+            time.sleep(wait_seconds)
+            wait_seconds = min(CHUNK_POLL_GROWTH * wait_seconds, LONGEST_CHUNK_POLL_SECONDS)
         chunk: IndexRange = self.comm.recv(source=0, tag=ANSWER_TAG)
         if chunk != NO_WORK_LEFT:
             self.comm.send(RankReport(is_in_advance=True), dest=0, tag=REQUEST_TAG)

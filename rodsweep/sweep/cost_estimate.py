@@ -120,37 +120,39 @@ def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> C
 
     growth: whether the transient growth is computed too.
     """
-    more = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
-    return replace(spectra, seconds=spectra.seconds + more, unknowns=None)
+    extra_seconds = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
+    return replace(spectra, seconds=spectra.seconds + extra_seconds, unknowns=None)
 
 
 def followed_spectra_cost(
-    alone: CostEstimate, stretches: Stretches, points: Points, modes: int
+    separate: CostEstimate, stretches: Stretches, points: Points, modes: int
 ) -> CostEstimate:
-    """Estimated cost of the spectra of `points` followed along stretches. alone: cost of solving every point
-    alone. modes: number of eigenvalues.
+    """Estimated cost of the spectra of `points` followed along stretches. separate: cost of solving every
+    point alone. modes: number of eigenvalues.
     """
-    share = FIRST_POINT_COST * stretches.count / points.count
+    firsts = FIRST_POINT_COST * stretches.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
-    each = FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
+    point_ms = (
+        FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS
+    )
     growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
-    left_alone = np.where(
+    extra_ms = np.where(
         growing > modes + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
     )
-    each += float(left_alone.mean()) if rods else 0.0
-    return replace(alone, seconds=alone.seconds * min(1.0, share) + points.count * 1e-3 * each)
+    point_ms += float(extra_ms.mean()) if rods else 0.0
+    return replace(separate, seconds=separate.seconds * min(1.0, firsts) + points.count * 1e-3 * point_ms)
 
 
 def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate:
     """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. modes: number of eigenvalues.
     accuracy: relative accuracy.
     """
-    alone = spectra_cost(points, modes, accuracy, certify=False)
+    single = spectra_cost(points, modes, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
-    seconds = COST_OF_TWO_MESHES * (alone.seconds - hard) + UNCOUNTED_SHARE * hard
-    unknowns = alone.unknowns and (alone.unknowns[0], math.ceil(FINER_MESH_RATIO * alone.unknowns[1]))
-    return replace(alone, seconds=seconds, unknowns=unknowns)
+    seconds = COST_OF_TWO_MESHES * (single.seconds - hard) + UNCOUNTED_SHARE * hard
+    unknowns = single.unknowns and (single.unknowns[0], math.ceil(FINER_MESH_RATIO * single.unknowns[1]))
+    return replace(single, seconds=seconds, unknowns=unknowns)
 
 
 def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
@@ -162,18 +164,20 @@ def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> 
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return CostEstimate(0.0)
-    varied = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
+    fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
     n = np.minimum(np.array(sizes, dtype=float), RESOLUTION_SETTINGS.max_unknowns)
-    dense = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
-    each = np.where(n <= MIN_SPARSE_UNKNOWNS, dense, SPARSE_MS_PER_UNKNOWN * n) + (
+    dense_ms = SPECTRUM_FIXED_MS + SPECTRUM_MS_PER_UNKNOWN * n + SPECTRUM_MS_PER_CUBED_UNKNOWN * n**3
+    point_ms = np.where(n <= MIN_SPARSE_UNKNOWNS, dense_ms, SPARSE_MS_PER_UNKNOWN * n) + (
         CERTIFICATE_MS if certify else 0
     )
     growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
-    each += varied * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
-    each += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
+    point_ms += fraction * ARM_SPECTRUM_MS + MS_PER_SQUARED_UNSTABLE_MODE * growing**2
+    point_ms += np.array([_soft_or_pulled_rod_ms(rod) for rod in rods])
     memory = BASE_MEMORY + int(n.max()) * MEMORY_PER_UNKNOWN
     too_large = int((np.array(sizes) > RESOLUTION_SETTINGS.max_unknowns).sum())
-    return CostEstimate(float(each.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large)
+    return CostEstimate(
+        float(point_ms.mean()) * 1e-3 * points.count, memory, (min(sizes), max(sizes)), too_large
+    )
 
 
 def _soft_or_pulled_rod_ms(rod: Rod) -> float:
@@ -211,17 +215,17 @@ def sampled_points(points: Points) -> NDArray[np.int64]:
     return indices[[points.has_rod(int(index)) for index in indices]]
 
 
-def cycles_cost(points: Points, first: int) -> CostEstimate:
-    """Estimated cost of the limit cycles of `points`, of which `first` are computed from the leading mode and
-    the others from a neighbour's cycle."""
+def cycles_cost(points: Points, first_count: int) -> CostEstimate:
+    """Estimated cost of the limit cycles of `points`, of which `first_count` are computed from the leading
+    mode and the others from a neighbour's cycle."""
     indices = sampled_points(points)
     F = np.asarray(points.values_of(indices)["F"]) if indices.size else np.zeros(1)
-    pulled = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
-    seconds = first * CYCLE_SECONDS + (points.count - first) * CHAINED_CYCLE_SECONDS
-    return CostEstimate(seconds + pulled * PULLED_MOTION_SECONDS)
+    pulled_count = points.count * float(np.mean(-MIN_PULL_OF_SLOW_MOTION >= F))
+    seconds = first_count * CYCLE_SECONDS + (points.count - first_count) * CHAINED_CYCLE_SECONDS
+    return CostEstimate(seconds + pulled_count * PULLED_MOTION_SECONDS)
 
 
 def marched_cycles_cost(count: int, accuracy: float) -> CostEstimate:
     """Estimated cost of `count` limit cycles by time integration to a relative accuracy."""
-    tighter = max(1.0, MARCHED_ACCURACY / accuracy) ** MARCHED_ACCURACY_EXPONENT
-    return CostEstimate(count * MARCHED_CYCLE_SECONDS * tighter)
+    accuracy_factor = max(1.0, MARCHED_ACCURACY / accuracy) ** MARCHED_ACCURACY_EXPONENT
+    return CostEstimate(count * MARCHED_CYCLE_SECONDS * accuracy_factor)

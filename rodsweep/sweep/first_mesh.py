@@ -48,14 +48,14 @@ def _rods_at_parameter_ends(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod
     omitted.
     """
     for values in product(*(column.tolist() for column in ends.values())):
-        named = dict(zip(ends, values, strict=True))
-        if "F" in named:
-            force = named.pop("F")
-            there = rod.with_values(**named)
-            yield there.with_values(F=end_below_crushing(there, force))
+        end_values = dict(zip(ends, values, strict=True))
+        if "F" in end_values:
+            force = end_values.pop("F")
+            end_rod = rod.with_values(**end_values)
+            yield end_rod.with_values(F=end_below_crushing(end_rod, force))
             continue
         try:
-            yield rod.with_values(**named)
+            yield rod.with_values(**end_values)
         except ValueError:
             continue
 

@@ -34,13 +34,13 @@ class ItemSolver(Protocol):
 class ProgressSink(Protocol):
     """Interface of a display, on the first rank, for the progress of all ranks."""
 
-    def __call__(self, done: int) -> None:
-        """Shows `done`, the number of points that all ranks have finished."""
+    def __call__(self, finished: int) -> None:
+        """Shows `finished`, the number of points that all ranks have finished."""
 
-    def show_position(self, words: str, begun: float) -> None:
-        """Shows the text `words` on the progress of a long point.
+    def show_position(self, text: str, partial: float) -> None:
+        """Shows the text `text` on the progress of a long point.
 
-        begun: sum of the fractions done of all unfinished points.
+        partial: sum of the fractions done of all unfinished points.
         """
 
 
@@ -117,20 +117,20 @@ class _RankLoop:
 
     def solve_chunks(self) -> RankStatistics:
         """Solves chunk after chunk; returns the statistics of the rank once all ranks have finished."""
-        started = time.monotonic()
-        busy = 0.0
+        start = time.monotonic()
+        busy_seconds = 0.0
         chunk = self.requests.next_chunk(RankReport())
         while chunk != NO_WORK_LEFT:
-            began = time.monotonic()
-            before = self.points
-            at = self._solve_chunk(chunk)
-            spent = time.monotonic() - began
-            busy += spent
+            chunk_start = time.monotonic()
+            points_before = self.points
+            next_item = self._solve_chunk(chunk)
+            chunk_seconds = time.monotonic() - chunk_start
+            busy_seconds += chunk_seconds
             report = RankReport(
-                finished_items=at - chunk[0],
-                seconds=spent,
-                returned_items=(at, chunk[1]),
-                stored_points=self.points - before,
+                finished_items=next_item - chunk[0],
+                seconds=chunk_seconds,
+                returned_items=(next_item, chunk[1]),
+                stored_points=self.points - points_before,
                 stop_signal=self.stop.name,
                 results=self.callbacks.new_results(),
             )
@@ -138,7 +138,9 @@ class _RankLoop:
         if isinstance(self.requests, FirstRankRequests):
             self.requests.close()
         self.team.wait_for_all()
-        return RankStatistics(self.points, busy, time.monotonic() - started - busy, self.was_interrupted)
+        return RankStatistics(
+            self.points, busy_seconds, time.monotonic() - start - busy_seconds, self.was_interrupted
+        )
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
         """Solves the items of a chunk in order; returns the number of the first unsolved item.
@@ -146,28 +148,29 @@ class _RankLoop:
         Later items stay unsolved after a stop request, or if the chunk takes too long.
         """
         patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.team.size)
-        at = chunk[0]
-        before = self.points
-        while at < chunk[1] and not self.stop:
+        item = chunk[0]
+        points_before = self.points
+        while item < chunk[1] and not self.stop:
             try:
                 with reporting_to(
-                    RankListener(self.requests, self.stop, partial(self.callbacks.item_label, at))
+                    RankListener(self.requests, self.stop, partial(self.callbacks.item_label, item))
                 ):
-                    self._solve(at, before)
+                    self._solve(item, points_before)
             except SolveStopped:
                 self.was_interrupted = True
             if self.stop:  # the item may be unfinished, so it does not count as solved
                 break
-            at += 1
+            item += 1
             if time.monotonic() > patience:
                 break
-        return at
+        return item
 
-    def _solve(self, item: int, before: int) -> None:
-        """Solves an item and stores its points. before: number of points stored before the current chunk."""
+    def _solve(self, item: int, points_before: int) -> None:
+        """Solves an item and stores its points. points_before: number of points stored before the current
+        chunk."""
         for index, result in self.callbacks.solve(item):
             self.callbacks.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
             self.requests.poll_messages()
             if isinstance(self.requests, FirstRankRequests):
-                self.progress(self.requests.queue.stored_points + self.points - before)
+                self.progress(self.requests.queue.stored_points + self.points - points_before)

@@ -44,9 +44,9 @@ def in_notebook() -> bool:
 class SilentProgress:
     """Progress display that shows nothing."""
 
-    def __call__(self, done: int) -> None: ...
+    def __call__(self, finished: int) -> None: ...
 
-    def show_position(self, words: str, begun: float = 0.0) -> None: ...
+    def show_position(self, text: str, partial: float = 0.0) -> None: ...
 
     def close(self) -> None: ...
 
@@ -58,9 +58,9 @@ class ProgressReporter:
     objects in a line.
     """
 
-    def __init__(self, total: int | None, title: str, noun: str = "points", live: bool | None = None):
-        """total, title, noun: see the class. live: True for a progress bar, False for lines; None: a bar on a
-        terminal, lines elsewhere.
+    def __init__(self, total: int | None, title: str, noun: str = "points", is_bar: bool | None = None):
+        """total, title, noun: see the class. is_bar: True for a progress bar, False for lines; None: a bar on
+        a terminal, lines elsewhere.
         """
         self.total = total
         self.noun = noun
@@ -71,27 +71,27 @@ class ProgressReporter:
         self.done = 0
         self.begun = 0.0
         self.where = ""
-        self.bar = _bar(title) if (on_terminal() if live is None else live) else None
+        self.bar = _bar(title) if (on_terminal() if is_bar is None else is_bar) else None
         if self.bar is not None:
             self.task = self.bar.add_task(title, total=total, count="", rate="", left="", where="")
 
-    def __call__(self, done: int) -> None:
-        """Records the number `done` of finished points, and displays it if due; 0 starts the clock."""
-        if not done:
+    def __call__(self, finished: int) -> None:
+        """Records the number `finished` of finished points, and displays it if due; 0 starts the clock."""
+        if not finished:
             self.began = time.monotonic()
             self.next_display = self.began + QUIET_SECONDS
-        self.done = done
+        self.done = finished
         self.begun = 0.0
         self.where = ""
         self._show()
 
-    def show_position(self, words: str, begun: float = 0.0) -> None:
-        """Shows the text `words` on the progress of a long point, if an update is due.
+    def show_position(self, text: str, partial: float = 0.0) -> None:
+        """Shows the text `text` on the progress of a long point, if an update is due.
 
-        begun: sum of the fractions done of all unfinished points.
+        partial: sum of the fractions done of all unfinished points.
         """
-        self.begun = begun
-        self.where = words
+        self.begun = partial
+        self.where = text
         self._show()
 
     def _show(self) -> None:
@@ -99,25 +99,25 @@ class ProgressReporter:
         now = time.monotonic()
         if not self.began or now < self.next_display:
             return
-        passed = now - self.began
-        rate = rate_in_words(self.done, passed) if self.total else ""
+        elapsed = now - self.began
+        rate = rate_in_words(self.done, elapsed) if self.total else ""
         seconds = (
-            self.remaining_time.remaining_seconds(self.done, passed, self.begun)
+            self.remaining_time.remaining_seconds(self.done, elapsed, self.begun)
             if self.remaining_time
             else None
         )
-        left = "" if seconds is None else f"about {duration_text(seconds)} left"
+        time_left = "" if seconds is None else f"about {duration_text(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:
             self.bar.start()
             self.next_display = now + BAR_SECONDS
-            fields: dict[str, Any] = {"count": count, "rate": rate, "left": left, "where": self.where}
+            fields: dict[str, Any] = {"count": count, "rate": rate, "left": time_left, "where": self.where}
             self.bar.update(self.task, completed=self.done + self.begun, **fields)
             self.bar.refresh()
             return
         self.next_display = now + LINE_SECONDS
-        overall = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, left)))
-        print("; ".join(filter(None, (overall, self.where))), file=sys.stderr, flush=True)
+        summary = ", ".join(filter(None, (f"{count} {self.noun}" if count else "", rate, time_left)))
+        print("; ".join(filter(None, (summary, self.where))), file=sys.stderr, flush=True)
 
     def close(self) -> None:
         if self.bar is not None:
@@ -128,5 +128,7 @@ def _bar(title: str) -> Progress:
     """Progress bar on standard error, or in a notebook, that begins with `title`."""
     console = Console() if in_notebook() else Console(file=sys.stderr, force_terminal=True)
     fields = (f"{{task.fields[{name}]}}" for name in ("count", "rate", "left", "where"))
-    head, *columns = (TextColumn(text, markup=False) for text in (title, *fields))
-    return Progress(head, BarColumn(), *columns, console=console, transient=True, auto_refresh=False)
+    title_column, *field_columns = (TextColumn(text, markup=False) for text in (title, *fields))
+    return Progress(
+        title_column, BarColumn(), *field_columns, console=console, transient=True, auto_refresh=False
+    )

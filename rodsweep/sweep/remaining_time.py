@@ -32,50 +32,51 @@ class RemainingTimeEstimator:
         self.reported: tuple[float, float] | None = None
         """(time of the last report, remaining time reported then)."""
 
-    def remaining_seconds(self, done: int, now: float, begun: float = 0.0) -> float | None:
-        """Remaining time, in s, when `done` points are finished at the time `now`, smoothed over the calls;
-        None if too little work is done for an estimate.
+    def remaining_seconds(self, finished: int, now: float, partial: float = 0.0) -> float | None:
+        """Remaining time, in s, when `finished` points are finished at the time `now`, smoothed over the
+        calls; None if too little work is done for an estimate.
 
-        now: in s since the start of the sweep. begun: sum of the fractions done of unfinished points.
+        now: in s since the start of the sweep. partial: sum of the fractions done of unfinished points.
         """
-        if done == self.total:
+        if finished == self.total:
             return 0.0
-        if done and (not self.records or done > self.records[-1][0]):
-            self._record(done, now)
-        each = self._seconds_per_point(done, now, begun)
-        if each is None:
+        if finished and (not self.records or finished > self.records[-1][0]):
+            self._record(finished, now)
+        seconds_per_point = self._seconds_per_point(finished, now, partial)
+        if seconds_per_point is None:
             return None
-        estimate = max(self.total - done - begun, 0.0) * each
+        remaining = max(self.total - finished - partial, 0.0) * seconds_per_point
         if self.reported is None:
-            self.reported = now, estimate
-            return estimate
-        before, reported = self.reported
-        expected = max(reported - (now - before), 0.0)
+            self.reported = now, remaining
+            return remaining
+        last_time, reported = self.reported
+        expected = max(reported - (now - last_time), 0.0)
         # A zero time constant would divide by zero when nothing is left.
-        time_constant = TIME_CONSTANT * min(now, max(estimate, expected)) or 1.0
-        follow = 1 - exp(-(now - before) / time_constant)
-        self.reported = now, expected + follow * (estimate - expected)
+        time_constant = TIME_CONSTANT * min(now, max(remaining, expected)) or 1.0
+        weight = 1 - exp(-(now - last_time) / time_constant)
+        self.reported = now, expected + weight * (remaining - expected)
         return self.reported[1]
 
-    def _record(self, done: int, now: float) -> None:
+    def _record(self, finished: int, now: float) -> None:
         """Stores the record (done, now); thins earlier records to about 35 per doubling of the points."""
         if len(self.records) > 2 and self.records[-1][0] < RECORD_RATIO * self.records[-2][0]:
             self.records.pop()
-        self.records.append((done, now))
+        self.records.append((finished, now))
 
-    def _seconds_per_point(self, done: int, now: float, begun: float) -> float | None:
+    def _seconds_per_point(self, finished: int, now: float, partial: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
         includes the wait since the latest record. Parameters as in `remaining_seconds`.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_FRACTION_DONE.
         """
-        if not self.records or done < self.records[0][0] + MIN_POINTS:
-            return now / (done + begun) if begun >= MIN_FRACTION_DONE else None
-        half = (record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * done)
-        points, began = next(half, self.records[0])
-        latest = self.records[-1][1]
-        return max((latest - began) / (done - points), (now - began) / (done - points + (begun or 1.0)))
+        if not self.records or finished < self.records[0][0] + MIN_POINTS:
+            return now / (finished + partial) if partial >= MIN_FRACTION_DONE else None
+        past = (record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished)
+        points, start = next(past, self.records[0])
+        latest_time = self.records[-1][1]
+        new = finished - points
+        return max((latest_time - start) / new, (now - start) / (new + (partial or 1.0)))
 
 
 def duration_text(seconds: float) -> str:
@@ -86,13 +87,13 @@ def duration_text(seconds: float) -> str:
     return f"{float(f'{seconds:.2g}'):.0f} s"
 
 
-def rate_in_words(done: int, seconds: float) -> str:
-    """Text of the rate of `done` points in `seconds`: points per second, or the time per point if this time
-    exceeds one second.
+def rate_in_words(finished: int, seconds: float) -> str:
+    """Text of the rate of `finished` points in `seconds`: points per second, or the time per point if this
+    time exceeds one second.
 
     Empty before the first point.
     """
-    if not done or not seconds:
+    if not finished or not seconds:
         return ""
-    rate = done / seconds
+    rate = finished / seconds
     return f"{rate:.3g}/s" if rate >= 1 else f"{duration_text(1 / rate)} per point"

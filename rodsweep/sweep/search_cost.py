@@ -39,54 +39,54 @@ HOPF_POINTS_MS = 18.0
 """Time of the normal forms of the two or three Hopf points of a rod, in ms: mean over the 90 rods."""
 
 
-def searches_cost(lines: int, certify: bool, of_arms: bool) -> CostEstimate:
+def searches_cost(lines: int, certify: bool, is_varying: bool) -> CostEstimate:
     """Estimated cost of `lines` searches for crossings, each of one rod along one parameter.
 
-    certify: whether each search is certified. of_arms: whether any arm is not uniform.
+    certify: whether each search is certified. is_varying: whether any arm is not uniform.
     """
     uniform = THRESHOLD_SEARCH_MS + (SEARCH_CERTIFICATE_MS if certify else 0)
-    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
+    return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if is_varying else uniform))
 
 
-def soft_searches_seconds(points: Points, reach: tuple[float, float], of_arms: bool) -> float:
+def soft_searches_seconds(points: Points, force_range: tuple[float, float], is_varying: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
-    eigenvalue and crossings become many where F^2/k2 is large. reach: smallest and largest force. of_arms:
-    whether any arm is not uniform."""
+    eigenvalue and crossings become many where F^2/k2 is large. force_range: smallest and largest force.
+    is_varying: whether any arm is not uniform."""
     indices = sampled_points(points)
     if not indices.size:
         return 0.0
     values = points.values_of(indices)
-    weakest = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
+    min_area = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
     with np.errstate(over="ignore"):
-        F = np.maximum(np.minimum(reach[1], values["k1"]), -reach[0])
-        exchanges = F**2 / (np.asarray(values["k2"]) * weakest)
-        each = SOFT_ARM_SEARCH_MS * exchanges**2 if of_arms else SOFT_SEARCH_MS * exchanges
-        return float(min(points.count * 1e-3 * float(np.mean(each)), sys.float_info.max / 4))
+        F = np.maximum(np.minimum(force_range[1], values["k1"]), -force_range[0])
+        exchanges = F**2 / (np.asarray(values["k2"]) * min_area)
+        rod_ms = SOFT_ARM_SEARCH_MS * exchanges**2 if is_varying else SOFT_SEARCH_MS * exchanges
+        return float(min(points.count * 1e-3 * float(np.mean(rod_ms)), sys.float_info.max / 4))
 
 
-def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) -> CostEstimate:
+def thresholds_cost(points: Points, F_max: float, certify: bool, is_varying: bool) -> CostEstimate:
     """Estimated cost of the lists of thresholds of all rods in `points` for forces up to `F_max`. certify:
-    whether each list is certified. of_arms: whether any arm is not uniform.
+    whether each list is certified. is_varying: whether any arm is not uniform.
     """
-    lines = searches_cost(points.count, certify, of_arms)
-    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, (0.0, F_max), of_arms))
+    lines = searches_cost(points.count, certify, is_varying)
+    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, (0.0, F_max), is_varying))
 
 
-def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:
+def diagram_cost(rows: int, certify: bool, is_varying: bool, curves: bool, criticality: bool) -> CostEstimate:
     """Estimated cost of a phase diagram of `rows` rows, without limit cycles.
 
-    certify: whether each row is certified. of_arms: whether any arm is not uniform. curves, criticality:
+    certify: whether each row is certified. is_varying: whether any arm is not uniform. curves, criticality:
     whether boundary curves and their criticality are computed; the cost for uniform rods is neglected.
     """
-    lines = searches_cost(rows, certify, of_arms)
-    more = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
-    return replace(lines, seconds=lines.seconds + more * of_arms)
+    lines = searches_cost(rows, certify, is_varying)
+    arm_seconds = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
+    return replace(lines, seconds=lines.seconds + arm_seconds * is_varying)
 
 
-def criticality_cost(rods: int, certify: bool, of_arms: bool) -> CostEstimate:
+def criticality_cost(rods: int, certify: bool, is_varying: bool) -> CostEstimate:
     """Estimated cost of the Hopf points and normal forms of `rods` rods. certify: whether each search is
-    certified. of_arms: whether any rod is not uniform.
+    certified. is_varying: whether any rod is not uniform.
     """
     search = HOPF_SEARCH_MS + (HOPF_CERTIFICATE_MS if certify else 0)
-    each = HOPF_POINTS_MS + (ARM_SEARCH_MS if of_arms else search)
-    return CostEstimate(rods * 1e-3 * each)
+    rod_ms = HOPF_POINTS_MS + (ARM_SEARCH_MS if is_varying else search)
+    return CostEstimate(rods * 1e-3 * rod_ms)

@@ -91,8 +91,8 @@ class SingleRankCommunication:
     """`RankCommunication` of a run with a single rank; `show_position` receives the progress of a long
     solve."""
 
-    def __init__(self, shown: Callable[[SolvePosition], object] | None = None):
-        self.show_position = shown
+    def __init__(self, show_position: Callable[[SolvePosition], object] | None = None):
+        self.show_position = show_position
 
     def poll_messages(self) -> None: ...
 
@@ -124,11 +124,11 @@ class RankListener:
         end.
         """
         now = time.monotonic()
-        if now >= self.next_report and (here := make_position()).words:
+        if now >= self.next_report and (position := make_position()).words:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
                 SolvePosition(
-                    ": ".join(filter(None, (self.item_label(), here.words))), here.completed_fraction
+                    ": ".join(filter(None, (self.item_label(), position.words))), position.completed_fraction
                 )
             )
         if now >= self.next_poll:

@@ -59,21 +59,21 @@ class Team:
     def wait_for_all(self) -> None:
         """Barrier over all ranks that sleeps between tests, so that working ranks keep the processor."""
         request = self.comm.Ibarrier()
-        pause = SHORTEST_PAUSE
+        wait_seconds = SHORTEST_PAUSE
         while not request.Test():
-            time.sleep(pause)
-            pause = min(2 * pause, LONGEST_PAUSE)
+            time.sleep(wait_seconds)
+            wait_seconds = min(2 * wait_seconds, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
         """Calls `work` on every rank. If `work` raises a `Refusal` on any rank, all ranks raise this
         refusal.
         """
-        refusal: Refusal | None = None
+        first_error: Refusal | None = None
         try:
             work()
         except Refusal as error:
-            refusal = error
-        refusals = [r for r in self.comm.allgather(refusal) if r is not None]
+            first_error = error
+        refusals = [r for r in self.comm.allgather(first_error) if r is not None]
         if refusals:
             raise refusals[0].marked_collective()
 
@@ -89,8 +89,8 @@ class Team:
 
     def map_in_order(self, items: Sequence[T], work: Callable[[T], S]) -> list[S]:
         """Results of `work` for all items, in order, on every rank; the items are divided among the ranks."""
-        parts = self.gather_on_all_ranks([work(item) for item in items[self.rank :: self.size]])
-        return [parts[i % self.size][i // self.size] for i in range(len(items))]
+        results_by_rank = self.gather_on_all_ranks([work(item) for item in items[self.rank :: self.size]])
+        return [results_by_rank[i % self.size][i // self.size] for i in range(len(items))]
 
     @contextmanager
     def abort_all_ranks_on_error(self) -> Iterator[None]:

@@ -88,13 +88,13 @@ class CertifiedTask(Task):
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
-        what, why = self.never_modelled
-        parts = [
+        quantity, reason = self.never_modelled
+        rows = [
             *rod_check_rows(self.parameter_values),
             *material_check_rows(self.config, self.parameter_values),
             *self.option_rows(),
         ]
-        return [*parts, ("certificate", *self.certificate()), (what, False, why)]
+        return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
 
 
 @dataclass(frozen=True, slots=True)

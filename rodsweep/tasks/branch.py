@@ -30,17 +30,19 @@ class BranchTask(HopfPointTask):
 
     def headline(self) -> str:
         options = self.config.branch
-        along = options.along
-        short = crushing_clause(self.config) * (options.along == "F")
+        parameter = options.along
+        crushing_text = crushing_clause(self.config) * (options.along == "F")
         ends = f"from {options.start:g} to {options.stop:g}"
-        return points_clause(self.points, f"followed in {along} {ends}{short}")
+        return points_clause(self.points, f"followed in {parameter} {ends}{crushing_text}")
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.branch
-        kept = f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
+        list_lengths = (
+            f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
+        )
         return [
             self.AXIAL_DRAG_ROW,
-            ("branches born at Hopf points", True, kept),
+            ("branches born at Hopf points", True, list_lengths),
             ("unstable cycles", True, "with all their Floquet multipliers"),
             ("branches without mirror symmetry", True, "from the symmetry breakings on those branches"),
             ("branches of twice the period, tori", False, "only the points where they begin are found"),
@@ -54,8 +56,8 @@ class BranchTask(HopfPointTask):
 
     def cost(self) -> CostEstimate:
         options = self.config.branch
-        reach = (options.start, options.stop)
-        return branches_cost(self.points, options.along, reach, self.config.accuracy)
+        limits = (options.start, options.stop)
+        return branches_cost(self.points, options.along, limits, self.config.accuracy)
 
     def solver(self) -> Solver:
         from ..solve.branch.branch_request import BranchRequest
@@ -76,32 +78,32 @@ class BranchTask(HopfPointTask):
         )
 
 
-def branch_values(result: "BranchesOfRod", along: str, points: int, special: int) -> dict[str, Any]:
+def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_count: int) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
-    along: the followed parameter. points: length of the list of cycles. special: length of the list of
-    special points.
+    parameter: the followed parameter. points: length of the list of cycles. special_count: length of the list
+    of special points.
     """
-    every = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
-    cycles = [_cycle_values(point, along) | {"branch": number} for number, point in every]
+    numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
+    cycles = [_cycle_values(point, parameter) | {"branch": number} for number, point in numbered]
     starts = [0]
     for curve in result.curves:
         starts.append(starts[-1] + len(curve.points))
-    after = {crossing.value: crossing for crossing in result.crossings}
+    crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = [
-        _special_point_values(one, starts[number - 1], after.get(one.at))
+        _special_point_values(special_point, starts[number - 1], crossing_by_value.get(special_point.at))
         | {"special_branch": number, "special_meets": others.get((number, index), -1)}
         for number, curve in enumerate(result.curves, 1)
-        for index, one in enumerate(curve.special_points)
+        for index, special_point in enumerate(curve.special_points)
     ]
-    known = result.status.name != "failed"
+    is_complete = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
     counts["special"] = len(specials)
-    values: dict[str, Any] = {f"{name}_count": count if known else -1 for name, count in counts.items()}
+    values: dict[str, Any] = {f"{name}_count": count if is_complete else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
-    values |= value_lists(followed_variables(along), cycles, points)
-    values |= value_lists(special_variables(along), specials, special)
+    values |= value_lists(followed_variables(parameter), cycles, points)
+    values |= value_lists(special_variables(parameter), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
@@ -123,32 +125,32 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     return numbers
 
 
-def _cycle_values(point: "BranchPoint", along: str) -> dict[str, Any]:
-    """A cycle of a branch as variables of the file. along: the followed parameter."""
-    own = {
-        f"branch_{along}": "at",
-        f"branch_{along}_error": "at_error",
+def _cycle_values(point: "BranchPoint", parameter: str) -> dict[str, Any]:
+    """A cycle of a branch as variables of the file. parameter: the followed parameter."""
+    attribute_names = {
+        f"branch_{parameter}": "at",
+        f"branch_{parameter}_error": "at_error",
         "unstable_multipliers": "unstable_count",
     }
-    variables = [v for v in followed_variables(along) if v.name != "branch"]
-    return outcome_values(variables, point, point.measures, point.errors, names=own)
+    variables = [v for v in followed_variables(parameter) if v.name != "branch"]
+    return outcome_values(variables, point, point.measures, point.errors, names=attribute_names)
 
 
 SPECIAL_POINT_FIELDS = {"special_amplitude_coefficient_error": "coefficient_error"}
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
-def _special_point_values(point: "SpecialPoint", start: int, hopf: "Threshold | None") -> dict[str, Any]:
+def _special_point_values(point: "SpecialPoint", start: int, crossing: "Threshold | None") -> dict[str, Any]:
     """Variables of the file for one special point.
 
-    start: index, among all cycles of the rod, of the first cycle of the point's branch. hopf: crossing of the
-    straight rod at the point, None if the point is not a Hopf point.
+    start: index, among all cycles of the rod, of the first cycle of the point's branch. crossing: crossing of
+    the straight rod at the point, None if the point is not a Hopf point.
     """
-    beside = {
+    values = {
         "special_point": start + point.index_of_cycle_before + 1 if point.index_of_cycle_before >= 0 else 0,
         "special_reason": int(point.reason or 0),
-        "special_unstable_after": hopf.unstable_after if hopf else -1,
+        "special_unstable_after": crossing.unstable_after if crossing else -1,
     }
-    known = {*beside, "special_branch", "special_meets"}
-    own = [v for v in special_variables("F") if v.name not in known]
-    return beside | outcome_values(own, point, prefix="special_", names=SPECIAL_POINT_FIELDS)
+    given_names = {*values, "special_branch", "special_meets"}
+    variables = [v for v in special_variables("F") if v.name not in given_names]
+    return values | outcome_values(variables, point, prefix="special_", names=SPECIAL_POINT_FIELDS)

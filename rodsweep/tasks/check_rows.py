@@ -19,8 +19,8 @@ def crushing_clause(config: Config) -> str:
     """
     if config.is_uniform_and_linear:
         return ", or to just below k1"
-    crushed = np.isfinite(config.build.constitutive_law.crushing_load)
-    return ", or to just below the force that crushes the weakest section" * bool(crushed)
+    can_be_crushed = np.isfinite(config.build.constitutive_law.crushing_load)
+    return ", or to just below the force that crushes the weakest section" * bool(can_be_crushed)
 
 
 def points_text(points: Points) -> str:
@@ -45,10 +45,10 @@ def rod_check_rows(columns: Mapping[str, np.ndarray]) -> list[CheckRow]:
 
     columns: values of the rods' parameters by name, arrays of any shape.
     """
-    dragged = bool((columns["gamma3"] > 0).any())
+    has_axial_drag = bool((columns["gamma3"] > 0).any())
     return [
         *(_deformation_row(p, columns[p.name]) for p in PARAMETERS.values() if p.rigid_adjective),
-        ("rotational drag", dragged, "gamma3 > 0" if dragged else "gamma3 = 0"),
+        ("rotational drag", has_axial_drag, "gamma3 > 0" if has_axial_drag else "gamma3 = 0"),
     ]
 
 
@@ -86,8 +86,10 @@ def arms_line(
     if mesh is None:
         return arms
     count = counted(mesh.element_count, "element")
-    several = any(len(np.unique(c)) > 1 for c in columns.values())
-    return f"{arms}; the first mesh{' of the hardest arm' * several} has {count} of order {mesh.order}"
+    has_several_arms = any(len(np.unique(column)) > 1 for column in columns.values())
+    return (
+        f"{arms}; the first mesh{' of the hardest arm' * has_several_arms} has {count} of order {mesh.order}"
+    )
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
@@ -125,9 +127,9 @@ def _law_text(config: Config) -> str:
 
 def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:
     name = parameter.name
-    what = parameter.meaning.removesuffix(" stiffness")
-    rigid = np.isinf(values)
-    if rigid.all():
-        return what, False, f"{name} = inf: the rod is {parameter.rigid_adjective}"
-    but = f" at all but {counted(int(rigid.sum()), 'value')}" if rigid.any() else ""
-    return what, True, f"{name} is finite{but}"
+    deformation = parameter.meaning.removesuffix(" stiffness")
+    is_rigid = np.isinf(values)
+    if is_rigid.all():
+        return deformation, False, f"{name} = inf: the rod is {parameter.rigid_adjective}"
+    exceptions_text = f" at all but {counted(int(is_rigid.sum()), 'value')}" if is_rigid.any() else ""
+    return deformation, True, f"{name} is finite{exceptions_text}"

@@ -30,10 +30,10 @@ class CriticalityTask(HopfPointTask):
         return points_clause(self.points, f"searched from F = 0 to {F_max:g}{crushing_clause(self.config)}")
 
     def option_rows(self) -> list[CheckRow]:
-        most = self.config.criticality.crossings
+        max_thresholds = self.config.criticality.crossings
         return [
             self.AXIAL_DRAG_ROW,
-            ("Hopf points and their normal forms", True, f"at most {most} are stored for each rod"),
+            ("Hopf points and their normal forms", True, f"at most {max_thresholds} are stored for each rod"),
             ("cycles", False, "only to third order in the amplitude; task: limit_cycle computes cycles"),
         ]
 
@@ -42,10 +42,10 @@ class CriticalityTask(HopfPointTask):
         return {"F": np.array([self.config.criticality.F_max])}
 
     def cost(self) -> CostEstimate:
-        of_arms = not self.config.is_uniform_and_linear
-        found = criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
-        more = soft_searches_seconds(self.points, (0.0, self.config.criticality.F_max), of_arms)
-        return replace(found, seconds=found.seconds + more)
+        is_varying = not self.config.is_uniform_and_linear
+        search_estimate = criticality_cost(self.points.count, self.config.criticality.certify, is_varying)
+        soft_seconds = soft_searches_seconds(self.points, (0.0, self.config.criticality.F_max), is_varying)
+        return replace(search_estimate, seconds=search_estimate.seconds + soft_seconds)
 
     def solver(self) -> Solver:
         from ..solve.hopf.criticality import CriticalityRequest, solve_criticality, warm_up

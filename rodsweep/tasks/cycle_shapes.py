@@ -84,14 +84,14 @@ def _job_of_point(view: View, number: int) -> Job:
     }
     if stored["start"] != "hopf":
         options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
-    tree = {
+    document = {
         "task": "limit_cycle",
         "parameters": _parameters_of_point(view.as_list, number),
         "accuracy": view.config["accuracy"],
         "limit_cycle": options,
     }
-    tree |= {"material": view.config["material"]} if "material" in view.config else {}
-    return job_of_config(Path(view.path.name), validated_config(tree), tree)
+    document |= {"material": view.config["material"]} if "material" in view.config else {}
+    return job_of_config(Path(view.path.name), validated_config(document), document)
 
 
 def _parameters_of_point(view: View, number: int) -> dict[str, Any]:
@@ -99,12 +99,12 @@ def _parameters_of_point(view: View, number: int) -> dict[str, Any]:
     and its follower force, with the parameters that the file's config gives in addition to the arm. number:
     number of the point, from 1.
     """
-    own = {name: float(column[number - 1]) for name, column in view.point_columns.items()}
-    given = view.config["parameters"]
-    if "arm" not in given:
-        return own
+    point_values = {name: float(column[number - 1]) for name, column in view.point_columns.items()}
+    section = view.config["parameters"]
+    if "arm" not in section:
+        return point_values
     arm: dict[str, Any] = {}
-    for key, value in given["arm"].items():
+    for key, value in section["arm"].items():
         if key in LOAD_KEYS:
             continue
         # An axis of a quantity; the names of a law, a section or segments are no axes.
@@ -112,4 +112,6 @@ def _parameters_of_point(view: View, number: int) -> dict[str, Any]:
         arm[key] = value if values is None else float(values[number - 1 if values.size > 1 else 0])
     if "drag" in arm:
         arm["drag"] = DRAG_NAMES[int(arm["drag"])]
-    return {name: value for name, value in own.items() if name == "F" or name in given} | {"arm": arm}
+    return {name: value for name, value in point_values.items() if name == "F" or name in section} | {
+        "arm": arm
+    }

@@ -55,9 +55,9 @@ class LimitCycleTask(Task):
 
     def __post_init__(self) -> None:
         if self.config.limit_cycle.time == "tau1":
-            why = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
-            require_in_range(ALLOWED_K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", why)
-            require_in_range(ALLOWED_GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", why)
+            reason = ", because tau1 = gamma3/k2 is the unit of time that limit_cycle.time asks for"
+            require_in_range(ALLOWED_K2_WITH_TAU1, "k2", self.points.rod_values["k2"], "", reason)
+            require_in_range(ALLOWED_GAMMA3_WITH_TAU1, "gamma3", self.points.rod_values["gamma3"], "", reason)
 
     @property
     def chains(self) -> Chains | None:
@@ -96,11 +96,12 @@ class LimitCycleTask(Task):
             start = "the nearest Hopf point below its force"
         if chains is None:
             return points_clause(self.points, f"started from {start}")
-        chained = f"{counted(chains.count, 'chain')} of {chains.length}"
+        chains_text = f"{counted(chains.count, 'chain')} of {chains.length}"
         return (
-            f"{points_text(self.points)} in {chained}, {options.direction} in {self.config.chain_parameter}: "
-            "each starts from its neighbour's cycle; the first point, and a point whose neighbour has no "
-            f"cycle, starts from {start}; at most {counted(chains.count, 'rank')} can share the work"
+            f"{points_text(self.points)} in {chains_text}, {options.direction} in "
+            f"{self.config.chain_parameter}: each starts from its neighbour's cycle; the first point, and a "
+            f"point whose neighbour has no cycle, starts from {start}; at most "
+            f"{counted(chains.count, 'rank')} can share the work"
         )
 
     def arms_line(self) -> str:
@@ -147,27 +148,27 @@ class LimitCycleTask(Task):
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
-    def _stored_values_row(self, what: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
+    def _stored_values_row(self, description: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
         """Row of `check` on variables that are stored only on request, with number and size of the stored
         values.
 
-        what: description of the variables. option: name of the option of limit_cycle with the number of
-        values per point.
+        description: description of the variables. option: name of the option of limit_cycle with the number
+        of values per point.
         """
         options = self.config.limit_cycle
-        each: int = getattr(options, option)
-        if not each:
-            return what, False, f"limit_cycle.{option} stores them"
-        values = self.points.count * each * len(variables) * (options.nodes if option == "shapes" else 1)
+        count: int = getattr(options, option)
+        if not count:
+            return description, False, f"limit_cycle.{option} stores them"
+        values = self.points.count * count * len(variables) * (options.nodes if option == "shapes" else 1)
         nodes = f" on {options.nodes} nodes" if option == "shapes" else ""
-        total = self.points.count * each
-        return what, True, f"{each} per point{nodes}, {total} in total: {8e-6 * values:.3g} MB"
+        total = self.points.count * count
+        return description, True, f"{count} per point{nodes}, {total} in total: {8e-6 * values:.3g} MB"
 
     def cost(self) -> CostEstimate:
         if self.config.limit_cycle.method == "integration":
             return marched_cycles_cost(self.points.count, self.config.accuracy)
-        first = self.chains.count if self.chains else self.points.count
-        return cycles_cost(self.points, first)
+        count = self.chains.count if self.chains else self.points.count
+        return cycles_cost(self.points, count)
 
     def solver(self) -> Solver:
         from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle
@@ -176,11 +177,11 @@ class LimitCycleTask(Task):
 
         request = self.cycle_request()
         chains = self.chains
-        along = self.config.chain_parameter if chains else None
+        chain_parameter = self.config.chain_parameter if chains else None
         workspace = NewtonWorkspace()
 
         def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
-            return solve_cycle(self.points.rod(index), request, start, along, workspace)
+            return solve_cycle(self.points.rod(index), request, start, chain_parameter, workspace)
 
         def solve_from(index: int, start: "Neighbour | None") -> "tuple[Cycle, Neighbour | None]":
             cycle = solve(index, start)
@@ -214,9 +215,9 @@ class LimitCycleTask(Task):
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
-        found = cycle.multipliers
+        multipliers = cycle.multipliers
         unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
-        stored = SimpleNamespace(multipliers=unknown if found is None else found)
+        stored = SimpleNamespace(multipliers=unknown if multipliers is None else multipliers)
         values = outcome_values(
             CYCLE_VARIABLES, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
         )

@@ -50,10 +50,10 @@ class ModesTask(CertifiedTask):
 
     def option_rows(self) -> list[CheckRow]:
         growth = self.config.modes.growth
-        why = "in the norm of the dissipation" if growth else "modes.growth: false"
+        norm_text = "in the norm of the dissipation" if growth else "modes.growth: false"
         return [
             ("transverse modes and their adjoints", True, "task: modes"),
-            ("transient growth, numerical abscissa", growth, why),
+            ("transient growth, numerical abscissa", growth, norm_text),
             ("longitudinal modes", False, "they decouple; the task spectrum has them"),
         ]
 
@@ -78,10 +78,10 @@ class ModesTask(CertifiedTask):
         request = ModesRequest(
             options.modes, self.config.accuracy, options.nodes, options.growth, options.certify
         )
-        first = ModesRequest(2, 1e-4, 9, options.growth, True)
+        warm_up_request = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
             statuses=tuple(SpectrumStatus),
-            warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), first),
+            warm_up=lambda: solve_modes(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4), warm_up_request),
             solve=lambda index: solve_modes(self.points.rod(index), request),
             record=lambda index, result: mode_values(result, options.growth),
         )

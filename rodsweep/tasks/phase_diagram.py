@@ -96,15 +96,19 @@ class PhaseDiagramTask(CertifiedTask):
 
     def cost(self) -> CostEstimate:
         options = self.config.phase_diagram
-        of_arms = not self.config.is_uniform_and_linear
-        asked = options.certify, of_arms, options.curves, options.criticality
-        lines = diagram_cost(self.points.count, *asked)
-        reach = (float(self.line_values[0]), float(self.line_values[-1]))
+        is_varying = not self.config.is_uniform_and_linear
+        requested = options.certify, is_varying, options.curves, options.criticality
+        lines = diagram_cost(self.points.count, *requested)
+        line_range = (float(self.line_values[0]), float(self.line_values[-1]))
         if self.config.plane_parameters[0] == "F":
-            lines = replace(lines, seconds=lines.seconds + soft_searches_seconds(self.points, reach, of_arms))
+            lines = replace(
+                lines, seconds=lines.seconds + soft_searches_seconds(self.points, line_range, is_varying)
+            )
         if not options.cycles:
             return lines
-        branches = branches_cost(self.points, self.config.plane_parameters[0], reach, options.cycle_accuracy)
+        branches = branches_cost(
+            self.points, self.config.plane_parameters[0], line_range, options.cycle_accuracy
+        )
         return replace(branches, seconds=lines.seconds + branches.seconds)
 
     def solver(self) -> Solver:
@@ -117,7 +121,7 @@ class PhaseDiagramTask(CertifiedTask):
         request = self.row_request()
         workspace = NewtonWorkspace()
         curves = DiagramCurves(self, workspace)
-        of_rows = Solver(
+        row_solver = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
             solve=lambda index: solve_row(self.rod_of_row(index), request),
@@ -125,12 +129,12 @@ class PhaseDiagramTask(CertifiedTask):
             sweep_wide_solver=curves if options.curves else None,
         )
         if not options.cycles:
-            return of_rows
+            return row_solver
         from ..solve.branch.branches import warm_up as warm_up_branches
         from ..solve.branch.status import CoexistenceStatus
 
         return replace(
-            of_rows,
+            row_solver,
             statuses=tuple(CoexistenceStatus),
             warm_up=warm_up_branches,
             solve=lambda index: curves.cache_row(index, self.coexistence_row(index, workspace)),

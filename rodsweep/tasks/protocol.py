@@ -61,9 +61,9 @@ class SweepWideSolver(Protocol):
         view: the file with all points. results: results of work items so far, by number.
         """
 
-    def initial_data(self, items: Any, chosen: Sequence[int]) -> dict[Any, Any]:
-        """Initial data, by key, that this rank has cached for the work items numbered `chosen` of `items`, to
-        be sent to all ranks.
+    def initial_data(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
+        """Initial data, by key, that this rank has cached for the work items numbered `item_numbers` of
+        `items`, to be sent to all ranks.
         """
 
     def add_initial_data(self, starts: Mapping[Any, Any]) -> None:
@@ -113,12 +113,12 @@ class Solver:
 
         solve_stretch: new function that solves a stretch, if the solver has stretches.
         """
-        chained = self.chained
+        wrapped = self.chained
         stretched = self.stretched
-        if chained is not None:
-            step = chained.solve_from
-            chained = replace(
-                chained,
+        if wrapped is not None:
+            step = wrapped.solve_from
+            wrapped = replace(
+                wrapped,
                 solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
             )
         if stretched is not None and solve_stretch is not None:
@@ -127,7 +127,7 @@ class Solver:
         def solve(index: int) -> Any:
             return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
-        return replace(self, solve=solve, chained=chained, stretched=stretched, **changed)
+        return replace(self, solve=solve, chained=wrapped, stretched=stretched, **changed)
 
 
 def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:

@@ -58,8 +58,8 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
 
     rod = job.points.rod(0)
     beam = Beam(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
-    z = np.zeros(beam.unknown_count) if tip is None else bent_state_with_tip_at(beam, *tip)
-    shape: Array = beam.shape(z)[:2] @ beam.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
+    state = np.zeros(beam.unknown_count) if tip is None else bent_state_with_tip_at(beam, *tip)
+    shape: Array = beam.shape(state)[:2] @ beam.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
     return shape
 
 

@@ -69,15 +69,15 @@ class PortraitRequest:
         the task.
         """
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
-        own = self.rod.parameters
-        values: dict[str, Any] = {name: own[name] for name in names if name in own and name != "F"}
+        given = self.rod.parameters
+        values: dict[str, Any] = {name: given[name] for name in names if name in given and name != "F"}
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
-        tree: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
-        tree |= {"material": dict(self.rod.material)} if self.rod.material else {}
+        document: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
+        document |= {"material": dict(self.rod.material)} if self.rod.material else {}
         accuracy = default_accuracy if self.accuracy is None else self.accuracy
-        tree |= {} if accuracy is None else {"accuracy": accuracy}
-        return job_of_config(Path(task), validated_config(tree), tree)
+        document |= {} if accuracy is None else {"accuracy": accuracy}
+        return job_of_config(Path(task), validated_config(document), document)
 
 
 def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodResults:
@@ -99,8 +99,11 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
             missing.setdefault(task, str(error))
             return None
 
-    own = request.branch_options
-    for task, options, accuracy in (("criticality", F_max, None), ("branch", own, BRANCH_ACCURACY)):
+    branch_options = request.branch_options
+    for task, options, accuracy in (
+        ("criticality", F_max, None),
+        ("branch", branch_options, BRANCH_ACCURACY),
+    ):
         if (view := solved(task, options, default_accuracy=accuracy)) is not None:
             views[task] = view
     modes = {
@@ -116,29 +119,24 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
         reason = missing.get("branch", "no stable cycle lies on a branch from a Hopf point")
         missing.setdefault("limit_cycle", reason)
     return RodResults(
-        rod=request.rod,
-        F_max=request.F_max,
-        views=views,
-        modes=modes,
-        cycles=cycles,
-        missing=missing,
+        rod=request.rod, F_max=request.F_max, views=views, modes=modes, cycles=cycles, missing=missing
     )
 
 
-def _cycle_at_force(solved: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
+def _cycle_at_force(solve: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
     """The limit cycle at the force F, solved from the Hopf point or, if no cycle is found, from a large
     deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
     gave None.
 
-    solved: function (task, options, F) that solves a task, and returns None for invalid input.
+    solve: function (task, options, F) that solves a task, and returns None for invalid input.
     """
-    found = None
+    result = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
-        view = solved("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)
+        view = solve("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)
         if view is not None and np.isfinite(view.variables["period"]).all():
             return view
-        found = found or view
-    return found
+        result = result or view
+    return result
 
 
 def first_threshold_forces(thresholds: View) -> dict[str, float]:
@@ -146,12 +144,12 @@ def first_threshold_forces(thresholds: View) -> dict[str, float]:
     drawn.
     """
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
-    found = {}
+    first_forces = {}
     for kind in MODE_THRESHOLD_KINDS:
-        places = np.flatnonzero(kinds == CROSSING_KINDS.index(kind))
-        if len(places):
-            found[kind] = float(forces[places[0]])
-    return found
+        indices = np.flatnonzero(kinds == CROSSING_KINDS.index(kind))
+        if len(indices):
+            first_forces[kind] = float(forces[indices[0]])
+    return first_forces
 
 
 def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
@@ -162,13 +160,13 @@ def cycle_forces(ranges: Sequence[ParameterRange]) -> list[float]:
     if not ranges:
         return []
     lengths = np.array([high - low for low, high in ranges])
-    before = np.concatenate([[0.0], np.cumsum(lengths)])
+    cumulated = np.concatenate([[0.0], np.cumsum(lengths)])
     forces = []
     for fraction in CYCLE_FRACTIONS:
-        along = fraction * before[-1]
-        number = min(int(np.searchsorted(before, along, side="right")) - 1, len(ranges) - 1)
+        position = fraction * cumulated[-1]
+        number = min(int(np.searchsorted(cumulated, position, side="right")) - 1, len(ranges) - 1)
         low, high = ranges[number]
-        force = float(low + along - before[number])
-        short = float(f"{force:.3g}")
-        forces.append(short if low < short < high else force)
+        force = float(low + position - cumulated[number])
+        rounded = float(f"{force:.3g}")
+        forces.append(rounded if low < rounded < high else force)
     return forces

@@ -77,17 +77,17 @@ class SpectrumTask(CertifiedTask):
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
-        along, shape, columns = self._longitudinal_points()
+        dimensions, shape, columns = self._longitudinal_points()
         modes = self.config.spectrum.modes
-        in_closed_form = self.config.is_uniform_and_linear
-        variables = longitudinal_variables(gamma1, *along, in_closed_form=in_closed_form)
-        if in_closed_form:
+        is_closed_form = self.config.is_uniform_and_linear
+        variables = longitudinal_variables(gamma1, *dimensions, is_closed_form=is_closed_form)
+        if is_closed_form:
             rates = [longitudinal_eigenvalues(float(k1), gamma1, modes) for k1 in columns["k1"]]
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]
-        found = np.array(in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.build, modes)))
-        return tuple((variable, found[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
+        table = np.array(in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.build, modes)))
+        return tuple((variable, table[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
         """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ.
@@ -97,12 +97,12 @@ class SpectrumTask(CertifiedTask):
         """
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
-        depends_on = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
-        names = [name for name in depends_on if name in points.columns_by_name]
+        parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
+        names = [name for name in parameter_names if name in points.columns_by_name]
         columns = {name: points.columns_by_name[name] for name in names}
         if points.arm_axes or not points.is_grid:
-            along = tuple(points.arm_axes) or ("point",)
-            return along, points.shape, {name: column.ravel() for name, column in columns.items()}
+            dimensions = tuple(points.arm_axes) or ("point",)
+            return dimensions, points.shape, {name: column.ravel() for name, column in columns.items()}
         grid = np.meshgrid(*columns.values(), indexing="ij")
         return tuple(names), grid[0].shape, dict(zip(names, (each.ravel() for each in grid), strict=True))
 
@@ -148,10 +148,10 @@ class SpectrumTask(CertifiedTask):
         if options.method == "krylov_schur":
             return two_meshes_cost(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
-        alone = spectra_cost(self.points, options.modes, accuracy, self.config.certifies)
+        unfollowed = spectra_cost(self.points, options.modes, accuracy, self.config.certifies)
         if self.stretches is None:
-            return alone
-        return followed_spectra_cost(alone, self.stretches, self.points, options.modes)
+            return unfollowed
+        return followed_spectra_cost(unfollowed, self.stretches, self.points, options.modes)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following
@@ -184,10 +184,12 @@ class SpectrumTask(CertifiedTask):
 
         stretches = self.stretches
         assert stretches is not None
-        varied = self.points.varying_parameters[stretches.axis]
-        path = Path(self.points.rod(int(indices[0])), varied)
-        found = follow_spectra(NeighbouringRods(path, self.points.values_of(indices)[varied]), request)
-        return StretchResult(spectrum_values(found.spectra), found.is_solved)
+        followed_parameter = self.points.varying_parameters[stretches.axis]
+        path = Path(self.points.rod(int(indices[0])), followed_parameter)
+        followed = follow_spectra(
+            NeighbouringRods(path, self.points.values_of(indices)[followed_parameter]), request
+        )
+        return StretchResult(spectrum_values(followed.spectra), followed.is_solved)
 
 
 def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
@@ -206,7 +208,7 @@ def spectrum_values(result: "Spectrum") -> dict[str, Any]:
     """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
     values = outcome_values(MODE_VARIABLES + FOLLOWED_POINT_VARIABLES, result)
     if result.vectors is not None:
-        for field, vector in zip(("Y", "Theta"), result.vectors, strict=True):
-            values[f"{field}_real"] = vector.real
-            values[f"{field}_imag"] = vector.imag
+        for field, component in zip(("Y", "Theta"), result.vectors, strict=True):
+            values[f"{field}_real"] = component.real
+            values[f"{field}_imag"] = component.imag
     return values

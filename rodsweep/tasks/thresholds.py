@@ -36,14 +36,14 @@ class ThresholdsTask(CertifiedTask):
     count_location: ClassVar[str] = "line"
 
     def headline(self) -> str:
-        until = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
-        return points_clause(self.points, f"searched from F = 0 to {until}")
+        end_text = f"{self.config.thresholds.F_max:g}{crushing_clause(self.config)}"
+        return points_clause(self.points, f"searched from F = 0 to {end_text}")
 
     def option_rows(self) -> list[CheckRow]:
-        most = self.config.thresholds.crossings
+        max_thresholds = self.config.thresholds.crossings
         return [
             ("onset, Hopf points, restabilization", True, "task: thresholds"),
-            ("all other crossings", True, f"at most {most} are stored for each point"),
+            ("all other crossings", True, f"at most {max_thresholds} are stored for each point"),
         ]
 
     def searched_ranges(self) -> dict[str, np.ndarray]:
@@ -51,9 +51,9 @@ class ThresholdsTask(CertifiedTask):
         return {"F": np.array([self.config.thresholds.F_max])}
 
     def cost(self) -> CostEstimate:
-        of_arms = not self.config.is_uniform_and_linear
+        is_varying = not self.config.is_uniform_and_linear
         options = self.config.thresholds
-        return thresholds_cost(self.points, options.F_max, options.certify, of_arms)
+        return thresholds_cost(self.points, options.F_max, options.certify, is_varying)
 
     def solver(self) -> Solver:
         from ..solve.changes.status import ThresholdStatus
@@ -81,16 +81,17 @@ def threshold_values(result: "Thresholds", max_crossings: int) -> dict[str, Any]
 
 
 def crossing_values(
-    result: "Thresholds | Criticality", max_crossings: int, line: str, at: str
+    result: "Thresholds | Criticality", max_crossings: int, line: str, position_name: str
 ) -> dict[str, Any]:
     """Variables of the file for a search for crossings along the parameter `line`.
 
-    max_crossings: length of the list of crossings. at: name of the variable with the parameter value at a
-    crossing."""
+    max_crossings: length of the list of crossings. position_name: name of the variable with the parameter
+    value at a crossing."""
     found = result.search_result
-    variables = crossing_variables(line, at)
+    variables = crossing_variables(line, position_name)
     rows = [
-        outcome_values(variables, each, prefix="crossing_", names={at: "value"}) for each in found.thresholds
+        outcome_values(variables, threshold, prefix="crossing_", names={position_name: "value"})
+        for threshold in found.thresholds
     ]
     return value_lists(variables, rows, max_crossings) | {
         "crossing_count": -1 if result.status == type(result.status).failed else len(found.thresholds),

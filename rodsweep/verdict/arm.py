@@ -52,9 +52,9 @@ class ArmReport:
             yield _wrapped(sentence), "" if number else "headline"
         yield "", ""
         for name, value, formula, source in self.rows:
-            place = " " * VALUE_COLUMN
+            indent = " " * VALUE_COLUMN
             yield f"{name:{VALUE_COLUMN}}{value}", ""
-            yield _wrapped(f"{formula}; {source}", place, place + "  "), ""
+            yield _wrapped(f"{formula}; {source}", indent, indent + "  "), ""
         yield BRACKETS_NOTE, ""
         yield "", ""
         for check in self.checks:
@@ -64,9 +64,9 @@ class ArmReport:
         warnings = "".join(f"<p>{escape(check.text)}</p>" for check in self.warnings)
         headline, *others = map(escape, self.verdict)
         verdict = f"<p><b>{headline}</b> {' '.join(others)}</p>"
-        head = "".join(f"<th>{name}</th>" for name in ("quantity", "value", "formula", "source"))
+        header_row = "".join(f"<th>{name}</th>" for name in ("quantity", "value", "formula", "source"))
         cells = ("".join(f"<td>{escape(cell)}</td>" for cell in row) for row in self.rows)
-        table = f"<table><tr>{head}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+        table = f"<table><tr>{header_row}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
         checks = "".join(f"<li>{escape(check.text)}</li>" for check in self.checks)
         return f"{warnings}{verdict}{table}<p>{BRACKETS_NOTE}</p><ul>{checks}</ul>"
 
@@ -76,24 +76,25 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     relative to the flutter load and the arm does not flutter.
     """
     planes = with_absolute_load(planes_of(arm))
-    first = planes.first
-    assessment = Assessment(first.arm, first.thresholds)
+    first_plane = planes.first
+    assessment = Assessment(first_plane.arm, first_plane.thresholds)
     checks = checks_of(assessment)
-    applies = assessment.validity_of_verdict < Validity.does_not_apply
-    above = tuple(check for check in checks if applies and check.makes_verdict_doubtful)
+    is_applicable = assessment.validity_of_verdict < Validity.does_not_apply
+    doubtful_checks = tuple(check for check in checks if is_applicable and check.makes_verdict_doubtful)
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()
-        others.insert(0, f"{LoadFormatter(first.arm).typed_text} is {load} with the likeliest drag.")
+        others.insert(0, f"{LoadFormatter(first_plane.arm).typed_text} is {load} with the likeliest drag.")
     return ArmReport(
         validity=assessment.validity_of_verdict,
-        warnings=above,
+        warnings=doubtful_checks,
         verdict=(headline, *others),
-        rows=tuple(number_rows(first)),
-        checks=tuple(check for check in checks if check not in above),
+        rows=tuple(number_rows(first_plane)),
+        checks=tuple(check for check in checks if check not in doubtful_checks),
     )
 
 
-def _wrapped(text: str, first: str = "", further: str = "  ") -> str:
-    """`text` wrapped to LINE_WIDTH. first, further: indents of the first line and of the following lines."""
-    return textwrap.fill(text, LINE_WIDTH, initial_indent=first, subsequent_indent=further)
+def _wrapped(text: str, first_indent: str = "", other_indent: str = "  ") -> str:
+    """`text` wrapped to LINE_WIDTH. first_indent, other_indent: indents of the first line and of the
+    following lines."""
+    return textwrap.fill(text, LINE_WIDTH, initial_indent=first_indent, subsequent_indent=other_indent)

@@ -67,8 +67,8 @@ class Assessment:
         """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
         arm flutters for no drag.
         """
-        first = first_hopf_point(self.thresholds)
-        return None if first is None else first.value
+        change = first_hopf_point(self.thresholds)
+        return None if change is None else change.value
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -89,29 +89,29 @@ class Assessment:
         """Neglected effects with the given validity, in decreasing order of their ratio to the limit. Effects
         on cycles alone are left out.
         """
-        counted = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
-        return sorted(counted, key=lambda effect: -float(effect.value_over_limit))
+        effects = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
+        return sorted(effects, key=lambda effect: -float(effect.value_over_limit))
 
 
-def first_hopf_point(found: ThresholdsOverDrags) -> Threshold | None:
+def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
     drag.
     """
-    return next((each for c in found.by_drag if (each := c.first_threshold(ChangeKind.hopf))), None)
+    return next((change for c in thresholds.by_drag if (change := c.first_threshold(ChangeKind.hopf))), None)
 
 
-def effects_at_flutter(arm: SlenderArm, found: ThresholdsOverDrags) -> tuple[Effect, ...]:
-    """Neglected effects at the first flutter in `found`, for the most likely drag for which the arm flutters;
-    the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are NaN if the
-    arm does not flutter.
+def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tuple[Effect, ...]:
+    """Neglected effects at the first flutter in `thresholds`, for the most likely drag for which the arm
+    flutters; the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are
+    NaN if the arm does not flutter.
     """
-    first = first_hopf_point(found)
-    if first is None:
+    change = first_hopf_point(thresholds)
+    if change is None:
         return neglected_effects(arm, nan, nan)
     return neglected_effects(
         arm,
-        angular_frequency_at_smallest_drag(arm, abs(first.frequency)),
-        equivalent_base_force(arm, first.value),
+        angular_frequency_at_smallest_drag(arm, abs(change.frequency)),
+        equivalent_base_force(arm, change.value),
     )
 
 
@@ -135,24 +135,22 @@ def thickness_factor(arm: SlenderArm) -> float:
         return nan
     factor = 1.0
     for _ in range(MAX_THINNING_ITERATIONS):
-        thinner = _with_scaled_section(arm, factor)
-        found = ThresholdsOverDrags((thresholds_with_drag(thinner, thinner.drags[0]),))
-        effects = effects_at_flutter(thinner, found)
-        excess = viscosity_factor(effects)
-        if MIN_VISCOSITY_RATIO < excess <= 1.0:
-            applies = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
-            return factor if applies else nan
+        scaled_arm = _with_scaled_section(arm, factor)
+        thresholds = ThresholdsOverDrags((thresholds_with_drag(scaled_arm, scaled_arm.drags[0]),))
+        effects = effects_at_flutter(scaled_arm, thresholds)
+        factor_ = viscosity_factor(effects)
+        if MIN_VISCOSITY_RATIO < factor_ <= 1.0:
+            is_valid = worst_validity(effects, of_cycles=False) < Validity.does_not_apply
+            return factor if is_valid else nan
         # Mass times rate over drag scales as thickness^6/viscosity^2, hence thickness as viscosity^(1/3).
-        factor *= (excess / VISCOSITY_TARGET) ** (-1 / 3)
+        factor *= (factor_ / VISCOSITY_TARGET) ** (-1 / 3)
     return nan
 
 
 def _with_scaled_section(arm: SlenderArm, factor: float) -> SlenderArm:
     """The uniform arm `arm` without its load, with all sides of the section multiplied by `factor`."""
-    left_out = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
-    others = {
-        name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in left_out
-    }
+    omitted = {*LOADS, *chain(*SECTION_SIZE_NAMES)}
+    others = {name: value for name, value in vars(arm.si).items() if not isnan(value) and name not in omitted}
     # The sides are those of the section, which a uniform arm of segments has without naming a radius.
     sides = {name: factor * side for name, side in asdict(arm.cross_section).items()}
     return SlenderArm(**(others | sides), poisson=arm.poisson, law=arm.law, section=arm.section)

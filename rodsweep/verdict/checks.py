@@ -74,38 +74,37 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 def slenderness_check(arm: SlenderArm) -> Check:
     """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
     ratio = arm.si.length / arm.shape.largest_drag_radius
-    fine = ratio >= MIN_SLENDERNESS
-    why = (
+    is_slender = ratio >= MIN_SLENDERNESS
+    reason = (
         "slender enough for local drag"
-        if fine
+        if is_slender
         else f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     )
-    return Check(_doubtful_if(not fine), f"Slenderness: the arm is {ratio:.3g} radii long; {why}.")
+    return Check(_doubtful_if(not is_slender), f"Slenderness: the arm is {ratio:.3g} radii long; {reason}.")
 
 
 def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
-    """Check of F/k1, the compressive strain of the straight arm at its weakest section, at flutter and under
-    the load.
-    """
+    """Check of F/k1, the compressive strain of the straight arm's weakest section, at flutter and loaded."""
     if assessment.arm.law != LINEAR.law:
         return _rubber_compression_check(assessment)
-    says = []
+    texts = []
     effects = [at_flutter, *assessment.compression_under_load]
     if assessment.compression_under_load:
         verb = "shortens" if assessment.arm.F >= 0 else "lengthens"
-        says.append(f"the load {verb} the arm by {_percent_text(assessment.compression_under_load[0])}")
+        texts.append(f"the load {verb} the arm by {_percent_text(assessment.compression_under_load[0])}")
     if not isnan(at_flutter.value):
-        says.append(f"the flutter load shortens {'it' if says else 'the arm'} by {_percent_text(at_flutter)}")
+        start = "the flutter load shortens"
+        texts.append(f"{start} {'it' if texts else 'the arm'} by {_percent_text(at_flutter)}")
     validity = max(map(_validity_of_effect, effects))
-    largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if says else 0.0
-    ending = (
+    largest = max(float(effect.value) for effect in effects if not isnan(effect.value)) if texts else 0.0
+    remark = (
         "a linear law of the material is accurate",
         f"rubber is some {_one_digit_text(100 * rubber_stiffening(largest))} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
-    shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
-    where = " at the weakest section" if assessment.arm.shape.varies else ""
-    return Check(validity, f"Compression: {shares} (F/k1){where}; {ending}.", can_change_verdict=True)
+    shortening = " and ".join(texts) or "neither a load nor a flutter load shortens the arm"
+    place = " at the weakest section" if assessment.arm.shape.varies else ""
+    return Check(validity, f"Compression: {shortening} (F/k1){place}; {remark}.", can_change_verdict=True)
 
 
 def _rubber_compression_check(assessment: "Assessment") -> Check:
@@ -113,23 +112,23 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     valid for large strains.
     """
     arm = assessment.arm
-    says = []
+    texts = []
     flutter = assessment.force_at_flutter
     if arm.load is not None:
-        says.append(f"the load shortens the arm by {100 * _weakest_section_shortening(arm, arm.F):.2g} %")
+        texts.append(f"the load shortens the arm by {100 * _weakest_section_shortening(arm, arm.F):.2g} %")
     if flutter is not None:
-        shortens = "the flutter load shortens it" if says else "the flutter load shortens the arm"
-        says.append(f"{shortens} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
-    shares = " and ".join(says) or "neither a load nor a flutter load shortens the arm"
-    where = " at the weakest section" if arm.shape.varies else ""
+        shortens = "the flutter load shortens it" if texts else "the flutter load shortens the arm"
+        texts.append(f"{shortens} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
+    shortening = " and ".join(texts) or "neither a load nor a flutter load shortens the arm"
+    place = " at the weakest section" if arm.shape.varies else ""
     return Check(
-        Validity.applies, f"Compression: {shares}{where}; the law of rubber includes large compression."
+        Validity.applies, f"Compression: {shortening}{place}; the law of rubber includes large compression."
     )
 
 
 def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
-    smallest = min(each.young * each.section.area for each in arm.shape.stations)
+    smallest = min(station.young * station.section.area for station in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
     return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
 
@@ -154,15 +153,15 @@ def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity_of_effect, (of_arm, of_fluid)))
-    lowered = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
-    ending = (
+    percent = 100 * THRESHOLD_DECREASE_BY_INERTIA * float(of_arm.value + of_fluid.value)
+    remark = (
         "neither matters",
-        f"they lower the threshold of flutter by some {_one_digit_text(lowered)} %",
+        f"they lower the threshold of flutter by some {_one_digit_text(percent)} %",
         f"the model neglects both and applies only up to {of_arm.limit:g}",
     )[validity]
     sentence = (
         f"Inertia: at flutter mass times rate over drag is {float(of_arm.value):.2g} for the arm and "
-        f"{float(of_fluid.value):.2g} for the fluid beside it; {ending}."
+        f"{float(of_fluid.value):.2g} for the fluid beside it; {remark}."
     )
     return [Check(validity, sentence, can_change_verdict=True)]
 
@@ -174,13 +173,13 @@ def reynolds_checks(number: Effect) -> list[Check]:
     if isnan(number.value):
         return []
     validity = _validity_of_effect(number)
-    ending = (
+    remark = (
         "the drag law of slow flow applies",
         "at wide beating the drag is somewhat larger than in the model",
         "at wide beating the drag is larger than in the model, and the beating slower",
     )[validity]
     value = f"{float(number.value):.2g}"
-    return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {ending}.")]
+    return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]
 
 
 def wall_checks(effect: Effect | None) -> list[Check]:
@@ -194,15 +193,15 @@ def tube_wall_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
     tip moves by L/2.
     """
-    lost = float(effect.value)
-    loses = f"takes some {100 * lost:.2g} % of its bending stiffness" if lost < 1 else "folds the tube"
+    loss = float(effect.value)
+    result = f"takes some {100 * loss:.2g} % of its bending stiffness" if loss < 1 else "folds the tube"
     validity = _validity_of_effect(effect)
-    ending = (
+    remark = (
         "negligible",
         "the model neglects this",
         "the wall is too thin for the model, which neglects this",
     )[validity]
-    sentence = f"Wall: as the tip moves by half the length, the section flattens, which {loses}; {ending}."
+    sentence = f"Wall: as the tip moves by half the length, the section flattens, which {result}; {remark}."
     return Check(validity, sentence)
 
 
@@ -211,30 +210,30 @@ def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     unknown.
     """
     if effect is None:
-        says = "Weight: left out, as if the arm floated; give a density difference to have it checked."
-        return Check(Validity.applies, says)
-    share = float(effect.value)
+        text = "Weight: left out, as if the arm floated; give a density difference to have it checked."
+        return Check(Validity.applies, text)
+    ratio = float(effect.value)
     validity = _validity_of_effect(effect)
-    sag = SAG_AT_SELF_BUCKLING * share
+    sag = SAG_AT_SELF_BUCKLING * ratio
     level = (
         f"a level arm sags by {sag:.2g} of its length" if sag < MAX_STATED_SAG else "a level arm hangs down"
     )
-    ending = (
+    remark = (
         "negligible",
         "weight bends the arm a little, which the model neglects",
         "weight bends the arm, which the model neglects",
     )[validity]
-    upright = f"weight less buoyancy is {share:.2g} of the weight that buckles an upright arm"
-    sags = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
-    return Check(validity, f"Weight: {upright}{sags}; {ending}.", can_change_verdict=True)
+    upright = f"weight less buoyancy is {ratio:.2g} of the weight that buckles an upright arm"
+    clause = "" if arm.shape.varies else f"; {level}"  # the formula of the sag is valid for uniform arms
+    return Check(validity, f"Weight: {upright}{clause}; {remark}.", can_change_verdict=True)
 
 
 def poisson_check(arm: SlenderArm) -> Check:
     """Check of Poisson's ratio against USUAL_POISSON."""
-    fine = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
-    why = "usual for soft materials" if fine else "unusual: rubbers and gels are near 0.5"
+    usual = USUAL_POISSON[0] <= arm.poisson <= USUAL_POISSON[1]
+    reason = "usual for soft materials" if usual else "unusual: rubbers and gels are near 0.5"
     return Check(
-        _doubtful_if(not fine), f"Poisson's ratio: {arm.poisson:g}, {why}; it enters through shear only."
+        _doubtful_if(not usual), f"Poisson's ratio: {arm.poisson:g}, {reason}; it enters through shear only."
     )
 
 

@@ -52,15 +52,15 @@ class ThresholdsWithDrag:
         """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
         accuracy, or the list is not proved complete; empty if the thresholds are certain.
         """
-        found = self.thresholds
+        search = self.thresholds
         accuracy = SEARCH_REQUEST.accuracy
         if any(
-            c.error > accuracy * abs(c.value) for c in found.thresholds if c.kind in KINDS_USED_BY_VERDICT
+            c.error > accuracy * abs(c.value) for c in search.thresholds if c.kind in KINDS_USED_BY_VERDICT
         ):
             return f"a threshold misses the relative accuracy of {accuracy:g}"
-        if found.search_result.proved:
+        if search.search_result.proved:
             return ""
-        return found.message or "the list of thresholds is not proved complete"
+        return search.message or "the list of thresholds is not proved complete"
 
     def first_threshold(self, kind: ChangeKind) -> Threshold | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
@@ -68,35 +68,37 @@ class ThresholdsWithDrag:
 
     def first_frequency(self, kind: ChangeKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
-        found = self.first_threshold(kind)
-        return None if found is None else abs(found.frequency) / (2 * pi * self.tau2)
+        change = self.first_threshold(kind)
+        return None if change is None else abs(change.frequency) / (2 * pi * self.tau2)
 
     def first_force(self, kind: ChangeKind) -> float | None:
         """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
-        found = self.first_threshold(kind)
-        return None if found is None else found.value
+        change = self.first_threshold(kind)
+        return None if change is None else change.value
 
     @property
     def second_flutter_force(self) -> float | None:
         """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if the arm
         does not flutter again."""
-        back = self.first_force(ChangeKind.restabilization)
-        later = (c.value for c in self.thresholds.thresholds if c.kind == ChangeKind.hopf)
-        return None if back is None else next((F for F in later if back < F), None)
+        stable_from = self.first_force(ChangeKind.restabilization)
+        hopf_forces = (c.value for c in self.thresholds.thresholds if c.kind == ChangeKind.hopf)
+        return None if stable_from is None else next((F for F in hopf_forces if stable_from < F), None)
 
     def is_unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
         stability at this end is returned.
         """
-        before = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
-        return bool(before) and before[-1] != 0
+        counts = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
+        return bool(counts) and counts[-1] != 0
 
     def up_to(self, end: float) -> "ThresholdsWithDrag":
         """A copy without the thresholds at forces larger than `end`."""
-        found = self.thresholds
-        crossings = tuple(c for c in found.thresholds if c.value <= end)
-        cut = replace(found, search_result=replace(found.search_result, thresholds=crossings), end=end)
-        return replace(self, thresholds=cut)
+        result = self.thresholds
+        crossings = tuple(c for c in result.thresholds if c.value <= end)
+        shortened = replace(
+            result, search_result=replace(result.search_result, thresholds=crossings), end=end
+        )
+        return replace(self, thresholds=shortened)
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +126,7 @@ class ThresholdsOverDrags:
         not fail.
         """
         failed = [f.thresholds for f in self.by_drag if not f.is_usable]
-        return sorted({t.message or t.status.sentence for t in failed})
+        return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed})
 
     @property
     def doubts(self) -> list[str]:
@@ -178,11 +180,11 @@ def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
     The search with the most likely drag sets this force. If a search stops at a smaller force, this smaller
     force is used for all drags.
     """
-    likeliest, *others = arm.drags
-    end, first = _first_search(arm, likeliest)
-    found = (first, *(thresholds_with_drag(arm, drag, end) for drag in others))
-    common = min(forces.thresholds.end for forces in found)
-    return ThresholdsOverDrags(tuple(forces.up_to(common) for forces in found))
+    likeliest_drag, *others = arm.drags
+    end, first_result = _first_search(arm, likeliest_drag)
+    results = (first_result, *(thresholds_with_drag(arm, drag, end) for drag in others))
+    common_end = min(forces.thresholds.end for forces in results)
+    return ThresholdsOverDrags(tuple(forces.up_to(common_end) for forces in results))
 
 
 def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDrag]:
@@ -193,9 +195,9 @@ def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDra
     """
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
-        found = thresholds_with_drag(arm, drag, end)
-        flutter = found.first_force(ChangeKind.hopf)
-        reached = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
-        if MIN_SEARCH_RATIO * reached <= end or found.thresholds.end < end:
+        thresholds = thresholds_with_drag(arm, drag, end)
+        flutter = thresholds.first_force(ChangeKind.hopf)
+        min_end = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
+        if MIN_SEARCH_RATIO * min_end <= end or thresholds.thresholds.end < end:
             break
-    return end, found
+    return end, thresholds

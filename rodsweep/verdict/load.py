@@ -20,17 +20,17 @@ class LoadFormatter:
     def __init__(self, arm: SlenderArm):
         self.name = arm.load or "pressure"
         """Key of the load, "pressure" or "force"; "pressure" if the user gave no load."""
-        given = getattr(arm, self.name)
+        typed = getattr(arm, self.name)
         si = UNITS[self.name][0]
         self.unit = (
-            unit_of(given, si)
-            if given is not None
+            unit_of(typed, si)
+            if typed is not None
             else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
         """Unit in which loads are printed: the user's unit, or a prefixed SI unit if the user gave no load.
         """
         self.typed_text = (
-            "" if given is None else _shortened_load(given, float(getattr(arm.si, self.name)), si)
+            "" if typed is None else _shortened_load(typed, float(getattr(arm.si, self.name)), si)
         )
         """The load as the user typed it, rounded by `_shortened_load` if long; empty if the arm has no
         load."""
@@ -47,13 +47,13 @@ class LoadFormatter:
         return f"{three_digits_rounded_down(F * self.load_at_unit_force)} {self.unit}"
 
 
-def _shortened_load(given: object, value: float, si: str) -> str:
-    """The load `given` as text: as the user typed it, or rounded to four digits if its number is long. A load
+def _shortened_load(load: object, value: float, si: str) -> str:
+    """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A load
     given as a number is written in the SI unit `si`, in which it is `value`.
     """
-    if not isinstance(given, str):
+    if not isinstance(load, str):
         return f"{value:.4g} {si}"
-    number = given.split()[0]
+    number = load.split()[0]
     if len(number) <= MAX_TYPED_LENGTH:
-        return given.strip()
-    return f"{split_quantity(given)[0]:.4g} {split_quantity(given)[1]}"
+        return load.strip()
+    return f"{split_quantity(load)[0]:.4g} {split_quantity(load)[1]}"

@@ -45,8 +45,8 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
     """
     if not plane.name:
         return []
-    sides = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
-    return [NumberRow("motion", f"in {plane.name}", sides, "where the arm flutters first")]
+    sizes = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
+    return [NumberRow("motion", f"in {plane.name}", sizes, "where the arm flutters first")]
 
 
 def shape_rows(arm: SlenderArm) -> list[NumberRow]:
@@ -60,9 +60,9 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
     elif arm.shape.varies:
         start = 0.0
         for number, station in enumerate(arm.shape.stations, 1):
-            place = f"u = {start:.4g} to {station.end:.4g}"
+            interval = f"u = {start:.4g} to {station.end:.4g}"
             source = "all other rows are for segment 1" if number == 1 else "drag by its own radius"
-            rows.append(NumberRow(f"segment {number}", place, station_phrase(station), source))
+            rows.append(NumberRow(f"segment {number}", interval, station_phrase(station), source))
             start = station.end
     if arm.law != LINEAR.law:
         rows.append(NumberRow("law", law_phrase(arm), LAW_FORMULA, "E is the modulus at small strain"))
@@ -87,9 +87,11 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     """Row with the tip force; an empty list for an arm without load."""
     if arm.load is None:
         return []
-    of_tip = " of the tip" if arm.shape.varies else ""
+    tip_clause = " of the tip" if arm.shape.varies else ""
     formula = (
-        f"{arm.shape.tip.section.pressure_force_formula}{of_tip}" if arm.load == "pressure" else "as given"
+        f"{arm.shape.tip.section.pressure_force_formula}{tip_clause}"
+        if arm.load == "pressure"
+        else "as given"
     )
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
@@ -100,8 +102,8 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
     Of two arms with tips of different size, the larger pressure may be the smaller force.
     """
-    found = plane.thresholds
-    forces = [] if found.failures else plane.flutter_load_by_drag
+    thresholds = plane.thresholds
+    forces = [] if thresholds.failures else plane.flutter_load_by_drag
     if not forces or not all(isfinite(force) for force in forces):
         return []
     value = value_with_drag_range(forces, " N")
@@ -182,11 +184,11 @@ def station_phrase(station: Station) -> str:
     """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
     inner radius 3 mm, 80 kPa".
     """
-    sides = {"radius": station.section.drag_radius}
+    sizes = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):
-        sides["inner radius"] = station.section.inner_radius
-    parts = [f"{name} {_with_si_prefix(value, 'm')}" for name, value in sides.items()]
-    return ", ".join([*parts, _with_si_prefix(station.young, "Pa")])
+        sizes["inner radius"] = station.section.inner_radius
+    texts = [f"{name} {_with_si_prefix(value, 'm')}" for name, value in sizes.items()]
+    return ", ".join([*texts, _with_si_prefix(station.young, "Pa")])
 
 
 def _with_si_prefix(value: float, si: str) -> str:

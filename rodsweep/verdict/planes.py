@@ -30,7 +30,7 @@ class PlaneOfMotion:
     @property
     def flutter_load_by_drag(self) -> list[float]:
         """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
-        forces = [each.first_force(ChangeKind.hopf) for each in self.thresholds.by_drag]
+        forces = [thresholds.first_force(ChangeKind.hopf) for thresholds in self.thresholds.by_drag]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
@@ -53,7 +53,7 @@ class Planes:
         if self.second is None:
             return True
         loads = zip(self.first.flutter_load_by_drag, self.second.flutter_load_by_drag, strict=True)
-        return all(ours <= other for ours, other in loads)
+        return all(first_load <= second_load for first_load, second_load in loads)
 
 
 def planes_of(arm: SlenderArm) -> Planes:
@@ -62,12 +62,12 @@ def planes_of(arm: SlenderArm) -> Planes:
     """
     if arm.is_equally_stiff_in_all_planes:
         return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))
-    other = with_exchanged_sides(arm)
-    own = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")
-    across = PlaneOfMotion(other, thresholds_over_drags(other), "the plane of its width")
-    if across.flutter_load_by_drag[0] < own.flutter_load_by_drag[0]:
-        return Planes(across, own)
-    return Planes(own, across)
+    exchanged = with_exchanged_sides(arm)
+    height_plane = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")
+    width_plane = PlaneOfMotion(exchanged, thresholds_over_drags(exchanged), "the plane of its width")
+    if width_plane.flutter_load_by_drag[0] < height_plane.flutter_load_by_drag[0]:
+        return Planes(width_plane, height_plane)
+    return Planes(height_plane, width_plane)
 
 
 def with_absolute_load(planes: Planes) -> Planes:
@@ -77,9 +77,9 @@ def with_absolute_load(planes: Planes) -> Planes:
     does not flutter.
     """
     first = planes.first
-    share = first.arm.share_of_flutter
+    ratio = first.arm.share_of_flutter
     load = first.arm.load
-    if share is None or load is None:
+    if ratio is None or load is None:
         return planes
     force = first.thresholds.by_drag[0].first_force(ChangeKind.hopf)
     scale = first.arm.load_scale
@@ -89,10 +89,10 @@ def with_absolute_load(planes: Planes) -> Planes:
             f"{load} = '{getattr(first.arm, load)}' cannot be computed: with the likeliest drag the arm does "
             f"not flutter up to {end}; give an absolute load"
         )
-    factor, unit = with_si_prefix(share * force * scale, UNITS[load][0])
-    given: dict[str, Any] = {load: f"{share * force * scale * factor:.15g} {unit}"}
-    second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **given))
-    return Planes(replace(first, arm=replace(first.arm, **given)), second)
+    factor, unit = with_si_prefix(ratio * force * scale, UNITS[load][0])
+    keywords: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
+    second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **keywords))
+    return Planes(replace(first, arm=replace(first.arm, **keywords)), second)
 
 
 def arm_with_absolute_load(arm: A) -> A:

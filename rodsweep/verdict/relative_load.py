@@ -65,9 +65,9 @@ def rods_by_plane(
     """
     planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
     if not arm.is_equally_stiff_in_all_planes:
-        other = with_exchanged_sides(arm)
-        scale = other.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_rod_in_its_plane(other, build, taper), scale))
+        exchanged = with_exchanged_sides(arm)
+        scale = exchanged.cross_section.second_moment / arm.cross_section.second_moment
+        planes.append((_rod_in_its_plane(exchanged, build, taper), scale))
     return planes
 
 
@@ -82,8 +82,8 @@ def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Ro
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
     section's height. build: constitutive law and profile; None for the build of the arm.
     """
-    own = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
-    return Rod(F=0.0, **own, build=build or arm.build_with_drag(drag))
+    parameters = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
+    return Rod(F=0.0, **parameters, build=build or arm.build_with_drag(drag))
 
 
 @cache
@@ -94,20 +94,18 @@ def first_hopf_force(rod: Rod) -> float:
     overflows or cannot exclude a Hopf point at a smaller F.
     """
     path = Path(rod, "F")
-    first_up_to = (
-        _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
-    )
+    find_first = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
     try:
         for end in (
             (FIRST_SEARCH_END, SEARCH_END) if rod.is_uniform_and_linear else SEARCH_ENDS_OF_VARYING_ARM
         ):
-            first = first_up_to(path, end_below_crushing(rod, end))
-            if first < inf:
-                return float(f"{first:.{REFERENCE_DIGITS}g}")
+            force = find_first(path, end_below_crushing(rod, end))
+            if force < inf:
+                return float(f"{force:.{REFERENCE_DIGITS}g}")
     except (ArithmeticError, MemoryError, np.linalg.LinAlgError) as error:
-        why = str(error) or type(error).__name__
+        reason = str(error) or type(error).__name__
         raise FlutterSearchFailed(
-            f"the search for the flutter threshold to which a relative load refers fails: {why}; give an "
+            f"the search for the flutter threshold to which a relative load refers fails: {reason}; give an "
             "absolute load"
         ) from error
     return inf
@@ -124,13 +122,13 @@ def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
             "eigenvalues of this rod is known; give an absolute load"
         )
     zeros, undecided, _ = cover_with_boxes(boxes, path.origin, path.direction)
-    first = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
-    if any(min(box.p_from, box.p_to) < first for box in undecided):
+    force = min((zero.p for zero in zeros if _becomes_unstable(path, zero)), default=inf)
+    if any(min(box.p_from, box.p_to) < force for box in undecided):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain: a narrow window of flutter "
             "may lie below the first Hopf point found; give an absolute load"
         )
-    return first
+    return force
 
 
 def _first_hopf_force_of_varying_arm(path: Path, end: float) -> float:
@@ -142,28 +140,28 @@ def _first_hopf_force_of_varying_arm(path: Path, end: float) -> float:
     from ..solve.point_outcome import FAILURES, cause_of
 
     try:
-        found = find_axis_crossings(path, 0.0, end)
+        located = find_axis_crossings(path, 0.0, end)
     except FAILURES as error:
         raise FlutterSearchFailed(
             "the search for the flutter threshold to which a relative load refers fails: "
             f"{cause_of(error)}; give an absolute load"
         ) from error
-    first = min(
-        (crossing.value for crossing in found.thresholds if crossing.kind == ChangeKind.hopf), default=inf
+    force = min(
+        (crossing.value for crossing in located.thresholds if crossing.kind == ChangeKind.hopf), default=inf
     )
-    if not found.proved or (found.ended_early and first == inf):
+    if not located.proved or (located.ended_early and force == inf):
         raise FlutterSearchFailed(
             "the flutter threshold to which a relative load refers is uncertain, because a Hopf point may be "
             "missing; give an absolute load"
         )
-    return first
+    return force
 
 
 def _becomes_unstable(path: Path, zero: LocatedZero) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
     d Re w/dp > 0.
     """
-    there = determinant_along_path(
+    value = determinant_along_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )
-    return bool((-there.D_p / there.D_w).real > 0)
+    return bool((-value.D_p / value.D_w).real > 0)

@@ -23,20 +23,16 @@ def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[st
     """
     first, *others = _first_effect_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
-    at = (
-        f" at {LoadFormatter(arm).typed_text}"
-        if assessment.validity_at_flutter != Validity.does_not_apply
-        else ""
-    )
-    says = [
-        f"The model does not apply{at}: {first.name} is {excess_text(first)} what the model allows; {remedy}."
-    ]
+    is_valid = assessment.validity_at_flutter != Validity.does_not_apply
+    load = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
+    excess = f"{first.name} is {excess_text(first)} what the model allows"
+    sentences = [f"The model does not apply{load}: {excess}; {remedy}."]
     for effect in others:
         name = effect.name.capitalize()
-        says.append(
+        sentences.append(
             f"{name} is {excess_text(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
         )
-    return says
+    return sentences
 
 
 def effect_kinds_text(effects: Iterable[Effect]) -> str:
@@ -55,8 +51,8 @@ def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
     MAX_FOUR_DIGIT_RATIO.
     """
-    excess = float(effect.value_over_limit)
-    return f"{float(f'{excess:.2g}'):g} times" if excess >= MAX_FOUR_DIGIT_RATIO else f"{excess:.4g} times"
+    ratio = float(effect.value_over_limit)
+    return f"{float(f'{ratio:.2g}'):g} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 
 
 def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
@@ -66,19 +62,17 @@ def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
     """Clause that names the change of arm, fluid or load by which the effect is reduced to its limit."""
-    share = float(1 / effect.value_over_limit)
+    ratio = float(1 / effect.value_over_limit)
     if effect_kind(effect) == "inertia":
         return _thicker_fluid_or_thinner_arm(arm, assessment)
     if effect_kind(effect) == "weight":
         si = UNITS["density_difference"][0]
         unit = unit_of(arm.density_difference, si)  # type: ignore[arg-type]
-        most = rounded_down(value_in_unit(abs(arm.si.density_difference) * share, unit, si))
-        return f"the model needs an arm whose density is within {most:g} {unit} of the fluid's"
-    if any(effect is each for each in assessment.compression_under_load):
-        pulls = "a pull" if arm.F < 0 else "a load"
-        return (
-            f"the model needs {pulls} of at most {LoadFormatter(arm).rounded_down_text(abs(arm.F) * share)}"
-        )
+        limit = rounded_down(value_in_unit(abs(arm.si.density_difference) * ratio, unit, si))
+        return f"the model needs an arm whose density is within {limit:g} {unit} of the fluid's"
+    if any(effect is weakest for weakest in assessment.compression_under_load):
+        noun = "a pull" if arm.F < 0 else "a load"
+        return f"the model needs {noun} of at most {LoadFormatter(arm).rounded_down_text(abs(arm.F) * ratio)}"
     return "the model needs a longer or a thinner arm"
 
 
@@ -90,8 +84,8 @@ def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> st
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)
     viscosity = f"{rounded_up(value_in_unit(arm.si.viscosity * factor, unit, si)):g} {unit.replace('*', ' ')}"
-    says = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
+    sentence = f"the model needs a fluid at least {rounded_up(factor):g} times as viscous ({viscosity})"
     thickness = thickness_factor(arm)
     if isnan(thickness):
-        return says
-    return f"{says}, or an arm at most {rounded_down(thickness):g} times as thick"
+        return sentence
+    return f"{sentence}, or an arm at most {rounded_down(thickness):g} times as thick"

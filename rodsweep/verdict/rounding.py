@@ -10,8 +10,8 @@ def three_digits(value: float) -> str:
     """`value` as text with three significant digits; with an exponent only from a million on and below
     1e-4.
     """
-    short = float(f"{value:.3g}")
-    return f"{short:.0f}" if 1000 <= abs(short) < 1e6 else f"{short:g}"
+    rounded = float(f"{value:.3g}")
+    return f"{rounded:.0f}" if 1000 <= abs(rounded) < 1e6 else f"{rounded:g}"
 
 
 def three_digits_rounded_down(value: float) -> str:

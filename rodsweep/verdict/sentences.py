@@ -32,80 +32,84 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 def _doubt_sentences(planes: Planes) -> list[str]:
     """List of one sentence on why the thresholds of some plane of motion are uncertain; empty if they are
     certain."""
-    known = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
-    doubts = sorted({doubt for found in known for doubt in found.doubts})
+    thresholds_of_planes = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
+    doubts = sorted({doubt for thresholds in thresholds_of_planes for doubt in thresholds.doubts})
     return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
 
 
 def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
     """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
     plane = planes.first
-    beyond = assessment.effects_with(Validity.does_not_apply)
-    if not beyond:
+    invalid_effects = assessment.effects_with(Validity.does_not_apply)
+    if not invalid_effects:
         return [*_valid_arm_sentences(plane), *_second_plane_sentences(planes, "is")]
     headline = not_applicable_sentences(plane.arm, assessment)
     if assessment.validity_at_flutter == Validity.does_not_apply:
         return [
             *headline,
-            *_flutter_without_effects(plane, effect_kinds_text(beyond)),
+            *_flutter_without_effects(plane, effect_kinds_text(invalid_effects)),
             *_second_plane_sentences(planes, "would be"),
         ]
     flutter = plane.thresholds.first_forces(ChangeKind.hopf)
-    known = (
+    flutter_text = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
-    return [*headline, f"{known} is within the model; {LoadFormatter(plane.arm).typed_text} is not."]
+    return [*headline, f"{flutter_text} is within the model; {LoadFormatter(plane.arm).typed_text} is not."]
 
 
 def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     """Sentences on flutter and return to stability of an arm to which the model applies."""
     arm = plane.arm
-    found = plane.thresholds
+    thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = found.first_forces(ChangeKind.hopf)
-    back = found.first_forces(ChangeKind.restabilization)
+    flutter = thresholds.first_forces(ChangeKind.hopf)
+    returns = thresholds.first_forces(ChangeKind.restabilization)
     if flutter is None:
-        stays = f": it stays straight at {load.typed_text}" if load.typed_text else ""
-        if found.end < arm.F:
-            stays = f": whether the arm beats at {load.typed_text} is not known"
-        return [f"The arm does not flutter {_search_end_clause(plane, load)}{stays}."]
-    rate = found.first_frequencies(ChangeKind.hopf)
+        stay = f": it stays straight at {load.typed_text}" if load.typed_text else ""
+        if thresholds.end < arm.F:
+            stay = f": whether the arm beats at {load.typed_text} is not known"
+        return [f"The arm does not flutter {_search_end_clause(plane, load)}{stay}."]
+    rate = thresholds.first_frequencies(ChangeKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
-        says = [f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{beats}."]
+        sentences = [
+            f"The arm flutters at {_flutter_load_text(plane, flutter)}: above, it gives way and{beats}."
+        ]
     else:
-        says = [
+        sentences = [
             _load_comparison_sentence(plane, flutter, load),
             f"Above, the straight arm gives way and{beats}.",
         ]
     if not flutter.for_every_drag:
-        says.append("For part of the range of drag the arm does not flutter at all.")
-    if back is not None:
-        some = "" if back.for_every_drag else ", for part of the range of drag"
-        where = f"{load.range_of_forces_text(back)}{some}"
-        says.append(f"The straight arm is stable again above {where}{_second_flutter_clause(found, load)}.")
+        sentences.append("For part of the range of drag the arm does not flutter at all.")
+    if returns is not None:
+        drag_note = "" if returns.for_every_drag else ", for part of the range of drag"
+        loads = f"{load.range_of_forces_text(returns)}{drag_note}"
+        sentences.append(
+            f"The straight arm is stable again above {loads}{_second_flutter_clause(thresholds, load)}."
+        )
     else:
-        says.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
-    return says + _oscillation_sentences(found, load)
+        sentences.append(f"The straight arm does not become stable again {_search_end_clause(plane, load)}.")
+    return sentences + _oscillation_sentences(thresholds, load)
 
 
-def _second_flutter_clause(found: ThresholdsOverDrags, load: LoadFormatter) -> str:
+def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> str:
     """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
     flutter again.
     """
-    second = found.second_flutter_forces
-    if second is None:
+    forces = thresholds.second_flutter_forces
+    if forces is None:
         return ""
-    some = "" if second.for_every_drag else ", for part of the range of drag"
-    return f", and flutters again above {load.range_of_forces_text(second)}{some}"
+    drag_clause = "" if forces.for_every_drag else ", for part of the range of drag"
+    return f", and flutters again above {load.range_of_forces_text(forces)}{drag_clause}"
 
 
 def _flutter_load_text(plane: PlaneOfMotion, flutter: RangeOverDrags) -> str:
     """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
     the plane of motion.
     """
-    where = LoadFormatter(plane.arm).range_of_forces_text(flutter)
-    return f"{where} in {plane.name}" if plane.name else where
+    load_text = LoadFormatter(plane.arm).range_of_forces_text(flutter)
+    return f"{load_text} in {plane.name}" if plane.name else load_text
 
 
 def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, load: LoadFormatter) -> str:
@@ -113,74 +117,77 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
     whether the arm beats.
     """
     F = plane.arm.F
-    found = plane.thresholds
-    where = _flutter_load_text(plane, flutter)
+    thresholds = plane.thresholds
+    load_text = _flutter_load_text(plane, flutter)
     if F <= 0:
-        return f"Flutter is at {where}; {load.typed_text} does not push, and the arm stays straight."
+        return f"Flutter is at {load_text}; {load.typed_text} does not push, and the arm stays straight."
     if flutter.low > F:
         percent = percent_range_text(1 - F / flutter.low, 1 - F / flutter.high)
-        return f"{load.typed_text} is {percent} % below flutter, at {where}: the arm stays straight."
-    if found.end < F:
-        end = load.range_of_forces_text(RangeOverDrags(found.end, found.end))
+        return f"{load.typed_text} is {percent} % below flutter, at {load_text}: the arm stays straight."
+    if thresholds.end < F:
+        end = load.range_of_forces_text(RangeOverDrags(thresholds.end, thresholds.end))
         unknown = f"whether the arm beats at {load.typed_text} is not known"
-        return f"Flutter is at {where}; {unknown}: changes were sought up to {end}."
-    unstable = found.is_unstable_by_drag(F)
+        return f"Flutter is at {load_text}; {unknown}: changes were sought up to {end}."
+    unstable = thresholds.is_unstable_by_drag(F)
     if flutter.high < F and not any(unstable):
-        return f"{load.typed_text} is beyond flutter, at {where}: the straight arm is stable again."
+        return f"{load.typed_text} is beyond flutter, at {load_text}: the straight arm is stable again."
     if not all(unstable):
-        return f"{load.typed_text} lies in the range of flutter, {where}: drag decides whether the arm beats."
-    return f"{load.typed_text} is {_excess_text(F, flutter)} flutter, at {where}: the arm beats."
+        typed = load.typed_text
+        return f"{typed} lies in the range of flutter, {load_text}: drag decides whether the arm beats."
+    return f"{load.typed_text} is {_excess_text(F, flutter)} flutter, at {load_text}: the arm beats."
 
 
 def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
     "3 times", if the factor is larger than 2.
     """
-    low, high = (F / edge for edge in (flutter.high, flutter.low))
+    low, high = (F / end for end in (flutter.high, flutter.low))
     return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
 
 def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     """Sentences on the flutter that an arm outside the model would have without the effects `neglected`."""
     arm = plane.arm
-    found = plane.thresholds
+    thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = found.first_forces(ChangeKind.hopf)
-    rate = found.first_frequencies(ChangeKind.hopf)
+    flutter = thresholds.first_forces(ChangeKind.hopf)
+    rate = thresholds.first_frequencies(ChangeKind.hopf)
     if flutter is None:
         return [f"Without {neglected} the arm would not flutter {_search_end_clause(plane, load)}."]
-    beats = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
-    says = [f"Without {neglected} the arm would flutter at {_flutter_load_text(plane, flutter)}{beats}."]
+    frequency = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
+    sentences = [
+        f"Without {neglected} the arm would flutter at {_flutter_load_text(plane, flutter)}{frequency}."
+    ]
     if arm.load is None or arm.F <= 0:
-        return says
+        return sentences
     if flutter.low > arm.F:
-        place = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
+        position = f"{percent_range_text(1 - arm.F / flutter.low, 1 - arm.F / flutter.high)} % below"
     elif flutter.high < arm.F:
-        place = _excess_text(arm.F, flutter)
+        position = _excess_text(arm.F, flutter)
     else:
-        place = "inside the range of"
-    return [*says, f"{load.typed_text} would be {place} that threshold."]
+        position = "inside the range of"
+    return [*sentences, f"{load.typed_text} would be {position} that threshold."]
 
 
 def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
     verb: "is" or "would be".
     """
-    second = planes.second
-    if second is None:
+    second_plane = planes.second
+    if second_plane is None:
         return []
-    if second.thresholds.failures:
-        return [f"The threshold in {second.name} could not be found."]
-    load = LoadFormatter(second.arm)
-    flutter = second.thresholds.first_forces(ChangeKind.hopf)
+    if second_plane.thresholds.failures:
+        return [f"The threshold in {second_plane.name} could not be found."]
+    load = LoadFormatter(second_plane.arm)
+    flutter = second_plane.thresholds.first_forces(ChangeKind.hopf)
     if flutter is None:
-        return [f"In {second.name} there {verb} no flutter {_search_end_clause(second, load)}."]
-    decides = (
+        return [f"In {second_plane.name} there {verb} no flutter {_search_end_clause(second_plane, load)}."]
+    drag_clause = (
         ""
         if planes.is_first_for_every_drag
         else "; for part of the range of drag, flutter starts in this plane"
     )
-    return [f"In {second.name} flutter {verb} at {load.range_of_forces_text(flutter)}{decides}."]
+    return [f"In {second_plane.name} flutter {verb} at {load.range_of_forces_text(flutter)}{drag_clause}."]
 
 
 def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
@@ -191,11 +198,11 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
     return f"up to {end}, where the search ends"
 
 
-def _oscillation_sentences(found: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
+def _oscillation_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
     found.
     """
-    onset = found.first_forces(ChangeKind.onset)
+    onset = thresholds.first_forces(ChangeKind.onset)
     if onset is None:
         return []
     return [f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."]

@@ -240,7 +240,7 @@ def test_file_of_another_config_is_refused_naming_the_difference(tmp_path):
     with pytest.raises(InputError, match="accuracy is 1e-08 in the file and 1e-10 in the config"):
         Store(path, plan(accuracy=1e-10))
     assert path.read_bytes() == before
-    Store(path, plan(accuracy=1e-10), fresh=True).close()
+    Store(path, plan(accuracy=1e-10), replaces=True).close()
 
 
 def test_foreign_file_is_refused_and_left_alone(tmp_path):

@@ -89,8 +89,8 @@ class Answer:
     def status(self) -> StrEnum:
         """Name of the status of the solve, a member of the enumeration of all statuses of the task."""
         view = self._tables.view
-        words = _statuses(view.task, tuple(view.flags.values()))
-        return words(view.flags[int(view.variables["status"].item())])
+        statuses = _statuses(view.task, tuple(view.flags.values()))
+        return statuses(view.flags[int(view.variables["status"].item())])
 
     @property
     def sentence(self) -> str:
@@ -123,9 +123,9 @@ class Answer:
         for variable in tables.contents.point_variables:
             if variable.name == name:
                 return _scalar(column_of(variable, np.ravel(tables.view.variables[name])))
-        for each, variables in tables.contents.lists.items():
-            if name in (*(v.name for v in variables), *tables.contents.dimensions(each)):
-                return self._list_values(each, name)
+        for list_name, variables in tables.contents.lists.items():
+            if name in (*(v.name for v in variables), *tables.contents.dimensions(list_name)):
+                return self._list_values(list_name, name)
         if name == "eigenvalues" and EIGENVALUE_VARIABLES[0] in tables.view.variables:
             return self.growth_rate + 1j * self.frequency
         if name in self.data.variables:  # a coordinate, or a number of the whole file
@@ -142,17 +142,17 @@ class Answer:
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
-        lacks_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
+        is_missing_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
         values = np.asarray(
-            np.where(column.absent, np.nan, column.values) if lacks_counts else series_of(column)
+            np.where(column.absent, np.nan, column.values) if is_missing_counts else series_of(column)
         )
-        inner = [self.data.sizes[each] for each in dimensions[1:]]
-        return values[:: prod(inner)] if name == dimensions[0] else values.reshape(-1, *inner)
+        inner_sizes = [self.data.sizes[dimension] for dimension in dimensions[1:]]
+        return values[:: prod(inner_sizes)] if name == dimensions[0] else values.reshape(-1, *inner_sizes)
 
     def _attribute_names(self) -> list[str]:
         """Names of all variables and lists, for messages and completion."""
-        extra = ["eigenvalues"] if EIGENVALUE_VARIABLES[0] in self.data else []
-        return [*map(str, self.data.data_vars), *self.lists, *extra]
+        names = ["eigenvalues"] if EIGENVALUE_VARIABLES[0] in self.data else []
+        return [*map(str, self.data.data_vars), *self.lists, *names]
 
     def __dir__(self) -> list[str]:
         return sorted({*super().__dir__(), *map(str, self.data.variables), *self._attribute_names()})
@@ -164,8 +164,8 @@ class Answer:
 
         `rs.table(answer, NAME)` returns the list NAME, with the parameters of the rod, as a DataFrame.
         """
-        printed = self._printed()
-        return FullListing(whole_text(printed), whole_html(printed))
+        printed_answer = self._printed()
+        return FullListing(whole_text(printed_answer), whole_html(printed_answer))
 
     def __repr__(self) -> str:
         return brief_text(self._printed())
@@ -176,10 +176,12 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        own = [
-            c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES and not c.is_input
+        answer_columns = [
+            column
+            for column in tables.table(POINTS).columns
+            if column.name not in UNPRINTED_VARIABLES and not column.is_input
         ]
-        own.sort(key=_is_dimensionless)
+        answer_columns.sort(key=_is_dimensionless)
         lists = {}
         for name in self.lists:
             number, *others = tables.list_columns(name)
@@ -194,8 +196,10 @@ class Answer:
             rod=rod,
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
-            numbers=tuple(c for c in own if not c.absent[0]),
-            absent_names=tuple(c.name for c in own if c.absent[0]) if int(self.data["status"]) == 0 else (),
+            numbers=tuple(column for column in answer_columns if not column.absent[0]),
+            absent_names=tuple(column.name for column in answer_columns if column.absent[0])
+            if int(self.data["status"]) == 0
+            else (),
             totals=totals,
             lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
             row_counts={
@@ -207,12 +211,12 @@ class Answer:
 
 
 @cache
-def _statuses(task: str, words: tuple[str, ...]) -> type[StrEnum]:
-    """Enumeration of all statuses of a task. words: names of the statuses."""
-    made: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
-    found = made("Status", {word: word for word in words})
-    found.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
-    return cast(type[StrEnum], found)
+def _statuses(task: str, names: tuple[str, ...]) -> type[StrEnum]:
+    """Enumeration of all statuses of a task. names: names of the statuses."""
+    new_enum: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
+    enum = new_enum("Status", {word: word for word in names})
+    enum.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
+    return cast(type[StrEnum], enum)
 
 
 def _is_dimensionless(column: Column) -> bool:

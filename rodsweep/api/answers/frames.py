@@ -18,10 +18,10 @@ def frame_of(columns: Iterable[Column], index: str | None = None) -> pd.DataFram
     0.
     """
     columns = tuple(columns)
-    frame = pd.DataFrame({column.name: series_of(column) for column in columns})
-    frame.attrs["units"] = {column.name: column.unit for column in columns}
-    frame.attrs["meanings"] = {column.name: column.meaning for column in columns}
-    return frame if index is None else frame.set_index(index)
+    result = pd.DataFrame({column.name: series_of(column) for column in columns})
+    result.attrs["units"] = {column.name: column.unit for column in columns}
+    result.attrs["meanings"] = {column.name: column.meaning for column in columns}
+    return result if index is None else result.set_index(index)
 
 
 def series_of(column: Column) -> Any:

@@ -90,9 +90,9 @@ def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> Non
 
     choices: (value, allowed values) by name of the argument; the value None is always allowed.
     """
-    for name, (given, known) in choices.items():
-        if given is not None and given not in known:
-            raise InputError(f"{name} = {given!r} is not allowed; choose {', '.join(known)}")
+    for name, (value, allowed) in choices.items():
+        if value is not None and value not in allowed:
+            raise InputError(f"{name} = {value!r} is not allowed; choose {', '.join(allowed)}")
 
 
 def _require_allowed_look(look: Mapping[str, object]) -> None:
@@ -157,10 +157,10 @@ class Picture:
         """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
         animation.
         """
-        drawn: list[FigureClass] = []
+        figures: list[FigureClass] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
-        draw(self.views, name, figure_callback=drawn.append, **self.choices)
-        return drawn[0]
+        draw(self.views, name, figure_callback=figures.append, **self.choices)
+        return figures[0]
 
     @property
     def is_film(self) -> bool:
@@ -195,22 +195,22 @@ def plot(
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")
-    several = [data] if isinstance(data, Drawable) else data
-    if not isinstance(several, Sequence) or not several:
+    views_or_answers = [data] if isinstance(data, Drawable) else data
+    if not isinstance(views_or_answers, Sequence) or not views_or_answers:
         raise InputError(
             f"{short_repr(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
     values = checked_section_values(at)
-    views = [section_at_values(view_of_result(one, PLOT_EXAMPLE), values) for one in several]
+    views = [section_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)
-    ending = ".gif" if what == "animation" else ".png"
+    suffix = ".gif" if what == "animation" else ".png"
     with TemporaryDirectory(prefix="rodsweep-") as folder:
         # A file in the format of the display is the display: the figure is drawn once.
-        path = file if file is not None and file.suffix == ending else Path(folder, f"figure{ending}")
-        shown = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
-        picture = Picture(views, choices, as_python_arguments(shown), path.read_bytes())
+        path = file if file is not None and file.suffix == suffix else Path(folder, f"figure{suffix}")
+        description = draw(views, path, **choices).removeprefix(f"wrote {path}: ")
+        picture = Picture(views, choices, as_python_arguments(description), path.read_bytes())
     if file is not None and file != path:
         picture.save(file)
     return picture

@@ -91,21 +91,21 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
 def brief_text(printed: PrintedAnswer) -> str:
     """Short text of an answer, about ten lines: the heading, the main numbers and the main list."""
     lines = [*_folded_heading(printed), *_number_lines(printed)]
-    more = _remaining_numbers_line(printed)
-    lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - more.count("\n") - 1)
-    return "\n".join([*lines, more])
+    remaining_line = _remaining_numbers_line(printed)
+    lines += _brief_list(printed, MAX_BRIEF_LINES - len(lines) - remaining_line.count("\n") - 1)
+    return "\n".join([*lines, remaining_line])
 
 
 def brief_html(printed: PrintedAnswer) -> str:
     """Short HTML of an answer, with the content of `brief_text`."""
-    parts = [_html_heading(printed)]
+    blocks = [_html_heading(printed)]
     if pairs := _main_number_texts(printed):
-        parts.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
+        blocks.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
     columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
-        parts.append(_html_table([name, unit], rows))
-    return "".join([*parts, f"<p>{escape(' '.join(_remaining_numbers_line(printed).split()))}</p>"])
+        blocks.append(_html_table([name, unit], rows))
+    return "".join([*blocks, f"<p>{escape(' '.join(_remaining_numbers_line(printed).split()))}</p>"])
 
 
 def whole_text(printed: PrintedAnswer) -> str:
@@ -114,7 +114,7 @@ def whole_text(printed: PrintedAnswer) -> str:
     rows = [
         (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
     ]
-    parts = [
+    blocks = [
         "\n".join(_folded_heading(printed)),
         "\n".join(["numbers", *rows_with_prose(rows)]) if rows else "",
     ]
@@ -122,12 +122,12 @@ def whole_text(printed: PrintedAnswer) -> str:
         lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
             digits = printed.rod.list_texts[name]
-            kept = [column for column in columns if not column.absent.all()]
-            cells = [column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in kept]
+            stored_columns = [column for column in columns if not column.absent.all()]
+            cells = [column_cells((c.name, c.printed_unit), digits.texts(c.name)) for c in stored_columns]
             for number, block in enumerate(table_blocks(cells)):
                 lines += ["", *block] if number else block
-        parts.append("\n".join(lines))
-    return "\n\n".join(filter(None, [*parts, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
+        blocks.append("\n".join(lines))
+    return "\n\n".join(filter(None, [*blocks, "\n".join(map(wrap_cell_text, printed.closing_lines))]))
 
 
 def whole_html(printed: PrintedAnswer) -> str:
@@ -135,14 +135,17 @@ def whole_html(printed: PrintedAnswer) -> str:
     rows = [
         (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
     ]
-    parts = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
+    blocks = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
     for name, columns in printed.lists.items():
-        parts.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
+        blocks.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
         digits = printed.rod.list_texts[name]
-        heads = [tuple(column.name for column in columns), tuple(column.printed_unit for column in columns)]
+        headings = [
+            tuple(column.name for column in columns),
+            tuple(column.printed_unit for column in columns),
+        ]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
-        parts.append(_html_table(heads, rows_of) if rows_of else "")
-    return "".join([*parts, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
+        blocks.append(_html_table(headings, rows_of) if rows_of else "")
+    return "".join([*blocks, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
 
 
 def _folded_heading(printed: PrintedAnswer) -> list[str]:
@@ -175,21 +178,21 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
     value.
     """
-    room = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
-    pairs = _main_number_texts(printed)[: max(room, MIN_ROWS)]
+    max_lines = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
+    pairs = _main_number_texts(printed)[: max(max_lines, MIN_ROWS)]
     if not pairs:
         return []
     cells = [column_cells((), column) for column in zip(*pairs, strict=True)]
-    kept = [column for column in cells if column[0].strip() or any(map(str.strip, column))]
-    return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*kept, strict=True))]
+    filled_columns = [column for column in cells if column[0].strip() or any(map(str.strip, column))]
+    return ["", *(COLUMN_GAP.join(row).rstrip() for row in zip(*filled_columns, strict=True))]
 
 
-def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], int]:
+def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
     """Returns (columns of the main list, number of rows of the complete list).
 
-    room: maximum number of rows in a column. A column consists of the cells name, unit, and values; errors
-    form a separate column. The first column that would make a line longer than LINE_WIDTH, and all later
-    columns, are omitted. Returns ([], 0) for a task without a main list.
+    max_rows: maximum number of rows in a column. A column consists of the cells name, unit, and values;
+    errors form a separate column. The first column that would make a line longer than LINE_WIDTH, and all
+    later columns, are omitted. Returns ([], 0) for a task without a main list.
     """
     digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
@@ -198,23 +201,23 @@ def _brief_cells(printed: PrintedAnswer, room: int) -> tuple[list[list[str]], in
     columns = [digits.columns[name] for name in names if name in digits.columns]
     columns = [column for column in columns if not column.absent.all()]
     count = len(columns[0].values) if columns else 0
-    found: list[list[str]] = []
+    columns_of_cells: list[list[str]] = []
     width = -len(COLUMN_GAP)
     for column in columns if count else ():
-        values, errors = zip(*digits.value_and_error_texts(column.name)[:room], strict=True)
+        values, errors = zip(*digits.value_and_error_texts(column.name)[:max_rows], strict=True)
         added = [column_cells((column.name, column.printed_unit), values)]
         added += [column_cells((ERROR_SIGN, ""), errors)] if any(errors) else []
         width += sum(len(cells[0]) + len(COLUMN_GAP) for cells in added)
         if width > LINE_WIDTH:
             break
-        found += added
-    return found, count
+        columns_of_cells += added
+    return columns_of_cells, count
 
 
-def _brief_list(printed: PrintedAnswer, room: int) -> list[str]:
-    """Lines of the main list, after an empty line; empty if the list has no rows. room: desired maximum
+def _brief_list(printed: PrintedAnswer, max_lines: int) -> list[str]:
+    """Lines of the main list, after an empty line; empty if the list has no rows. max_lines: desired maximum
     number of lines; at least MIN_ROWS rows are printed."""
-    rows = max(room - 3, MIN_ROWS)  # below an empty line, the names and the units
+    rows = max(max_lines - 3, MIN_ROWS)  # below an empty line, the names and the units
     columns, count = _brief_cells(printed, rows)
     if count == rows + 1:  # the line "and 1 more" has room for the row
         columns, count = _brief_cells(printed, count)
@@ -238,9 +241,9 @@ def _html_heading(printed: PrintedAnswer) -> str:
     return f"<p><b>{answer}</b>{''.join(f'<br>{line}' for line in others)}</p>"
 
 
-def _html_table(heads: Sequence[RowCells], lines: Sequence[RowCells]) -> str:
+def _html_table(headings: Sequence[RowCells], lines: Sequence[RowCells]) -> str:
     def row(cells: RowCells, tag: str) -> str:
         return "<tr>" + "".join(f"<{tag}>{escape(cell.strip())}</{tag}>" for cell in cells) + "</tr>"
 
-    body = "".join([*(row(line, "th") for line in heads), *(row(line, "td") for line in lines)])
+    body = "".join([*(row(line, "th") for line in headings), *(row(line, "td") for line in lines)])
     return f"<table>{body}</table>"

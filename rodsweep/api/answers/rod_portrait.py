@@ -118,12 +118,12 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
     progress: as in `rod.portrait`. Raises InputError for an invalid request.
     """
     answers: dict[str, Answer] = {}
-    own = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
+    plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 
     def solve(job: Job) -> View:
         solved = solve_in_process(job, progress=progress)
         answers[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.title))
 
-    results = rod_results(replace(request, **own), solve)
+    results = rod_results(replace(request, **plain_values), solve)
     return RodPortrait(rod, results, answers)

@@ -54,5 +54,5 @@ def view_of_result(data: Any, example: str) -> View:
         raise InputError(
             f"{short_repr(data)} is not a result; give a Dataset, an answer or a file, as in {example}"
         )
-    whole = data.whole if isinstance(data, Answer) else data
-    return view_of_dataset(whole, Path(str(whole.attrs.get("title", "data"))))
+    full_answer = data.whole if isinstance(data, Answer) else data
+    return view_of_dataset(full_answer, Path(str(full_answer.attrs.get("title", "data"))))

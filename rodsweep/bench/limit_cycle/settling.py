@@ -59,44 +59,45 @@ class SettlingMethod:
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
         """Values of a row of `settling_table`, by name. timed: times of `run`."""
-        about = "about " if self.time_factor != 1 else ""
+        about_text = "about " if self.time_factor != 1 else ""
         return {
             "force": self.force,
             "way": self.name + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
             "tolerance": self.setting,
-            "returns": f"{about}{self.return_count:.0f}"
+            "returns": f"{about_text}{self.return_count:.0f}"
             if self.reaches_cycle
             else f"not reached in {WAITING_PERIODS} periods",
-            "milliseconds": f"{about}{1e3 * self.time_factor * timed.median:.0f}"
+            "milliseconds": f"{about_text}{1e3 * self.time_factor * timed.median:.0f}"
             if self.reaches_cycle
             else "",
             "error": self.error if self.reaches_cycle else nan,
         }
 
 
-def compare_settling(at: ReferenceCycle, every: Sequence[Contender], rounds: int) -> str:
+def compare_settling(reference: ReferenceCycle, contenders: Sequence[Contender], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
-    methods with its explanation. at: reference cycle at F = 50. every: contenders of the race WAITING_RACE.
-    rounds: number of timed rounds.
+    methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
+    WAITING_RACE. rounds: number of timed rounds.
     """
     waiting = {
-        method: _integrate_until_periodic(at, settings) for method, settings in by_method(every).items()
+        method: _integrate_until_periodic(reference, settings)
+        for method, settings in by_method(contenders).items()
     }
     cycle = solve_cycle_at_force(CYCLE_FORCE)
-    left = _cycle_error(at, cycle.measures.period, cycle.measures.tip_y_max)
-    waits = [
+    error = _cycle_error(reference, cycle.measures.period, cycle.measures.tip_y_max)
+    methods = [
         SettlingMethod(
-            CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, left, partial(solve_cycle_at_force, CYCLE_FORCE)
+            CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, error, partial(solve_cycle_at_force, CYCLE_FORCE)
         )
     ]
-    waits += waiting.values()
-    waits += _methods_near_hopf([c for c in every if waiting[c.method].setting == c.setting])
-    return settling_table(waits, time_runs([wait.run for wait in waits], [rounds] * len(waits)))
+    methods += waiting.values()
+    methods += _methods_near_hopf([c for c in contenders if waiting[c.method].setting == c.setting])
+    return settling_table(methods, time_runs([wait.run for wait in methods], [rounds] * len(methods)))
 
 
-def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) -> str:
+def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:
     """Table in Markdown, after a paragraph that explains it: returns, time and error of each method in
-    `waits`. raced: times of each method."""
+    `methods`. times: times of each method."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "
@@ -109,57 +110,64 @@ def settling_table(waits: Sequence[SettlingMethod], raced: Sequence[TimedRuns]) 
     ) + markdown_table(
         "F | method | tolerance | returns | ms | error",
         "{force:g} | {way} | {tolerance} | {returns} | {milliseconds} | {error:.0e}",
-        [wait.row(timed) for wait, timed in zip(waits, raced, strict=True)],
+        [method.row(timed) for method, timed in zip(methods, times, strict=True)],
     )
 
 
-def _cycle_error(at: ReferenceCycle, period: float, height: float) -> float:
-    return max(abs(period / at.period - 1), abs(height / at.tip_y_max - 1))
+def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> float:
+    return max(abs(period / reference.period - 1), abs(height / reference.tip_y_max - 1))
 
 
-def _integrate_until_periodic(at: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
+def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. settings: contenders of one integrator, from the loosest tolerance."""
     task = IntegrationTask(
-        at.beam, START_DEFLECTION * leading_mode(at.beam).z.real, WAITING_PERIODS * at.period
+        reference.beam,
+        START_DEFLECTION * leading_mode(reference.beam).z.real,
+        WAITING_PERIODS * reference.period,
     )
-    way = WAITING_PREFIX + settings[0].method
+    name = WAITING_PREFIX + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
         try:
-            found = tip_returns(at.beam, contender.run(task))
+            returns = tip_returns(reference.beam, contender.run(task))
         except ArithmeticError:
             failed += (contender.setting,)
             continue
-        sizes = np.linalg.norm(found.states[1:], axis=1)
-        distances = np.linalg.norm(np.diff(found.states, axis=0), axis=1) / sizes
-        settled = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
-        for k in settled[:1]:
-            left = _cycle_error(at, float(found.times[k + 1] - found.times[k]), float(found.heights[k]))
-            if left <= SETTLING_TOLERANCE:
-                again = partial(contender.run, task._replace(duration=float(found.times[k + 1])))
-                return SettlingMethod(CYCLE_FORCE, way, contender.setting, k + 2, left, again, failed=failed)
-    return SettlingMethod(CYCLE_FORCE, way, "", nan, inf, lambda: None, failed=failed)
+        sizes = np.linalg.norm(returns.states[1:], axis=1)
+        distances = np.linalg.norm(np.diff(returns.states, axis=0), axis=1) / sizes
+        steady = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
+        for k in steady[:1]:
+            error = _cycle_error(
+                reference, float(returns.times[k + 1] - returns.times[k]), float(returns.heights[k])
+            )
+            if error <= SETTLING_TOLERANCE:
+                integrate = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
+                return SettlingMethod(
+                    CYCLE_FORCE, name, contender.setting, k + 2, error, integrate, failed=failed
+                )
+    return SettlingMethod(CYCLE_FORCE, name, "", nan, inf, lambda: None, failed=failed)
 
 
-def _methods_near_hopf(settled: Sequence[Contender]) -> list[SettlingMethod]:
+def _methods_near_hopf(settled_contenders: Sequence[Contender]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
-    periodic is estimated from the largest Floquet multiplier. settled: contender of each integrator."""
+    periodic is estimated from the largest Floquet multiplier. settled_contenders: contender of each
+    integrator."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    waits = [
+    methods = [
         SettlingMethod(
             NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(solve_cycle_at_force, NEAR_HOPF_F)
         )
     ]
-    for contender in settled:
+    for contender in settled_contenders:
         run = partial(contender.run, task)
         times = count / FOLLOWED_PERIODS
-        way = WAITING_PREFIX + contender.method
-        waits.append(
-            SettlingMethod(NEAR_HOPF_F, way, contender.setting, count, SETTLING_TOLERANCE, run, times)
+        method_name = WAITING_PREFIX + contender.method
+        methods.append(
+            SettlingMethod(NEAR_HOPF_F, method_name, contender.setting, count, SETTLING_TOLERANCE, run, times)
         )
-    return waits
+    return methods

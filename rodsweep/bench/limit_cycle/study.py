@@ -11,13 +11,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.reference_rod import warm_up
 from ...wording import counted
 from ..peers import Peers
-from ..study import (
-    BenchmarkReport,
-    Measurement,
-    every_nth_setting,
-    grouped_by_fields,
-    markdown_table,
-)
+from ..study import BenchmarkReport, Measurement, every_nth_setting, grouped_by_fields, markdown_table
 from .default_integrator import DEFAULT_INTEGRATOR
 from .settling import compare_settling
 from .sweeping import measure_sweep_points, sweep_introduction, sweep_table
@@ -53,28 +47,30 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
     tolerances and rods."""
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
-    at = solve_reference()
+    reference = solve_reference()
     followers = every_nth_setting(
         [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)], stride
     )
-    found = measure_following(at, followers, rounds)
-    blocks = [introduction(rounds), *peers.notes, work_table(found), time_at_error_table(found)]
+    measured = measure_following(reference, followers, rounds)
+    blocks = [introduction(rounds), *peers.notes, work_table(measured), time_at_error_table(measured)]
     blocks.append(
-        compare_settling(at, [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)], rounds)
+        compare_settling(
+            reference, [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)], rounds
+        )
     )
-    undrawn = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
-    blocks += [sweep_introduction(), sweep_table(undrawn)]
+    of_rods = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
+    blocks += [sweep_introduction(), sweep_table(of_rods)]
     for section in peers.sections:
-        text, further = section(rounds)
+        text, more_text = section(rounds)
         blocks += text
-        undrawn += further
-    drawn = [
+        of_rods += more_text
+    of_panels = [
         replace(m, case=case, error=m.extra.get(error, m.error))
         for case, error in ERROR_NAMES_BY_PANEL.items()
-        for m in found
+        for m in measured
     ]
     return BenchmarkReport(
-        "limit_cycle", "\n\n".join([*blocks, *peers.skipped]), drawn, "period", TARGET_ERROR, undrawn
+        "limit_cycle", "\n\n".join([*blocks, *peers.skipped]), of_panels, "period", TARGET_ERROR, of_rods
     )
 
 
@@ -94,13 +90,13 @@ def introduction(rounds: int) -> str:
 
 def work_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING_RACE: steps, time and errors of every method at every tolerance."""
-    nothing = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
+    no_values = dict.fromkeys(("steps", "period_error", "amplitude_error"), nan)
     return markdown_table(
         "method | tolerance | steps a period | ms a period | error of period | error of amplitude",
         "{method} | {setting} | {failure}{steps:.1f} | {ms:.2f} | {period_error:.1e} | {amplitude_error:.1e}",
         [
             {"method": m.method, "setting": m.setting, "failure": m.failure, "ms": 1e3 * m.seconds}
-            | nothing
+            | no_values
             | m.extra
             for m in measurements
         ],
@@ -110,16 +106,16 @@ def work_table(measurements: Sequence[Measurement]) -> str:
 def time_at_error_table(measurements: Sequence[Measurement]) -> str:
     """Table of the race FOLLOWING_RACE at equal error, after a sentence that explains it: time of every
     method, interpolated at the error TARGET_ERROR."""
-    at = {}
-    for (method,), own in grouped_by_fields(measurements, "method").items():
-        errors = [m.error for m in own]
-        median = [m.seconds for m in own]
-        least = [m.least_seconds for m in own]
-        at[method] = time_at_error(TARGET_ERROR, errors, median), time_at_error(TARGET_ERROR, errors, least)
-    default, by_least = at[DEFAULT_INTEGRATOR.name]
+    times = {}
+    for (method,), runs in grouped_by_fields(measurements, "method").items():
+        errors = [m.error for m in runs]
+        median = [m.seconds for m in runs]
+        least = [m.least_seconds for m in runs]
+        times[method] = tuple(time_at_error(TARGET_ERROR, errors, seconds) for seconds in (median, least))
+    default, default_least = times[DEFAULT_INTEGRATOR.name]
     rows = [
-        {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / by_least}
-        for method, (median, least) in at.items()
+        {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / default_least}
+        for method, (median, least) in times.items()
     ]
     return (
         f"Time at which the larger of the two errors is {TARGET_ERROR:.0e}, interpolated. The last column "
@@ -140,9 +136,9 @@ def time_at_error(target: float, errors: Sequence[float], times: Sequence[float]
     between the last setting with an error above the target and the next setting, so that an accidentally
     small error at a loose tolerance has no effect.
     """
-    above = [k for k, error in enumerate(errors) if not error <= target]
-    if not above or above[-1] + 1 == len(errors) or not isfinite(errors[above[-1]]):
+    inaccurate = [k for k, error in enumerate(errors) if not error <= target]
+    if not inaccurate or inaccurate[-1] + 1 == len(errors) or not isfinite(errors[inaccurate[-1]]):
         return nan
-    k = above[-1]
-    share = log(errors[k] / target) / log(errors[k] / errors[k + 1])
-    return times[k] * (times[k + 1] / times[k]) ** share
+    k = inaccurate[-1]
+    fraction = log(errors[k] / target) / log(errors[k] / errors[k + 1])
+    return times[k] * (times[k + 1] / times[k]) ** fraction

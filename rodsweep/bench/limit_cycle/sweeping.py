@@ -66,14 +66,14 @@ class AccurateCycle:
     @classmethod
     def converged_from_orbit(cls, orbit: Orbit) -> "AccurateCycle":
         """The reference cycle near the orbit `orbit`, for the rod of this orbit."""
-        found = refined_cycle_of_any_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
-        return cls(found.orbit, found.measures.period, found.measures.tip_y_max)
+        result = refined_cycle_of_any_period(orbit, REFERENCE_ACCURACY, NewtonWorkspace())
+        return cls(result.orbit, result.measures.period, result.measures.tip_y_max)
 
     def cycle_at_force(self, F: float) -> "AccurateCycle":
         """The reference cycle of the same rod at the force F, which must be close to the present force."""
-        form = self.orbit.form
-        near = replace(self.orbit, form=replace(form, rod=replace(form.rod, F=F)))
-        orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
+        stress_form = self.orbit.form
+        moved_orbit = replace(self.orbit, form=replace(stress_form, rod=replace(stress_form.rod, F=F)))
+        orbit = newton(moved_orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
         return AccurateCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
@@ -102,15 +102,15 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
     neighbours: dict[str, Neighbour | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
-        before: Neighbour | None = None
+        neighbour: Neighbour | None = None
         for k in range(WARM_UP_POINT_COUNT, 0, -1):
-            there = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
-            before = require_cycle(
-                solve_cycle(there, cycle_request(accuracy), before, axis, workspace)
+            earlier = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
+            neighbour = require_cycle(
+                solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
             ).neighbour
-        neighbours[axis] = before
-    here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
-    return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(here)), neighbours, workspace)
+        neighbours[axis] = neighbour
+    solved = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
+    return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
 
 
 def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
@@ -123,8 +123,8 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     ArithmeticError if a point has no stable cycle. accuracy: relative."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
-        there = earlier_rod(rod.rod, axis, k)
-        cycle = require_cycle(solve_cycle(there, cycle_request(accuracy), start, axis, rod.workspace))
+        earlier = earlier_rod(rod.rod, axis, k)
+        cycle = require_cycle(solve_cycle(earlier, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 
@@ -147,15 +147,15 @@ def cycle_contenders(accuracy: float) -> list[Contender]:
     """Contenders that solve the cycle of a `SweptRod` to an accuracy: one for each of SWEPT_PARAMETERS, which
     starts from a neighbour's cycle, and one for each of COLD_STARTS."""
     setting = f"{accuracy:.0e}"
-    warm = [
+    with_neighbour = [
         Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
         for axis in SWEPT_PARAMETERS
     ]
-    cold = [
+    without_neighbour = [
         Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_without_neighbour, start, accuracy))
         for name, start in COLD_STARTS.items()
     ]
-    return warm + cold
+    return with_neighbour + without_neighbour
 
 
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
@@ -171,14 +171,14 @@ def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)
-    extra = errors | {"order": float(cycle.order) if cycle.elements == 1 else nan}
-    extra["estimate"] = cycle.errors.largest_weighted_error
+    values = errors | {"order": float(cycle.order) if cycle.elements == 1 else nan}
+    values["estimate"] = cycle.errors.largest_weighted_error
     if cycle.neighbour is not None:
         orbit = orbit_of(cycle)
-        extra["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
-        extra["order"] = float(sum(orbit.form.mesh.orders))
-        extra |= {"intervals": orbit.interval_count, "stages": orbit.stage_count}
-    return {"error": max(errors.values()), "extra": extra}
+        values["multipliers"] = len(Linearisation(orbit, NewtonWorkspace()).multipliers())
+        values["order"] = float(sum(orbit.form.mesh.orders))
+        values |= {"intervals": orbit.interval_count, "stages": orbit.stage_count}
+    return {"error": max(errors.values()), "extra": values}
 
 
 def sweep_introduction() -> str:
@@ -213,12 +213,12 @@ def sweep_table(measurements: Sequence[Measurement]) -> str:
     medians = [
         {
             "rod": "median",
-            "way": way,
-            "ms": nan_median(map(milliseconds_per_point, own)),
+            "way": method_name,
+            "ms": nan_median(map(milliseconds_per_point, measured)),
             "failure": "",
         }
-        | {name: nan_median(m.extra.get(name, nan) for m in own) for name in FAILED_COLUMNS}
-        for (way,), own in grouped_by_fields(measurements, "method").items()
+        | {name: nan_median(m.extra.get(name, nan) for m in measured) for name in FAILED_COLUMNS}
+        for (method_name,), measured in grouped_by_fields(measurements, "method").items()
     ]
     return markdown_table(
         "F, k1, k2, gamma3, gamma1 | start | ms | error of period | error of amplitude | estimate | "

@@ -28,10 +28,10 @@ QUICK_RODS = (RODS[2],)  # for a quick run
 def rod_label(point: Rod) -> str:
     """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, number of segments, law and section if
     not the default."""
-    further = [] if point.taper == 1 else [f"taper {point.taper:g}"]
+    taper_texts = [] if point.taper == 1 else [f"taper {point.taper:g}"]
     segments = len(point.build.breaks) - 1
-    further += [] if segments == 1 else [f"{segments} segments"]
+    taper_texts += [] if segments == 1 else [f"{segments} segments"]
     linear = (point.build.law, point.build.section) == (DEFAULT_BUILD.law, DEFAULT_BUILD.section)
-    further += [] if linear else [point.build.law, point.build.section]
+    taper_texts += [] if linear else [point.build.law, point.build.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
-    return ", ".join([*(f"{value:g}" for value in values), *further])
+    return ", ".join([*(f"{value:g}" for value in values), *taper_texts])

@@ -101,42 +101,46 @@ def orbit_of(cycle: Cycle) -> Orbit:
 def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
     """Returns (beam, z): the rod and mesh of an orbit as a beam for integrators, and the state of the orbit
     at the largest y of the tip, (unknowns,)."""
-    form = orbit.form
-    beam = Beam(form.rod, form.mesh)
+    stress_form = orbit.form
+    beam = Beam(stress_form.rod, stress_form.mesh)
     return beam, (orbit.start_state.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
 
 
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
-    near = orbit_of(solve_cycle_at_force(CYCLE_FORCE)).on_mesh(
+    start = orbit_of(solve_cycle_at_force(CYCLE_FORCE)).on_mesh(
         uniform_mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
     )
-    orbit = newton(near, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
+    orbit = newton(start, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
     return ReferenceCycle(
         *state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
     )
 
 
-def measure_following(at: ReferenceCycle, contenders: Iterable[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of the `contenders`, which follow the reference cycle `at` in time; times are divided by
-    the number of periods. rounds: number of timed rounds.
+def measure_following(
+    reference: ReferenceCycle, contenders: Iterable[Contender], rounds: int
+) -> list[Measurement]:
+    """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
+    divided by the number of periods. rounds: number of timed rounds.
     """
-    task = IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
+    task = IntegrationTask(reference.beam, reference.state, FOLLOWED_PERIODS * reference.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, partial(run_errors, at))
+        for m in measure_case(
+            f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, partial(run_errors, reference)
+        )
     ]
 
 
-def run_errors(at: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
+def run_errors(reference: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
-    the first return, and steps per period. at: reference cycle."""
-    found = tip_returns(at.beam, run)
-    period = _rms(np.diff(found.times)[1:] / at.period - 1)
-    amplitude = _rms(found.heights[1:] / at.tip_y_max - 1)
+    the first return, and steps per period. reference: reference cycle."""
+    returns = tip_returns(reference.beam, run)
+    period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
+    amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)
     steps = (len(run.times) - 1) / FOLLOWED_PERIODS
-    extra = {"steps": steps, "period_error": period, "amplitude_error": amplitude}
-    return {"error": max(period, amplitude), "extra": extra}
+    values = {"steps": steps, "period_error": period, "amplitude_error": amplitude}
+    return {"error": max(period, amplitude), "extra": values}
 
 
 def _rms(values: NDArray[np.floating]) -> float:
@@ -163,36 +167,36 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     row = tip_angle_row(beam)
     y = beam.tip_coordinates(run.states)[1]
     angle = run.states @ row
-    rising = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
+    upward_steps = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
     times = []
     states = []
     heights = []
-    for k in rising:
-        again = _integrate_in_small_steps(
+    for k in upward_steps:
+        fine_run = _integrate_in_small_steps(
             beam, run.states[k], SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
         )
-        when = float(_spline(again.times, again.states @ row).roots(extrapolate=False)[0])
+        duration = float(_spline(fine_run.times, fine_run.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):
-            there = _integrate_in_small_steps(beam, run.states[k], when).states[-1]
-            when -= float(row @ there) / float(row @ beam.state_derivative(there))
-        times.append(run.times[k] + when)
-        states.append(_integrate_in_small_steps(beam, run.states[k], when).states[-1])
-    for first, last in pairwise(rising):
-        heights.append(largest_y_near(beam, run, first + int(np.argmax(y[first : last + 1]))))
+            state_at_return = _integrate_in_small_steps(beam, run.states[k], duration).states[-1]
+            duration -= float(row @ state_at_return) / float(row @ beam.state_derivative(state_at_return))
+        times.append(run.times[k] + duration)
+        states.append(_integrate_in_small_steps(beam, run.states[k], duration).states[-1])
+    for start, end in pairwise(upward_steps):
+        heights.append(largest_y_near(beam, run, start + int(np.argmax(y[start : end + 1]))))
     return TipReturns(np.array(times), np.array(states), np.array(heights))
 
 
 def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
-    again = _integrate_in_small_steps(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
-    height = _spline(again.times, beam.tip_coordinates(again.states)[1])
+    fine_run = _integrate_in_small_steps(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
+    height = _spline(fine_run.times, beam.tip_coordinates(fine_run.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())
 
 
-def _integrate_in_small_steps(beam: Beam, z: Array, duration: float) -> Trajectory:
+def _integrate_in_small_steps(beam: Beam, state: Array, duration: float) -> Trajectory:
     """Trajectory from the state z, (unknowns,), over `duration`, in tau2, in SMALL_STEP_COUNT equal steps."""
     limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
-    return integrator(beam.mesh, PERIOD_MAP).run(beam, z, duration, duration / SMALL_STEP_COUNT, limit)
+    return integrator(beam.mesh, PERIOD_MAP).run(beam, state, duration, duration / SMALL_STEP_COUNT, limit)
 
 
 def _spline(times: Array, values: Array) -> PPoly:

@@ -109,11 +109,11 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
 
 def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `arm_table` for one method on one arm. measurements: at all sizes."""
-    reached = [m for m in measurements if m.error <= TARGET_ERROR]
-    if not reached:
+    accurate = [m for m in measurements if m.error <= TARGET_ERROR]
+    if not accurate:
         return f"no better than {min(m.error for m in measurements):.0e}"
-    best = min(reached, key=lambda m: m.seconds)
-    return f"{1e3 * best.seconds:.2f} ms, {best.error:.0e}"
+    fastest = min(accurate, key=lambda m: m.seconds)
+    return f"{1e3 * fastest.seconds:.2f} ms, {fastest.error:.0e}"
 
 
 def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
@@ -131,8 +131,10 @@ def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: Uncach
 def _krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur on elements of the given order,
     without Newton's method for D."""
-    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
-    return leading_eigenvalues(w, MODE_COUNT + 1)
+    eigenvalues = arm_solver(mesh_of_arm(rod, order)).solve(
+        rod, ArmProblem(rod).shift, MODE_COUNT, tight=True
+    )
+    return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def _rodsweep_solver(certify: bool, arms: UncachedArms) -> Complex:
@@ -141,7 +143,7 @@ def _rodsweep_solver(certify: bool, arms: UncachedArms) -> Complex:
 
 def contenders() -> list[Contender]:
     """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
-    own = [
+    rodsweep_contenders = [
         Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, False)),
         Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, True)),
     ]
@@ -149,4 +151,4 @@ def contenders() -> list[Contender]:
         Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
         for order in ELEMENT_ORDERS
     ]
-    return own + krylov
+    return rodsweep_contenders + krylov

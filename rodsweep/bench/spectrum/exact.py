@@ -50,19 +50,19 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     Raises ArithmeticError if the list of eigenvalues is not certified, or if no root of D is found near an
     eigenvalue.
     """
-    found = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
-    if found.status != SpectrumStatus.ok or not found.certified:
-        raise ArithmeticError(f"{rod}: {found.status.name} {found.message}")
+    solved = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
+    if solved.status != SpectrumStatus.ok or not solved.certified:
+        raise ArithmeticError(f"{rod}: {solved.status.name} {solved.message}")
     roots = []
     with mp.workdps(DIGIT_COUNT + GUARD_DIGIT_COUNT):
         D = multiprecision_determinant(rod)
-        for w, error in zip(found.eigenvalues, found.error_estimate, strict=True):
+        for w, error in zip(solved.eigenvalues, solved.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
             # Near a simple root |D| is proportional to the distance: `small` is |D| at the relative distance
             # 10^-DIGIT_COUNT.
-            small = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
-            if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > small:
+            rounding_limit = abs(D(root * (1 + SECANT_STEP))) * mp.mpf(10) ** -DIGIT_COUNT / SECANT_STEP
+            if abs(root - start) > MAX_ROOT_DISTANCE * error or abs(D(root)) > rounding_limit:
                 raise ArithmeticError(f"{rod}: {complex(w)} does not lead to a root of D")
             roots.append(root)
     return roots

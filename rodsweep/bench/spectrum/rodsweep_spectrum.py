@@ -42,7 +42,7 @@ def table_by_case(
     the measurements of a method on a case, at all settings, to the text of a cell.
     """
     rows = [
-        {"method": method, "cells": " | ".join(map(cell, grouped_by_fields(every, "case").values()))}
-        for (method,), every in grouped_by_fields(measurements, "method").items()
+        {"method": method, "cells": " | ".join(map(cell, grouped_by_fields(measured, "case").values()))}
+        for (method,), measured in grouped_by_fields(measurements, "method").items()
     ]
     return markdown_table(" | ".join(["method", *cases]), "{method} | {cells}", rows)

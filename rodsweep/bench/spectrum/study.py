@@ -81,14 +81,14 @@ def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
     rounds, stride = (QUICK_ROUND_COUNT, QUICK_STRIDE) if quick else (ROUND_COUNT, 1)
     rods = [
         Rod(F=float(F), k1=k1, k2=k2, gamma3=gamma3)
-        for k1, k2, gamma3, top in PAPER_RODS.values()
-        for F in np.linspace(0.1 * top, top, FORCE_COUNT)
+        for k1, k2, gamma3, exact_growth in PAPER_RODS.values()
+        for F in np.linspace(0.1 * exact_growth, exact_growth, FORCE_COUNT)
     ]
     exact = [exact_spectrum(rod, MODE_COUNT) for rod in rods]
-    every = contenders() + peers.of(SPECTRUM_RACE)
+    methods = contenders() + peers.of(SPECTRUM_RACE)
     targets = TARGET_ERRORS[: 1 if quick else None]
-    blocks = [equal_error_table(every, rods, exact, target, rounds) for target in targets]
-    measurements = measure_hard_rods(every_nth_setting(every, stride), rounds)
+    blocks = [equal_error_table(methods, rods, exact, target, rounds) for target in targets]
+    measurements = measure_hard_rods(every_nth_setting(methods, stride), rounds)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
     return BenchmarkReport(
@@ -97,30 +97,30 @@ def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
 
 
 def cheapest_contenders(
-    every: Sequence[Contender], rod: Rod, exact: list[Any], target: float
+    methods: Sequence[Contender], rod: Rod, exact: list[Any], target: float
 ) -> dict[str, Contender]:
     """For every method that reaches the error `target` on a rod: the contender with the smallest size that
     reaches this error, by name of the method.
 
-    every: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
+    methods: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
     """
-    found: dict[str, Contender] = {}
-    for contender in every:
-        if contender.method not in found:
+    cheapest: dict[str, Contender] = {}
+    for contender in methods:
+        if contender.method not in cheapest:
             error = relative_error(result_or_error(contender.run, rod), exact)
-            found |= {contender.method: contender} if error <= target else {}
-    return found
+            cheapest |= {contender.method: contender} if error <= target else {}
+    return cheapest
 
 
 def equal_error_table(
-    every: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
+    methods: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
 ) -> str:
     """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
-    `target`, and returns the table of the methods. every: contenders of all methods, by ascending size.
+    `target`, and returns the table of the methods. methods: contenders of all methods, by ascending size.
     exact: exact eigenvalues of each rod.
     """
-    fit = [cheapest_contenders(every, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
-    names = list(dict.fromkeys(contender.method for contender in every))
+    fit = [cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
+    names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {
         (name, i): partial(result_or_error, fit[i][name].run, rod)
         for name in names
@@ -130,13 +130,13 @@ def equal_error_table(
     timed = dict(zip(runs, time_runs(list(runs.values()), [rounds] * len(runs)), strict=True))
     rows = []
     for name in names:
-        reached = [i for i in range(len(rods)) if name in fit[i]]
+        indices = [i for i in range(len(rods)) if name in fit[i]]
         row = {
             "method": name,
-            "points": len(reached),
-            "ms": 1e3 * nan_median(timed[name, i].median for i in reached),
-            "worst": max((relative_error(timed[name, i].outcome, exact[i]) for i in reached), default=nan),
-            "ratio": nan_median(timed[name, i].median / timed[UNCERTIFIED_NAME, i].median for i in reached),
+            "points": len(indices),
+            "ms": 1e3 * nan_median(timed[name, i].median for i in indices),
+            "worst": max((relative_error(timed[name, i].outcome, exact[i]) for i in indices), default=nan),
+            "ratio": nan_median(timed[name, i].median / timed[UNCERTIFIED_NAME, i].median for i in indices),
         }
         rows.append(row)
     return (
@@ -150,12 +150,12 @@ def equal_error_table(
     )
 
 
-def measure_hard_rods(every: Sequence[Contender], rounds: int) -> list[Measurement]:
-    """Measurements of the contenders `every` on all HARD_RODS. rounds: number of timed rounds."""
+def measure_hard_rods(methods: Sequence[Contender], rounds: int) -> list[Measurement]:
+    """Measurements of the contenders `methods` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
-        measurements += measure_case(case, rod, every, rounds, judge)
+        measurements += measure_case(case, rod, methods, rounds, judge)
     return measurements
 
 
@@ -173,9 +173,9 @@ def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `hard_rod_table` for one method on one rod: the smallest error at any size, and the shortest
     time of a size with at most ten times this error; "failed" if all sizes failed. measurements: at all
     sizes."""
-    least = min(m.error for m in measurements)
-    near = min((m for m in measurements if m.error <= 10 * least), key=lambda m: m.seconds)
-    return "failed" if isinf(least) else f"{least:.0e}, {1e3 * near.seconds:.2f} ms"
+    min_error = min(m.error for m in measurements)
+    fastest = min((m for m in measurements if m.error <= 10 * min_error), key=lambda m: m.seconds)
+    return "failed" if isinf(min_error) else f"{min_error:.0e}, {1e3 * fastest.seconds:.2f} ms"
 
 
 def pencil_mesh(order: int) -> Resolution:
@@ -188,8 +188,10 @@ def pencil_mesh(order: int) -> Resolution:
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
     order of the pencil."""
-    w = uniform_solver(pencil_mesh(size)).solve(rod, transverse_problem(rod).shift, MODE_COUNT, tight=True)
-    return leading_eigenvalues(w, MODE_COUNT + 1)
+    eigenvalues = uniform_solver(pencil_mesh(size)).solve(
+        rod, transverse_problem(rod).shift, MODE_COUNT, tight=True
+    )
+    return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def contenders() -> list[Contender]:

@@ -69,7 +69,7 @@ def measure_followed_sweeps(
     folder: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
     small grids.
     """
-    found = []
+    measurements = []
     for axis in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
         for method, shape in ((FOLLOWED_METHOD, axis.shape), (ALONE_METHOD, axis.smaller)):
             directory = folder / f"{method} {axis.name}".replace(" ", "_")
@@ -79,15 +79,15 @@ def measure_followed_sweeps(
             )
             (directory / CONFIG_NAME).write_text(text)
             case = SweepCase(axis.name, prod(shape), (directory,), SOLVED)
-            found.append(followed_measurement(case, method, run(case, 1)))
-    return found
+            measurements.append(followed_measurement(case, method, run(case, 1)))
+    return measurements
 
 
 def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> Measurement:
     """Measurement of the sweep `case` by `method` from its run `run`: times, number of points solved on a
     mesh, number of points without certificate, and memory."""
     variables = read_view(case.directories[0] / RESULT).variables
-    extra = {
+    values = {
         "points": float(case.points),
         "microseconds": 1e6 * run.stated_seconds / case.points,
         "microseconds_solving": 1e6 * run.solver_seconds / case.points,
@@ -96,7 +96,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> M
         "rss_megabytes": max(run.peak_memory) / 1e6,
     }
     return Measurement(
-        f"axis, {case.name}", method, f"{case.points} points", run.stated_seconds, nan, extra=extra
+        f"axis, {case.name}", method, f"{case.points} points", run.stated_seconds, nan, extra=values
     )
 
 
@@ -104,10 +104,12 @@ def followed_table(measurements: Sequence[Measurement]) -> str:
     """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it. measurements:
     as returned by `measure_followed_sweeps`."""
     rows = []
-    for one, other in zip(measurements[::2], measurements[1::2], strict=True):
-        gain = other.extra["microseconds_solving"] / one.extra["microseconds_solving"]
-        row = {"axis": one.case.removeprefix("axis, "), "seconds": one.seconds, "gain": gain}
-        rows.append(row | one.extra | {f"{name}_alone": value for name, value in other.extra.items()})
+    for followed, unfollowed in zip(measurements[::2], measurements[1::2], strict=True):
+        speedup = unfollowed.extra["microseconds_solving"] / followed.extra["microseconds_solving"]
+        row = {"axis": followed.case.removeprefix("axis, "), "seconds": followed.seconds, "gain": speedup}
+        rows.append(
+            row | followed.extra | {f"{name}_alone": value for name, value in unfollowed.extra.items()}
+        )
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are printed by the run and include '

@@ -91,15 +91,15 @@ def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
 
 def shuffled_forces(count: int) -> np.ndarray:
     """Forces F far below, just below, just above and far above HOPF_FORCE, in random order, (count,)."""
-    below = count // 5
-    close = count // 6
-    above = count // 4
+    below_count = count // 5
+    near_count = count // 6
+    above_count = count // 4
     forces = np.concatenate(
         [
-            np.linspace(5, 27, below),
-            HOPF_FORCE * (1 - np.geomspace(1e-6, 1e-2, close)),
-            HOPF_FORCE * (1 + np.geomspace(1e-7, 1e-2, above)),
-            np.linspace(28, 90, count - below - close - above),
+            np.linspace(5, 27, below_count),
+            HOPF_FORCE * (1 - np.geomspace(1e-6, 1e-2, near_count)),
+            HOPF_FORCE * (1 + np.geomspace(1e-7, 1e-2, above_count)),
+            np.linspace(28, 90, count - below_count - near_count - above_count),
         ]
     )
     return np.random.default_rng(1).permutation(forces)
@@ -131,9 +131,9 @@ class CommandRunCost:
 
 def launcher_words(ranks: int) -> list[str]:
     """Arguments that start a command on `ranks` ranks; empty if there is no mpiexec."""
-    beside = Path(sys.executable).with_name("mpiexec")
-    found = str(beside) if beside.exists() else shutil.which("mpiexec")
-    return [found, "-n", str(ranks)] if found else []
+    next_to_python = Path(sys.executable).with_name("mpiexec")
+    mpiexec = str(next_to_python) if next_to_python.exists() else shutil.which("mpiexec")
+    return [mpiexec, "-n", str(ranks)] if mpiexec else []
 
 
 def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRunCost:
@@ -143,18 +143,22 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     command: first arguments of the measured command. fresh: whether to replace an existing result file.
     """
     others = _other_process_seconds()
-    began = time.monotonic()
-    words = [*launcher_words(ranks), *command]
-    started = [_start_command(words, case.solver_kind, directory, fresh) for directory in case.directories]
-    said = [_printed_seconds(process, case.solver_kind) for process in started]
-    seconds = time.monotonic() - began
-    elsewhere = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
+    start = time.monotonic()
+    full_command = [*launcher_words(ranks), *command]
+    processes = [
+        _start_command(full_command, case.solver_kind, directory, fresh) for directory in case.directories
+    ]
+    stated_seconds = [_printed_seconds(process, case.solver_kind) for process in processes]
+    seconds = time.monotonic() - start
+    other_load = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solved = [_solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files]
+    solve_times = [
+        _solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files
+    ]
     return CommandRunCost(
         seconds=seconds,
-        stated_seconds=max(said),
-        solver_seconds=sum(spent for spent, _ in solved),
+        stated_seconds=max(stated_seconds),
+        solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
         peak_memory=tuple(
             _peak_memory(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
         ),
@@ -162,18 +166,18 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
         journal_bytes=sum(
             page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
         ),
-        processors_busy_elsewhere=float(elsewhere),
-        busy_fraction=min(busy for _, busy in solved),
+        processors_busy_elsewhere=float(other_load),
+        busy_fraction=min(busy_fractions for _, busy_fractions in solve_times),
     )
 
 
-def _start_command(words: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
+def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bool) -> subprocess.Popen[str]:
     notes = directory / NOTES
     shutil.rmtree(notes, ignore_errors=True)
     notes.mkdir()
     run = ["run", CONFIG_NAME, "-o", RESULT, *(["--fresh"] if fresh else [])]
     return subprocess.Popen(
-        [*words, str(notes), kind, *run],
+        [*command, str(notes), kind, *run],
         cwd=directory,
         env=dict(os.environ),  # as at the start of this process: MPI adds variables only to the C environment
         stdout=subprocess.PIPE,
@@ -187,26 +191,28 @@ def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed.
     """
     output, errors = process.communicate()
-    said = re.search(r"points? in ([\d.]+) s on", output)
-    stopped = said is None or "stopped by" in output
+    match = re.search(r"points? in ([\d.]+) s on", output)
+    stopped = match is None or "stopped by" in output
     if kind != KILLED and (stopped or process.returncode not in (0, 1)):
         raise EnvironmentIncomplete(f"a run of the benchmark failed: {' '.join(errors.split())[-500:]}")
-    return float(said[1]) if said else nan
+    return float(match[1]) if match else nan
 
 
 def _peak_memory(case: SweepCase, rank: str) -> int:
     """Peak memory of the first rank, or largest peak memory of the other ranks, in bytes. rank:
     FIRST_RANK_PREFIX or OTHER_RANKS_PREFIX."""
-    notes = (note for directory in case.directories for note in (directory / NOTES).glob(f"{rank}-*"))
-    return max((int(note.read_text()) for note in notes), default=0)
+    notes = (file for directory in case.directories for file in (directory / NOTES).glob(f"{rank}-*"))
+    return max((int(file.read_text()) for file in notes), default=0)
 
 
 def _solver_time_and_share(file: Path) -> tuple[float, float]:
     """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
     file."""
     view = read_view(file)
-    busy, idle = (float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle"))
-    return float(view.variables["seconds"].sum(dtype=float)), busy / (busy + idle)
+    busy_seconds, idle_seconds = (
+        float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle")
+    )
+    return float(view.variables["seconds"].sum(dtype=float)), busy_seconds / (busy_seconds + idle_seconds)
 
 
 def _other_process_seconds() -> float:
@@ -217,6 +223,6 @@ def _other_process_seconds() -> float:
         user, nice, system, _, _, irq, softirq, steal = map(int, line.split()[1:9])
     except (OSError, ValueError):
         return nan
-    busy = (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
+    busy_seconds = (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
     children = os.times()
-    return busy - children.children_user - children.children_system
+    return busy_seconds - children.children_user - children.children_system

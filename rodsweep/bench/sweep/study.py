@@ -13,14 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ...wording import counted
-from ..study import (
-    BenchmarkReport,
-    Measurement,
-    grouped_by_fields,
-    markdown_table,
-    nan_median,
-    timing_order,
-)
+from ..study import BenchmarkReport, Measurement, grouped_by_fields, markdown_table, nan_median, timing_order
 from .eigenvalue_following import followed_table, measure_followed_sweeps
 from .launch import (
     INSTANT,
@@ -99,8 +92,8 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
     entries = [(spectra, n, rounds) for n in ranks]
     if len(ranks) > 1:
         halves = [spectrum_case(folder / f"half{i}", TWO_COMMAND_CASE, count // 2, SOLVED) for i in (0, 1)]
-        apart = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
-        entries.append((apart, 1, rounds))
+        separate = replace(halves[0], points=count, directories=halves[0].directories + halves[1].directories)
+        entries.append((separate, 1, rounds))
     return measure_in_turn(run, entries + [(cycles, n, cycle_rounds) for n in ranks])
 
 
@@ -129,7 +122,9 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
     for i in timing_order([rounds for _, _, rounds in entries]):
         case, ranks, _ = entries[i]
         runs[i].append(run(case, ranks))
-    return [sweep_measurement(case, ranks, own) for (case, ranks, _), own in zip(entries, runs, strict=True)]
+    return [
+        sweep_measurement(case, ranks, times) for (case, ranks, _), times in zip(entries, runs, strict=True)
+    ]
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost]) -> Measurement:
@@ -168,10 +163,10 @@ def solved_table(measurements: Sequence[Measurement]) -> str:
     rows = []
     for m in measurements:
         kind = m.case.split(",")[0]  # two commands are compared with one command for the same sweep
-        one = next(other for other in measurements if other.case == kind and other.extra["ranks"] == 1)
+        single = next(other for other in measurements if other.case == kind and other.extra["ranks"] == 1)
         gains = {
-            "gain": nan if m is one else one.seconds / m.seconds,
-            "inside": nan if m is one else one.extra["inside_seconds"] / m.extra["inside_seconds"],
+            "gain": nan if m is single else single.seconds / m.seconds,
+            "inside": nan if m is single else single.extra["inside_seconds"] / m.extra["inside_seconds"],
             "busy": 100 * m.extra["share_busy"],
         }
         rows.append(numbers_of_row(m) | gains)
@@ -206,13 +201,13 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:
             continue
-        for less, more in pairwise(sizes):
-            few = less.extra["points"]
-            many = more.extra["points"]
-            start = sweep_totals(less)
+        for small, large in pairwise(sizes):
+            few = small.extra["points"]
+            many = large.extra["points"]
+            start = sweep_totals(small)
             row: dict[str, object] = {"case": case, "method": method, "less": few, "more": many}
-            row |= {name: (end - start[name]) / (many - few) for name, end in sweep_totals(more).items()}
-            rows.append(row | {"power": growth_power(sizes[0], less, more)})
+            row |= {name: (end - start[name]) / (many - few) for name, end in sweep_totals(large).items()}
+            rows.append(row | {"power": growth_power(sizes[0], small, large)})
     return (
         'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
         "the time of the smallest sweep, grows with the number of points:\n\n"
@@ -234,15 +229,15 @@ def sweep_totals(m: Measurement) -> dict[str, float]:
     }
 
 
-def growth_power(start: Measurement, less: Measurement, more: Measurement) -> float:
+def growth_power(start: Measurement, small: Measurement, large: Measurement) -> float:
     """Exponent p of growth, t(n) - t(n0) ~ (n - n0)^p; t(n): time of a sweep with n points, n0: points of
     `start`.
 
-    start: the smallest sweep. less, more: two successive sizes. nan if `less` is `start`, or if the time does
-    not grow.
+    start: the smallest sweep. small, large: two successive sizes. nan if `small` is `start`, or if the time
+    does not grow.
     """
-    if less is start or min(less.seconds, more.seconds) <= start.seconds:
+    if small is start or min(small.seconds, large.seconds) <= start.seconds:
         return nan
-    times = (more.seconds - start.seconds) / (less.seconds - start.seconds)
-    points = [m.extra["points"] - start.extra["points"] for m in (more, less)]
+    times = (large.seconds - start.seconds) / (small.seconds - start.seconds)
+    points = [m.extra["points"] - start.extra["points"] for m in (large, small)]
     return log(times) / log(points[0] / points[1])

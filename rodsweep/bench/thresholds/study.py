@@ -57,16 +57,16 @@ class ThresholdCase:
     def rod(self, F: float) -> Rod:
         return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
 
-    def error_of(self, kind: str, found: float) -> float:
-        """Relative error of the computed threshold `found` of the kind `kind`, ONSET or HOPF.
+    def error_of(self, kind: str, computed: float) -> float:
+        """Relative error of the computed threshold `computed` of the kind `kind`, ONSET or HOPF.
 
         nan if the rod has no threshold and no threshold was found; inf if the threshold was missed, or if a
         threshold was found that the rod does not have.
         """
         exact = getattr(self, kind)
         if isnan(exact):
-            return nan if isnan(found) else inf
-        error = abs(found - exact) / exact
+            return nan if isnan(computed) else inf
+        error = abs(computed - exact) / exact
         return error if error < WRONG_THRESHOLD else inf
 
 
@@ -138,14 +138,14 @@ def thresholds_study(quick: bool, peers: Peers) -> BenchmarkReport:
     warm_up()
     cases, rounds = (QUICK_CASES, QUICK_ROUND_COUNT) if quick else (UNIFORM_CASES, ROUND_COUNT)
     blocks = [" ".join([introduction(rounds), *peers.notes])]
-    found = []
+    measurements = []
     for group in (cases, ARM_CASES):
         blocks += [ARM_INTRODUCTION] if group is ARM_CASES else []
         for kind in KIND_TITLES:
-            measured = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
-            blocks.append(threshold_table(kind, measured))
-            found += measured
-    return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), found, "rod")
+            rod_measurements = measure_rods(kind, group, contenders(kind) + peers.of(kind), rounds)
+            blocks.append(threshold_table(kind, rod_measurements))
+            measurements += rod_measurements
+    return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), measurements, "rod")
 
 
 def contenders(kind: str) -> list[Contender]:
@@ -167,24 +167,24 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
     rod = case.rod(0.0)
     F_max = F_MAX if rod.is_uniform_and_linear else ARM_F_MAX
     result = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-10, certify, 64))
-    at = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
+    threshold = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
     if not rod.is_uniform_and_linear:
-        return FirstThreshold(at)
+        return FirstThreshold(threshold)
     return FirstThreshold(
-        at, result.search_result.solve_count, determinants=result.search_result.evaluation_count
+        threshold, result.search_result.solve_count, determinants=result.search_result.evaluation_count
     )
 
 
 def measure_rods(
-    kind: str, cases: Iterable[ThresholdCase], every: Sequence[Contender], rounds: int
+    kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[Contender], rounds: int
 ) -> list[Measurement]:
-    """Measurements of the contenders `every`, which find the threshold `kind`, on each rod. kind: ONSET or
-    HOPF. rounds: number of timed rounds.
+    """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
+    or HOPF. rounds: number of timed rounds.
     """
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
-        measurements += measure_case(name, case, every, rounds, partial(threshold_error, case, kind))
+        measurements += measure_case(name, case, contenders, rounds, partial(threshold_error, case, kind))
     return measurements
 
 
@@ -193,11 +193,11 @@ def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> di
     and correct decimal digits per eigenproblem (0 if the threshold was missed).
     """
     error = case.error_of(kind, first.force)
-    missed = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
+    outcome = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
     work = {"eigenproblems": first.solves, "determinants": first.determinants, "products": first.products}
-    extra = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
-    return {"error": error, "failure": missed if isinf(error) else "", "extra": extra}
+    values = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
+    return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}
 
 
 def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
@@ -205,17 +205,17 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     errors on each rod."""
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
-    for (method, setting), own in grouped_by_fields(measurements, "method", "setting").items():
-        solves, determinants, products, digits = (
-            nan_median(m.extra.get(name, nan) for m in own)
+    for (method, setting), measured in grouped_by_fields(measurements, "method", "setting").items():
+        solve_counts, determinants, products, digits = (
+            nan_median(m.extra.get(name, nan) for m in measured)
             for name in ("eigenproblems", "determinants", "products", "digits")
         )
-        work = "" if isnan(solves) else f"{solves:.0f}"
-        for count, what in ((determinants, "D"), (products, "M u")):
-            work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {what}"
-        errors = [m.failure or ("none" if isnan(m.error) else f"{m.error:.0e}") for m in own]
+        work = "" if isnan(solve_counts) else f"{solve_counts:.0f}"
+        for count, unit_text in ((determinants, "D"), (products, "M u")):
+            work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {unit_text}"
+        errors = [m.failure or ("none" if isnan(m.error) else f"{m.error:.0e}") for m in measured]
         row = {"method": method, "setting": setting, "work": work, "digits": digits}
-        rows.append(row | {"ms": nan_median(1e3 * m.seconds for m in own), "errors": " | ".join(errors)})
+        rows.append(row | {"ms": nan_median(1e3 * m.seconds for m in measured), "errors": " | ".join(errors)})
     return markdown_table(
         f"{KIND_TITLES[kind]} | setting | ms | eigenproblems | digits an eigenproblem | {' | '.join(rods)}",
         "{method} | {setting} | {ms:.1f} | {work} | {digits:.2g} | {errors}",

@@ -41,10 +41,11 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
     """
     hosts = {contribution.host for contribution in contributions}
     ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
-    points, busy, idle = zip(
-        *((share.solved_points, share.busy_seconds, share.idle_seconds) for share in ranks), strict=True
+    points, busy_seconds, idle_seconds = zip(
+        *((of_rank.solved_points, of_rank.busy_seconds, of_rank.idle_seconds) for of_rank in ranks),
+        strict=True,
     )
-    numbers = (np.array(points, "i4"), np.array(busy, "f4"), np.array(idle, "f4"))
+    numbers = (np.array(points, "i4"), np.array(busy_seconds, "f4"), np.array(idle_seconds, "f4"))
     return {
         "ranks": len(contributions),
         "hosts": " ".join(sorted(hosts))[: provenance.MAX_ATTRIBUTE_LENGTH],
@@ -84,16 +85,16 @@ class RunEnd:
         ranks = counted(self.ranks, "rank")
         if self.requested_points:
             points = self.requested_points - self.unsolved_points
-            each = self.seconds * self.ranks / max(points, 1)
-            pace = f" ({duration(each)} per point on one rank)" if points else ""
-            sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{pace}")
+            seconds_per_point = self.seconds * self.ranks / max(points, 1)
+            per_point_text = f" ({duration(seconds_per_point)} per point on one rank)" if points else ""
+            sentences.append(f"{counted(points, 'point')} in {self.seconds:.2f} s on {ranks}{per_point_text}")
         if self.solved_items is not None:
             word = "curves in" if self.stored_items is None else "curves stopped after"
-            parts = [f"{word} {self.curve_seconds:.2f} s on {ranks}"]
+            clauses = [f"{word} {self.curve_seconds:.2f} s on {ranks}"]
             for outcome, number in self.solved_items.items():
-                noun, _, what = outcome.partition(" ")
-                parts += [f"{counted(number, noun)} {what}"] if number else []
-            sentences.append("; ".join(parts))
+                item, _, action = outcome.partition(" ")
+                clauses += [f"{counted(number, item)} {action}"] if number else []
+            sentences.append("; ".join(clauses))
         return sentences
 
     def stored_points_clause(self) -> str:

@@ -78,9 +78,9 @@ class _RankRun:
             quiet=request.quiet,
             point_text=self._point_text,
         )
-        wide = self.solver.sweep_wide_solver
-        self.sweep_wide = wide and SweepWideComputation(
-            team, wide, output, self.plan.fingerprint, self.log.append_exception, stop
+        sweep_wide = self.solver.sweep_wide_solver
+        self.sweep_wide = sweep_wide and SweepWideComputation(
+            team, sweep_wide, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
     def run(self) -> int:
@@ -132,8 +132,8 @@ class _RankRun:
         self.seconds = time.monotonic() - self.clock_at_start
         if count:
             history = run_history(contributions, self.team.MPI.Get_library_version())
-            started = {"started": self.date_at_start, "stopped": self.stop.name}
-            self.store.add_journals(last_run_attributes(self.plan) | history | started)
+            attributes = {"started": self.date_at_start, "stopped": self.stop.name}
+            self.store.add_journals(last_run_attributes(self.plan) | history | attributes)
         if not self._lacks_sweep_wide_variables(index_count(self.store.missing())):
             return PendingSweepWideVariables(False)
         if not self.sweep_wide:
@@ -142,9 +142,9 @@ class _RankRun:
             self._record_blas_kernels()
         return PendingSweepWideVariables(True, self.sweep_wide.solver.work_items(read_view(self.output), {}))
 
-    def _print_message(self, text: str, amiss: bool = False) -> None:
-        """Prints a text; in quiet mode only if `amiss`. amiss: whether the text reports a problem."""
-        if amiss or not self.request.quiet:
+    def _print_message(self, text: str, is_problem: bool = False) -> None:
+        """Prints a text; in quiet mode only if it reports a problem (`is_problem`)."""
+        if is_problem or not self.request.quiet:
             click.echo(text)
 
     def _open_store(self) -> list[IndexRange]:
@@ -158,16 +158,16 @@ class _RankRun:
     def _print_store_notes(self) -> None:
         """Prints the notes of the store on points and journals found in unexpected places."""
         for note in self.store.notes:
-            self._print_message(f"{self.output}: {note}", amiss=True)
+            self._print_message(f"{self.output}: {note}", is_problem=True)
         self.store.notes.clear()
 
     def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
-        before = self.store.attributes()
+        attributes = self.store.attributes()
         kernels = provenance.merged_blas_kernels(
-            provenance.blas_kernels_in(before), self.kernels.splitlines()
+            provenance.blas_kernels_in(attributes), self.kernels.splitlines()
         )
-        if kernels != before.get(provenance.KERNELS_ATTRIBUTE):
+        if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
             self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
             click.echo(f"{self.output}: {sentence}")
@@ -200,10 +200,10 @@ class _RankRun:
             raised = counted(exceptions, "unforeseen exception")
             click.echo(f"  {raised}, a bug: please report it with {self.log.path}, which has the traceback")
 
-    def _status_counts_text(self, counts: Mapping[str, int], left: int) -> str:
-        """Number of points of each status as text. counts: by status. left: unsolved points of this run."""
-        words = {"missing": "of other shards"} if self.shard and not left else {}
-        return ", ".join(f"{n} {words.get(name, name)}" for name, n in counts.items())
+    def _status_counts_text(self, counts: Mapping[str, int], unsolved: int) -> str:
+        """Number of points of each status as text. counts: by status. unsolved: points left in this run."""
+        missing_texts = {"missing": "of other shards"} if self.shard and not unsolved else {}
+        return ", ".join(f"{n} {missing_texts.get(name, name)}" for name, n in counts.items())
 
     def _finish(
         self,
@@ -217,34 +217,34 @@ class _RankRun:
         points to be solved. contributions: work of each rank on points. pending, solved: as from `solve_all`.
         exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
-        wide = self.sweep_wide
+        sweep_wide = self.sweep_wide
         missing = self.store.missing()
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        left = self.shard_solver.items_to_solve(missing)[1]
-        part = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        ending = RunEnd(
+        unsolved = self.shard_solver.items_to_solve(missing)[1]
+        text = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
+        run_end = RunEnd(
             ranks=self.team.size,
             requested_points=count,
-            unsolved_points=left,
+            unsolved_points=unsolved,
             stored_points=self.job.points.count - index_count(missing),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
-            solved_items=solved if pending.is_missing and wide else None,
-            stored_items=len(wide.results) if wide and lacks_sweep_wide_variables else None,
+            solved_items=solved if pending.is_missing and sweep_wide else None,
+            stored_items=len(sweep_wide.results) if sweep_wide and lacks_sweep_wide_variables else None,
         )
-        for sentence in ending.time_sentences() or [f"{part} is complete, nothing to do"]:
+        for sentence in run_end.time_sentences() or [f"{text} is complete, nothing to do"]:
             self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
-        amiss = not set(counts) <= expected
-        self._print_message(f"{self.output}: {self._status_counts_text(counts, left)}", amiss)
+        is_problem = not set(counts) <= expected
+        self._print_message(f"{self.output}: {self._status_counts_text(counts, unsolved)}", is_problem)
         self._print_failures(contributions, exceptions)
-        if left or lacks_sweep_wide_variables:
-            how = f"stopped by {self.stop.name}" if self.stop else "not complete"
-            click.echo(f"{how}; {ending.stored_points_clause()}, the same command continues the run")
+        if unsolved or lacks_sweep_wide_variables:
+            end_text = f"stopped by {self.stop.name}" if self.stop else "not complete"
+            click.echo(f"{end_text}; {run_end.stored_points_clause()}, the same command continues the run")
             return STOPPED_STATUS
-        if amiss:
+        if is_problem:
             click.echo(f"  `rodsweep show {self.output}` says what each status means")
-        return int(amiss)
+        return int(is_problem)

@@ -62,11 +62,11 @@ class ShardSolver:
         if self.solver.chained is None:
             items = self.shard.ranges_of_shard(missing, self.job.points.count)
             return items, index_count(items)
-        lacks = IndexSet(missing)
+        is_missing = IndexSet(missing)
         chains = self.solver.chained.chains
-        items = self.shard.ranges_of_shard(chains.unsolved_ranges(lacks), chains.count)
-        each = (lacks[chains.indices(chain)].sum() for item in items for chain in range(*item))
-        return items, int(sum(each))
+        items = self.shard.ranges_of_shard(chains.unsolved_ranges(is_missing), chains.count)
+        missing_counts = (is_missing[chains.indices(chain)].sum() for item in items for chain in range(*item))
+        return items, int(sum(missing_counts))
 
     def solve(
         self, items: list[IndexRange], missing: list[IndexRange], count: int, prepare: Callable[[], object]
@@ -82,29 +82,29 @@ class ShardSolver:
         plan = self.plan
 
         def keep(index: Indices, result: Any) -> None:
-            new = reasons.add(index, result)
+            is_new = reasons.add(index, result)
             if isinstance(result, StretchResult):
-                journal.append_all(np.asarray(index), result.values, new)
+                journal.append_all(np.asarray(index), result.values, is_new)
             else:
-                journal.append(int(index), solver.record(int(index), result), new)
+                journal.append(int(index), solver.record(int(index), result), is_new)
 
         is_shown = self.team.is_first and not self.quiet
-        shown = ProgressReporter(count, self.job.title) if is_shown else SilentProgress()
+        reporter = ProgressReporter(count, self.job.title) if is_shown else SilentProgress()
         directory = journal_directory(self.output)
         try:
             with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_item(IndexSet(missing), directory)
                 loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
-                share = sweep(self.team, ChunkQueue(items, self.team.size), loop, shown, self.stop)
+                contribution = sweep(self.team, ChunkQueue(items, self.team.size), loop, reporter, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write into the folder of {self.output}: {error.strerror or error}"
                 f"{journalled_points_clause(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:
-            shown.close()
+            reporter.close()
         return RunContribution(
-            host=socket.gethostname(), failures=list(reasons.examples.values()), statistics=share
+            host=socket.gethostname(), failures=list(reasons.examples.values()), statistics=contribution
         )
 
     def _solve_item(
@@ -117,13 +117,13 @@ class ShardSolver:
         if solver.stretched:
             return StretchSolver(*solver.stretched, solver.solve, missing)
         if solver.chained:
-            kept = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
-            return ChainSolver(solver.chained, missing, kept, self.stop)
+            checkpoints = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
+            return ChainSolver(solver.chained, missing, checkpoints, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
     def _item_name(self, item: int) -> str:
         """Name of a work item for the progress display. A stretch has the name of its first point."""
         if self.solver.chained:
             return f"chain {item + 1} of {self.solver.chained.chains.count}"
-        first = int(self.solver.stretched[0].indices(item)[0]) if self.solver.stretched else item
-        return f"point {first + 1} of {self.job.points.count}"
+        first_index = int(self.solver.stretched[0].indices(item)[0]) if self.solver.stretched else item
+        return f"point {first_index + 1} of {self.job.points.count}"

@@ -64,37 +64,37 @@ class SweepWideComputation:
         none is left or the run is stopped. Returns (`pending` with the last work items, number of items that
         all ranks solved in this run by `WorkItems.outcome`, on the first rank). Other arguments as in
         `solve`."""
-        solved: dict[str, int] = {}
+        solved_counts: dict[str, int] = {}
         items = pending.work_items
         while items is not None:
             pending = PendingSweepWideVariables(True, items)
-            shares = self.team.gather(self.solve(items, prepare, title)) or []
-            count = sum(share.solved_points for share in shares)
-            solved[items.outcome] = solved.get(items.outcome, 0) + count
+            contributions = self.team.gather(self.solve(items, prepare, title)) or []
+            count = sum(contribution.solved_points for contribution in contributions)
+            solved_counts[items.outcome] = solved_counts.get(items.outcome, 0) + count
             items = self.team.call_on_first_rank(partial(self._next_items, items))
-        return pending, solved
+        return pending, solved_counts
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
         """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
         rank. prepare: function called before the first solve. title: text of the progress display; None for
         no display."""
-        found: dict[int, NamedArrays] = {}
+        results: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
             self.item_results.write(int(item), result)
-            found[int(item)] = result
+            results[int(item)] = result
 
         def take_results() -> dict[int, NamedArrays]:
-            new = found.copy()
-            found.clear()
-            return new
+            new_results = results.copy()
+            results.clear()
+            return new_results
 
-        todo = ChunkQueue([], self.team.size)
+        queue = ChunkQueue([], self.team.size)
         if self.team.is_first:
             self.results = self.item_results.read()
-            todo = DependentItemQueue(items, self.results, self.team.size)
+            queue = DependentItemQueue(items, self.results, self.team.size)
         self._exchange_starts(items)
-        shown = (
+        reporter = (
             ProgressReporter(None, f"{title}, curves", items.progress_noun)
             if self.team.is_first and title
             else SilentProgress()
@@ -107,16 +107,16 @@ class SweepWideComputation:
             item_label=items.item_label,
         )
         try:
-            return sweep(self.team, todo, loop, shown, self.stop)
+            return sweep(self.team, queue, loop, reporter, self.stop)
         finally:
-            shown.close()
+            reporter.close()
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again. items: as in `PendingSweepWideVariables`.
         """
-        chosen = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
-        for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, chosen)):
+        item_numbers = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
+        for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
             self.solver.add_initial_data(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
@@ -134,8 +134,8 @@ class SweepWideComputation:
         first rank."""
         if items.items_to_solve(self.results):
             return None
-        following = self.solver.work_items(read_view(self.output), self.results)
-        return following if following is not None and following.items_to_solve(self.results) else None
+        next_items = self.solver.work_items(read_view(self.output), self.results)
+        return next_items if next_items is not None and next_items.items_to_solve(self.results) else None
 
     def result(self, items: WorkItems | None) -> SweepWideResult | None:
         """The variables that depend on all points, and the points that change; called on the first rank. None

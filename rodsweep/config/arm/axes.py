@@ -50,8 +50,8 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
     in_diagram: whether the points are the rows of a phase diagram.
     """
-    given = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
-    quantities = [name for name in given if sizes[name] > 1 or name in LOAD_OF_RATIO]
+    names = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
+    quantities = [name for name in names if sizes[name] > 1 or name in LOAD_OF_RATIO]
     if all(name in (PARAMETER_STORED_ALONG if in_diagram else SINGLE_PARAMETER_OF) for name in quantities):
         return ()
     return (*quantities, *(name for name in PARAMETERS if sizes.get(name, 1) > 1))

@@ -9,12 +9,12 @@ if TYPE_CHECKING:
     from .section import ArmSection
 
 
-def refuse_conflicting_keys(arm: "ArmSection", forced: bool, given_parameters: Collection[str]) -> None:
+def refuse_conflicting_keys(arm: "ArmSection", needs_force: bool, given_parameters: Collection[str]) -> None:
     """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
     Poisson's ratio.
 
-    arm: section of the config. forced: whether F is a parameter of the task. given_parameters: names of the
-    parameters that replace the arm's values.
+    arm: section of the config. needs_force: whether F is a parameter of the task. given_parameters: names of
+    the parameters that replace the arm's values.
     """
     loads = ["parameters.F"] if "F" in given_parameters else []
     loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(arm, name) is not None]
@@ -25,17 +25,17 @@ def refuse_conflicting_keys(arm: "ArmSection", forced: bool, given_parameters: C
             "parameters.arm.poisson has several values but changes only k2, and parameters.k2 is given "
             "too; give one of them"
         )
-    if arm.load and not forced:
-        in_newton = "load_kind: force gives the loads in newton, and " if arm.load == "force" else ""
+    if arm.load and not needs_force:
+        unit_clause = "load_kind: force gives the loads in newton, and " if arm.load == "force" else ""
         raise ValueError(
-            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it; {in_newton}"
+            f"parameters.arm.{arm.load} is given, but the task solves for the load; remove it; {unit_clause}"
             "F_max sets the end of the search (for the task branch, branch.stop)"
         )
     if arm.load and arm.load_kind:
         raise ValueError(
             f"parameters.arm.load_kind is given, but parameters.arm.{arm.load} is given too; remove load_kind"
         )
-    if forced and not (arm.load or "F" in given_parameters):
+    if needs_force and not (arm.load or "F" in given_parameters):
         if arm.load_kind:
             raise ValueError(
                 f"parameters.arm.load_kind is given, but the task needs a load; give parameters.arm."

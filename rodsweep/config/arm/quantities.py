@@ -13,11 +13,11 @@ from ..axis import AXIS_SCHEMA, RANGE_ENDS, Axis, as_axis
 from ..values import as_float, short_repr
 
 
-def quantity_axis(value: Any, info: ValidationInfo) -> Axis:
+def quantity_axis(value: Any, validation: ValidationInfo) -> Axis:
     """The `Axis`, in SI units, from a quantity, or a list or range of quantities, as the user wrote it;
     ValueError otherwise.
     """
-    name = str(info.field_name)
+    name = str(validation.field_name)
     if isinstance(value, Axis):
         return value
     return _axis_in_si(name, value).model_copy(update={"written": value})
@@ -29,10 +29,10 @@ def _axis_in_si(name: str, value: Any) -> Axis:
         try:
             return as_axis(value | ends)
         except ValueError as error:
-            remark = _missing_unit_remark(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
-            raise ValueError(f"{error}{remark}") from None
+            hint = _missing_unit_remark(name, value) if ends.get("start", 0) >= ends.get("stop", 1) else ""
+            raise ValueError(f"{error}{hint}") from None
     if isinstance(value, list | tuple):
-        return as_axis([_si_number(name, each) for each in value])
+        return as_axis([_si_number(name, entry) for entry in value])
     return as_axis(_si_number(name, value))
 
 
@@ -41,9 +41,11 @@ def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     quantity. span: the range as a mapping.
     """
     ends = [end for end in RANGE_ENDS if end in span]
-    bare = [end for end in ends if not isinstance(span[end], str)]
+    unitless = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
-    return f" in {unit}; {bare[0]} has no unit, so it is in {unit}" if len(bare) == 1 < len(ends) else ""
+    return (
+        f" in {unit}; {unitless[0]} has no unit, so it is in {unit}" if len(unitless) == 1 < len(ends) else ""
+    )
 
 
 def _si_number(name: str, value: Any) -> float:
@@ -58,39 +60,39 @@ def _si_number(name: str, value: Any) -> float:
         raise ValueError(str(error)) from None
 
 
-def with_load_over_flutter(given: Mapping[str, Any]) -> dict[str, Any]:
+def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
     """Keys and values of an arm, with a load like "1.2 of flutter" moved to a key like
     `pressure_over_flutter`.
 
-    given: keys and values from the config. Raises ValueError if only some values of the load are relative, or
-    if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
+    section: keys and values from the config. Raises ValueError if only some values of the load are relative,
+    or if both `pressure` and `pressure_over_flutter` (or both force keys) are given.
     """
-    found = dict(given)
+    result = dict(section)
     for name, load in LOAD_OF_RATIO.items():
-        shares, is_relative = _loads_over_flutter_load(given.get(load))
+        ratios, is_relative = _loads_over_flutter_load(section.get(load))
         if not is_relative:
             continue
-        if not all(each is not None for each in shares):
+        if not all(ratio is not None for ratio in ratios):
             raise ValueError(
-                f"parameters.arm.{load} = {short_repr(given[load])} has relative and absolute values; "
+                f"parameters.arm.{load} = {short_repr(section[load])} has relative and absolute values; "
                 "write all values like '1.2 of flutter', or all as absolute loads"
             )
-        if given.get(name) is not None:
+        if section.get(name) is not None:
             raise ValueError(
                 f"parameters.arm.{load} and parameters.arm.{name} are both given; give one of them"
             )
-        is_range = isinstance(given[load], Mapping)
-        found[name] = {**given[load], **dict(zip(RANGE_ENDS, shares, strict=True))} if is_range else shares
-        del found[load]
-    return found
+        is_range = isinstance(section[load], Mapping)
+        result[name] = {**section[load], **dict(zip(RANGE_ENDS, ratios, strict=True))} if is_range else ratios
+        del result[load]
+    return result
 
 
 def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
     """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
     absolute value. is_relative: whether any value is relative to flutter.
     """
-    shares = [None if one is None else load_over_flutter(one) for one in _written_values(value)]
-    return shares, any(share is not None for share in shares)
+    ratios = [None if written is None else load_over_flutter(written) for written in _written_values(value)]
+    return ratios, any(ratio is not None for ratio in ratios)
 
 
 def drag_axis(value: Any) -> Axis:
@@ -129,21 +131,22 @@ def quantities_as_typed(quantities: Mapping[str, Axis]) -> str:
 
     A remark at the end names the quantities that were given without a unit; 0 needs none.
     """
-    words = []
-    bare = []
+    typed = []
+    unitless = []
     for name, axis in quantities.items():
         ends = axis.array()[[0, -1]].tolist()
         if name == "drag":
             names = drag_names(axis.array().tolist())
-            words.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
+            typed.append(f"drag {DRAG_RANGE_NAME if len(names) == len(DRAG_NAMES) else ' and '.join(names)}")
             continue
         unit = typed_unit(name, axis) if name in UNITS else ""
         texts = [f"{value_in_unit(end, unit, UNITS[name][0]) if unit else end:.6g}" for end in ends]
-        words.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
-        if unit and not all(isinstance(one, str) or one == 0 for one in _written_values(axis.written)):
-            bare.append(name)
-    remark = f" ({' and '.join(bare)} without a unit: SI)" if bare else ""
-    return f"{', '.join(words)}{remark}".replace("_", " ")
+        typed.append(f"{name} {' to '.join(dict.fromkeys(texts))} {unit}".rstrip())
+        written_values = _written_values(axis.written)
+        if unit and not all(isinstance(written, str) or written == 0 for written in written_values):
+            unitless.append(name)
+    hint = f" ({' and '.join(unitless)} without a unit: SI)" if unitless else ""
+    return f"{', '.join(typed)}{hint}".replace("_", " ")
 
 
 def _written_values(written: Any) -> list[Any]:
@@ -155,11 +158,11 @@ def _written_values(written: Any) -> list[Any]:
 
 def _quantity_schema() -> dict[str, Any]:
     """JSON schema of the values that `quantity_axis` accepts: axes of numbers or of texts with a unit."""
-    each: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+    item: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
-    ends = {end: {"description": span["properties"][end]["description"], **each} for end in ("start", "stop")}
+    ends = {end: {"description": span["properties"][end]["description"], **item} for end in ("start", "stop")}
     return {
-        "anyOf": [*each["anyOf"], values | {"items": each}, span | {"properties": span["properties"] | ends}]
+        "anyOf": [*item["anyOf"], values | {"items": item}, span | {"properties": span["properties"] | ends}]
     }
 
 

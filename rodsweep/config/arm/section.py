@@ -83,9 +83,9 @@ class ArmSection(StrictSection):
 
     @model_validator(mode="before")
     @classmethod
-    def _with_relative_load_and_length(cls, given: Any) -> Any:
+    def _with_relative_load_and_length(cls, section: Any) -> Any:
         """Moves a load relative to flutter to its own key, and adds the length of an arm with segments."""
-        return with_length(with_load_over_flutter(given)) if isinstance(given, dict) else given
+        return with_length(with_load_over_flutter(section)) if isinstance(section, dict) else section
 
     @model_validator(mode="after")
     def _require_length_and_modulus(self) -> "ArmSection":
@@ -135,8 +135,8 @@ class ArmSection(StrictSection):
     def settings_of_results(self) -> dict[str, Any]:
         """Data of the arm on which the results depend, except the points: quantities in SI units and material
         keys, by name; None for a quantity that varies between points."""
-        varied = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
-        numbers = {n: None if n in varied else value for n, value in self.first_values.items()}
+        grid_names = SINGLE_PARAMETER_OF if self.is_parameter_grid else self.varying_quantities
+        numbers = {n: None if n in grid_names else value for n, value in self.first_values.items()}
         kind = {} if self.load_kind is None else {"load_kind": self.load_kind}
         return numbers | {n: list(v) if n == "segments" else v for n, v in self.material.items()} | kind
 
@@ -158,10 +158,10 @@ class ArmSection(StrictSection):
             if name in LOAD_OF_RATIO and low < 0:
                 raise ValueError(f"parameters.arm.{name} = {low:.6g} is below 0")
             if name in UNITS and not (QUANTITIES[name].may_be_nonpositive or low > 0):
-                solid = "; leave it out for a solid arm" if name == "inner_radius" and low == 0 else ""
-                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0{solid}")
+                hint = "; leave it out for a solid arm" if name == "inner_radius" and low == 0 else ""
+                raise ValueError(f"parameters.arm.{name} = {low:.6g} {UNITS[name][0]} is not above 0{hint}")
         if self.is_parameter_grid:
-            self.arm_of(self.first_values, loaded=True)
+            self.arm_of(self.first_values, with_load=True)
 
     def dimensionless_axes(self) -> dict[str, Axis]:
         """Axes of the dimensionless parameters of a grid of parameters, by name; without F if the arm has no
@@ -169,12 +169,12 @@ class ArmSection(StrictSection):
 
         Raises ValueError if the arm is not slender, or if the smallest load crushes the arm.
         """
-        arm = self.arm_of(self.first_values, loaded=True)
+        arm = self.arm_of(self.first_values, with_load=True)
         names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *self.cone_parameters)
         axes = {name: Axis(values=(arm.parameter(name),)) for name in names}
         for name in ("k2", "gamma3"):
-            different = {getattr(self.arm_of(each), name) for each in self.values_of_arms()}
-            axes[name] = Axis(values=tuple(sorted(different)))
+            distinct = {getattr(self.arm_of(values), name) for values in self.values_of_arms()}
+            axes[name] = Axis(values=tuple(sorted(distinct)))
         if self.load:
             axes = {"F": self.quantity_axes[self.load].scaled(1 / getattr(arm, SCALE_NAME[self.load]))} | axes
         return axes
@@ -184,8 +184,8 @@ class ArmSection(StrictSection):
         values = {name: axis.array() for name, axis in self.quantity_axes.items()}
         if self.poisson is not None:  # k2 decreases with Poisson's ratio, and axes must increase
             values["poisson"] = values["poisson"][::-1]
-        first = self.arm_of(self.first_values)
-        units = {name: np.array([getattr(first, name)]) for name in ARM_SCALES}
+        arm = self.arm_of(self.first_values)
+        units = {name: np.array([getattr(arm, name)]) for name in ARM_SCALES}
         if len(values.get("drag", ())) > 1:
             first_values = self.first_values
             arms = {drag: self.arm_of(first_values | {"drag": drag}) for drag in values["drag"].tolist()}
@@ -213,14 +213,14 @@ class ArmSection(StrictSection):
         for values in product(*(self.quantity_axes[name].array() for name in names)):
             yield dict(zip(names, map(float, values), strict=True))
 
-    def arm_of(self, values: Mapping[str, float], loaded: bool = False) -> SlenderArm:
+    def arm_of(self, values: Mapping[str, float], with_load: bool = False) -> SlenderArm:
         """The arm with the given quantities; ValueError for invalid values.
 
-        values: quantities in SI units, by name. loaded: whether the load is included; a load relative to
+        values: quantities in SI units, by name. with_load: whether the load is included; a load relative to
         flutter is always left out. Raises ArmOutsideModel if the rod model does not apply to the arm.
         """
         section: dict[str, Any] = {name: value for name, value in values.items() if name in NON_LOAD_KEYS}
-        has_load = loaded and self.load_key in LOADS
+        has_load = with_load and self.load_key in LOADS
         section |= {str(self.load_key): values[str(self.load_key)]} if has_load else NO_LOAD
         (drag,) = drag_names([section.pop("drag", 0.0)])
         try:

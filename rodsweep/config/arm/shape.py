@@ -36,16 +36,16 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
         raise ValueError(f"parameters.arm.{error}") from None
 
 
-def with_length(given: dict[str, Any]) -> dict[str, Any]:
-    """The keys and values `given` of an arm; if segments are given without `length`, their total length is
+def with_length(section: dict[str, Any]) -> dict[str, Any]:
+    """The keys and values `section` of an arm; if segments are given without `length`, their total length is
     added.
     """
-    if given.get("segments") is None or given.get("length") is not None:
-        return given
-    texts = as_segments(given["segments"]) or ()
+    if section.get("segments") is None or section.get("length") is not None:
+        return section
+    texts = as_segments(section["segments"]) or ()
     unit = unit_of(texts[0].partition(":")[0], "m")
     total = sum(segment.length for segment in segments_of(texts))
-    return given | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
+    return section | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 
 def build_of(arm: "ArmSection") -> Build:
@@ -56,17 +56,17 @@ def build_of(arm: "ArmSection") -> Build:
     different profiles.
     """
     try:
-        alike = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)
+        uniform_build = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)
     except ValueError as error:
         raise ValueError(f"parameters.arm.{error}") from None
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
-        return alike
+        return uniform_build
     if arm.is_parameter_grid and len(set(builds_of(arm))) > 1:
         raise ValueError(
             f"parameters.arm.{arm.varying_quantities[0]} has several values, and the ratios between "
             "the segments would differ from value to value; give one value"
         )
-    return next(builds_of(arm), alike)
+    return next(builds_of(arm), uniform_build)
 
 
 def builds_of(arm: "ArmSection") -> Iterator[Build]:
@@ -85,7 +85,7 @@ def tapers_of(arm: "ArmSection") -> set[float]:
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
-    return {tip / base for tip, base in pairs}
+    return {tip_value / base_value for tip_value, base_value in pairs}
 
 
 def refuse_misused_shape(arm: "ArmSection", given_parameters: dict[str, Any]) -> None:

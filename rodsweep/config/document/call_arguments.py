@@ -17,11 +17,11 @@ def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callabl
     """Decorator: wrong arguments of a call raise an InputError that quotes `example`, not a TypeError."""
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
-        asked = signature(function)
+        parameters = signature(function)
 
         @wraps(function)
         def call(*values: P.args, **named: P.kwargs) -> R:
-            require_arguments_of_signature(asked, example, values, named)
+            require_arguments_of_signature(parameters, example, values, named)
             return function(*values, **named)
 
         return call
@@ -30,32 +30,36 @@ def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callabl
 
 
 def require_arguments_of_signature(
-    asked: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
+    allowed: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
-    asked: signature of the function. example: correct call, for the message. values, named: positional and
+    allowed: signature of the function. example: correct call, for the message. values, named: positional and
     keyword arguments of the call.
     """
-    ours = list(asked.parameters.values())
-    by_place = [p.name for p in ours if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
-    if len(values) > len(by_place):
-        surplus = short_repr(values[len(by_place)])
-        raise InputError(f"the argument {surplus} has no name; write it as in {example}")
-    known = [p.name for p in ours if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
-    takes_any = any(p.kind is Parameter.VAR_KEYWORD for p in ours)
+    parameters = list(allowed.parameters.values())
+    positional = [p.name for p in parameters if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
+    if len(values) > len(positional):
+        extra_text = short_repr(values[len(positional)])
+        raise InputError(f"the argument {extra_text} has no name; write it as in {example}")
+    names = [p.name for p in parameters if p.kind not in (Parameter.VAR_KEYWORD, Parameter.VAR_POSITIONAL)]
+    takes_any_keyword = any(p.kind is Parameter.VAR_KEYWORD for p in parameters)
     for name in named:
-        if name in by_place[: len(values)]:
+        if name in positional[: len(values)]:
             raise InputError(f"{name} is given twice; write it as in {example}")
-        if not takes_any and name not in known:
-            raise unknown_argument_error(name, [word for word in known if word != "self"])
-    given = {*by_place[: len(values)], *named}
-    for parameter in ours:
-        if parameter.name in known and parameter.default is Parameter.empty and parameter.name not in given:
+        if not takes_any_keyword and name not in names:
+            raise unknown_argument_error(name, [word for word in names if word != "self"])
+    given_names = {*positional[: len(values)], *named}
+    for parameter in parameters:
+        if (
+            parameter.name in names
+            and parameter.default is Parameter.empty
+            and parameter.name not in given_names
+        ):
             raise InputError(f"{parameter.name} is missing; write it as in {example}")
 
 
-def unknown_argument_error(name: str, known: list[str]) -> InputError:
-    """InputError for an unknown argument `name`, which suggests the most similar of the names `known`, or
+def unknown_argument_error(name: str, names: list[str]) -> InputError:
+    """InputError for an unknown argument `name`, which suggests the most similar of the names `names`, or
     lists all of these names."""
-    return InputError(f"unknown key {name}; {unknown_key_hint(name, known)}")
+    return InputError(f"unknown key {name}; {unknown_key_hint(name, names)}")

@@ -30,51 +30,49 @@ MAX_DEPTH = 20
 
 def read_config_text(path: Path) -> str:
     """Text of a UTF-8 file of at most MAX_CONFIG_BYTES bytes; InputError for any other file."""
-    where = printable_name(path)
+    name = printable_name(path)
     try:
         if path.exists() and not (path.is_file() or path.is_dir()):
-            raise InputError(f"{where} is not a file")  # opening a pipe would wait for its writer
+            raise InputError(f"{name} is not a file")  # opening a pipe would wait for its writer
         with path.open("rb") as file:
             data = file.read(MAX_CONFIG_BYTES + 1)
     except OSError as error:
-        raise InputError(f"{where} cannot be read: {error.strerror}") from error
+        raise InputError(f"{name} cannot be read: {error.strerror}") from error
     if data.startswith(HDF5_SIGNATURE):
-        raise InputError(f"{where} is a result file, not a config; `rodsweep show` prints its content")
+        raise InputError(f"{name} is a result file, not a config; `rodsweep show` prints its content")
     if path.suffix in TABLE_ENDINGS:
-        raise InputError(
-            f"{where} is a table, not a config; name the table in a config, as parameters.points"
-        )
+        raise InputError(f"{name} is a table, not a config; name the table in a config, as parameters.points")
     if len(data) > MAX_CONFIG_BYTES:
         raise InputError(
-            f"{where} is larger than {MAX_CONFIG_BYTES} bytes, the limit for a config; write many points "
+            f"{name} is larger than {MAX_CONFIG_BYTES} bytes, the limit for a config; write many points "
             "into a CSV file and name the file as parameters.points"
         )
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"{where} is not UTF-8 text") from None
+        raise InputError(f"{name} is not UTF-8 text") from None
 
 
-def parsed_yaml(text: str, where: str) -> Any:
+def parsed_yaml(text: str, source: str) -> Any:
     """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
-    where: name of the text, with which the message begins.
+    source: name of the text, with which the message begins.
     """
     if any(line.startswith("%") for line in text.splitlines()):
-        raise InputError(f"{where}: directives (%...) are not allowed in a config")
+        raise InputError(f"{source}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)
     yaml.Parser = _PlainDataParser
     try:
         return yaml.load(text)
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise InputError(f"{source}: {error}") from None
     except YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        location = f", line {mark.line + 1}, column {mark.column + 1}" if mark else ""
+        position = getattr(error, "problem_mark", None)
+        location = f", line {position.line + 1}, column {position.column + 1}" if position else ""
         context, problem = (getattr(error, name, None) or "" for name in ("context", "problem"))
         message = printable_name(" ".join(f"{context} {problem}".split()) or " ".join(str(error).split()))
-        raise InputError(f"{where}{location}: not valid YAML: {message}") from None
+        raise InputError(f"{source}{location}: not valid YAML: {message}") from None
     except (ValueError, OverflowError, RecursionError) as error:
-        raise InputError(f"{where}: not valid YAML: {printable_name(error)}") from None
+        raise InputError(f"{source}: not valid YAML: {printable_name(error)}") from None
 
 
 class _PlainDataParser(Parser):
@@ -85,9 +83,9 @@ class _PlainDataParser(Parser):
     def get_event(self) -> Event:
         event = super().get_event()
         if getattr(event, "anchor", None):
-            mark = "*" if isinstance(event, AliasEvent) else "&"
+            symbol = "*" if isinstance(event, AliasEvent) else "&"
             raise InputError(
-                f"anchors and aliases ({printable_name(mark + event.anchor)}) are not allowed in a config"
+                f"anchors and aliases ({printable_name(symbol + event.anchor)}) are not allowed in a config"
             )
         if getattr(event, "tag", None):
             raise InputError(f"tags ({printable_name(event.tag)}) are not allowed in a config")

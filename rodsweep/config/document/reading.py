@@ -36,18 +36,18 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
     YAML text lists the overrides as comments.
     """
     text = read_config_text(path)
-    where = printable_name(path)
-    tree = parsed_yaml(text, where)
+    name = printable_name(path)
+    tree = parsed_yaml(text, name)
     if not isinstance(tree, dict):
         problem = "is empty" if tree is None else f"is {short_repr(tree)}, not a mapping of keys to values"
-        raise InputError(f"{where}: the config {problem}; give task and parameters")
+        raise InputError(f"{name}: the config {problem}; give task and parameters")
     for override in overrides:
         _apply_override(tree, override)
         text += f"\n# --set {override}"
     try:
         return validated_config(with_file_contents(tree, path.parent)), text
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise InputError(f"{name}: {error}") from None
 
 
 def validated_config(tree: dict[str, Any]) -> Config:
@@ -59,8 +59,8 @@ def validated_config(tree: dict[str, Any]) -> Config:
         return config.model_validate(tree)
     except ValidationError as error:
         problems = sorted(error.errors(include_url=False), key=lambda problem: problem["type"] == "missing")
-        more = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
-        raise InputError(f"{message_of_problem(config, problems[0])}{more}") from None
+        count_text = f" (and {len(problems) - 1} more)" if len(problems) > 1 else ""
+        raise InputError(f"{message_of_problem(config, problems[0])}{count_text}") from None
 
 
 def resolved_config(config: Config) -> dict[str, Any]:
@@ -73,24 +73,24 @@ def resolved_config(config: Config) -> dict[str, Any]:
     return tree
 
 
-def config_from_resolved(resolved: dict[str, Any]) -> Config:
+def config_from_resolved(config_dict: dict[str, Any]) -> Config:
     """The config from a resolved config that `resolved_config` returned; ValueError if this version of
     rodsweep does not accept the config."""
     try:
-        task = resolved["task"]
+        task = config_dict["task"]
         section: Any = CONFIGS[task].model_fields[task].annotation
         fields = section.model_fields
-        parameters = _with_axes(resolved["parameters"])
+        parameters = _with_axes(config_dict["parameters"])
         if "arm" in parameters:
-            given = parameters | {"arm": _with_axes(parameters["arm"])}
-            parameters = _without_arm_axes(given, makes_diagram(task))
+            values = parameters | {"arm": _with_axes(parameters["arm"])}
+            parameters = _without_arm_axes(values, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
         options = {
             name: _with_axes(value) if isinstance(value, dict) else value
-            for name, value in resolved[task].items()
+            for name, value in config_dict[task].items()
             if name not in fields or value != fields[name].default
         }
-        return validated_config(resolved | {"parameters": parameters, task: options})
+        return validated_config(config_dict | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
 
@@ -109,11 +109,15 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
     in_diagram: whether the task is phase_diagram.
     """
     arm = ArmSection.model_validate(parameters["arm"])
-    made = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
+    dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
     return {
         name: value
         for name, value in parameters.items()
-        if not (name in made and isinstance(value, Axis) and value.equals_within_rounding(made[name]))
+        if not (
+            name in dimensionless
+            and isinstance(value, Axis)
+            and value.equals_within_rounding(dimensionless[name])
+        )
     }
 
 
@@ -128,16 +132,16 @@ def tree_yaml(tree: dict[str, Any]) -> str:
 
 def config_yaml(config: Config) -> str:
     """YAML text of a config, with only the keys that differ from their defaults."""
-    given = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
-    axes = {name: _config_notation(value) for name, value in given["parameters"].items()}
+    values = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
+    axes = {name: _config_notation(value) for name, value in values["parameters"].items()}
     options = {
         name: {key: _config_notation(axis) for key, axis in value.items()}
         if isinstance(value, dict)
         else value
-        for name, value in given.get(config.task, {}).items()
+        for name, value in values.get(config.task, {}).items()
     }
-    asked = {config.task: options} if options else {}
-    return tree_yaml({"task": config.task} | given | {"parameters": axes} | asked)
+    task_section = {config.task: options} if options else {}
+    return tree_yaml({"task": config.task} | values | {"parameters": axes} | task_section)
 
 
 def _config_notation(axis: Any) -> Any:
@@ -147,8 +151,8 @@ def _config_notation(axis: Any) -> Any:
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
-        own = {"drag": drag_names(axis["drag"]["values"])} if "drag" in axis else {}
-        return {name: _config_notation(value) for name, value in axis.items()} | own
+        drag_entry = {"drag": drag_names(axis["drag"]["values"])} if "drag" in axis else {}
+        return {name: _config_notation(value) for name, value in axis.items()} | drag_entry
     values = axis.get("values", axis)
     return values[0] if isinstance(values, list) and len(values) == 1 else values
 
@@ -160,9 +164,9 @@ def _apply_override(tree: dict, override: str) -> None:
     where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
-    key, equals, value = override.partition("=")
+    key, separator, value = override.partition("=")
     path = key.strip().split(".")
-    if not equals or not all(path):
+    if not separator or not all(path):
         raise InputError(f"{where}: write it as key=value, for example parameters.F.num=50")
     if len(path) > MAX_DEPTH:
         raise InputError(
@@ -173,25 +177,25 @@ def _apply_override(tree: dict, override: str) -> None:
         node = node.setdefault(name, {})
         if not isinstance(node, dict):
             parent = dotted_key(path[: i + 1])
-            rest = dotted_key(path[i + 1 :])
-            raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {rest}")
+            inner_key = dotted_key(path[i + 1 :])
+            raise InputError(f"{where}: {parent} is {short_repr(node)}, which has no key {inner_key}")
     node[path[-1]] = parsed_yaml(value, where)
 
 
 def _task_name(tree: dict) -> str:
     """Name of the task of a parsed config; InputError for an unknown task or a section of another task."""
-    known = enumeration(tuple(CONFIGS), "or")
+    tasks_text = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
-        close = similar_keys("task", others)
-        if close:
+        similar = similar_keys("task", others)
+        if similar:
             raise InputError(
-                f"unknown key {dotted_key(close)}; did you mean task? Its value should be {known}"
+                f"unknown key {dotted_key(similar)}; did you mean task? Its value should be {tasks_text}"
             )
-        raise InputError(f"task is missing; it should be {known}")
+        raise InputError(f"task is missing; it should be {tasks_text}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
-        raise InputError(f"task = {short_repr(task)} is not allowed; it should be {known}")
+        raise InputError(f"task = {short_repr(task)} is not allowed; it should be {tasks_text}")
     for name in CONFIGS:
         if name in tree and name != task:
             section: Any = CONFIGS[task].model_fields[task].annotation

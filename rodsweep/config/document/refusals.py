@@ -36,9 +36,9 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     value = problem["input"]
     if kind == "extra_forbidden":
         fields = _section_class(config, location[:-1]).model_fields
-        known = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
-        elsewhere = keys_in_other_sections(config, location)
-        hint = f"did you mean {elsewhere[0]}?" if elsewhere else unknown_key_hint(location[-1], known)
+        names = [*(n for n in PARAMETERS if n in fields), *(n for n in fields if n not in PARAMETERS)]
+        sections = keys_in_other_sections(config, location)
+        hint = f"did you mean {sections[0]}?" if sections else unknown_key_hint(location[-1], names)
         return f"unknown key {key}; {hint}"
     if kind == "missing":
         return f"{key} is missing"
@@ -53,17 +53,19 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
 
-def unknown_key_hint(key: str, known: Sequence[str], there_are: str = "known keys are") -> str:
+def unknown_key_hint(key: str, allowed: Sequence[str], start: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
-    there_are: beginning of the list. For a diameter, the hint is to give the radius.
+    start: beginning of the list. For a diameter, the hint is to give the radius.
     """
-    if radius := radius_of_diameter(key, known):
+    if radius := radius_of_diameter(key, allowed):
         return f"give {radius}, half of it"
-    close = similar_keys(key, known)
-    return f"did you mean {enumeration(tuple(close), 'or')}?" if close else f"{there_are} {', '.join(known)}"
+    similar = similar_keys(key, allowed)
+    return (
+        f"did you mean {enumeration(tuple(similar), 'or')}?" if similar else f"{start} {', '.join(allowed)}"
+    )
 
 
-def similar_keys(key: str, known: Sequence[str]) -> list[str]:
+def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
     """The known keys that are most similar to an unknown key, in the given order; empty if no key is similar,
     or if more than MAX_SUGGESTIONS keys are equally similar.
 
@@ -71,18 +73,18 @@ def similar_keys(key: str, known: Sequence[str]) -> list[str]:
     substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
     LETTERS_PER_TYPING_ERROR letters.
     """
-    near = [
-        (slips, name)
-        for name in known
+    candidates = [
+        (errors, name)
+        for name in allowed
         if (
-            slips := _typing_error_count(
+            errors := _typing_error_count(
                 _without_case_and_underscores(key), _without_case_and_underscores(name)
             )
         )
         is not None
     ]
-    least = min((slips for slips, _ in near), default=0)
-    nearest_ones = [name for slips, name in near if slips == least]
+    fewest = min((errors for errors, _ in candidates), default=0)
+    nearest_ones = [name for errors, name in candidates if errors == fewest]
     return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
@@ -105,18 +107,18 @@ def _typing_error_count(key: str, name: str) -> float | None:
     return distance if LETTERS_PER_TYPING_ERROR * distance <= longest else None
 
 
-def _edit_distance(a: str, b: str) -> int:
-    """Edit distance of the words a and b: number of inserted, deleted, changed and exchanged neighbouring
-    letters.
+def _edit_distance(first: str, second: str) -> int:
+    """Edit distance of the words a and second: number of inserted, deleted, changed and exchanged
+    neighbouring letters.
     """
-    rows = [list(range(len(b) + 1))]
-    for i, letter in enumerate(a, 1):
+    rows = [list(range(len(second) + 1))]
+    for i, letter in enumerate(first, 1):
         row = [i]
-        for j, other in enumerate(b, 1):
-            least = min(rows[-1][j] + 1, row[-1] + 1, rows[-1][j - 1] + (letter != other))
-            if i > 1 and j > 1 and (letter, a[i - 2]) == (b[j - 2], other):
-                least = min(least, rows[-2][j - 2] + 1)
-            row.append(least)
+        for column, second_letter in enumerate(second, 1):
+            cost = min(rows[-1][column] + 1, row[-1] + 1, rows[-1][column - 1] + (letter != second_letter))
+            if i > 1 and column > 1 and (letter, first[i - 2]) == (second[column - 2], second_letter):
+                cost = min(cost, rows[-2][column - 2] + 1)
+            row.append(cost)
         rows.append(row)
     return rows[-1][-1]
 
@@ -126,11 +128,11 @@ def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> lis
     `location`.
     """
     task = str(get_args(config.model_fields["task"].annotation)[0])
-    found = []
+    keys = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
         if location[-1] in _section_class(config, section).model_fields and section != tuple(location[:-1]):
-            found.append(dotted_key((*section, location[-1])))
-    return found
+            keys.append(dotted_key((*section, location[-1])))
+    return keys
 
 
 def dotted_key(location: Sequence[str]) -> str:
@@ -165,7 +167,7 @@ def allowed_values_text(field: FieldInfo) -> str:
     """
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
-    bound = {name: getattr(part, name) for part in field.metadata for name in bounds if hasattr(part, name)}
+    bound = {name: getattr(rule, name) for rule in field.metadata for name in bounds if hasattr(rule, name)}
     if field.description:
         return field.description
     if get_origin(kind) is Literal:

@@ -84,31 +84,33 @@ class BranchConfig(Config):
 
     @model_validator(mode="before")
     @classmethod
-    def _without_default_of_followed(cls, given: Any) -> Any:
+    def _without_default_of_followed(cls, section: Any) -> Any:
         """Returns the config without the default of the followed parameter, so that only a value given by the
         user is refused.
         """
-        sections = given if isinstance(given, dict) else {}
+        sections = section if isinstance(section, dict) else {}
         options = sections.get("branch")
         parameters = sections.get("parameters")
-        along = options.get("along") if isinstance(options, dict) else None
+        parameter = options.get("along") if isinstance(options, dict) else None
         if (
             not isinstance(parameters, dict)
-            or not isinstance(along, str)
-            or along not in DEFAULT_VALUES_OF_PARAMETERS
+            or not isinstance(parameter, str)
+            or parameter not in DEFAULT_VALUES_OF_PARAMETERS
         ):
-            return given
-        return sections | {"parameters": {along: None, **parameters}}
+            return section
+        return sections | {"parameters": {parameter: None, **parameters}}
 
     @model_validator(mode="after")
     def _require_one_followed_parameter(self) -> "BranchConfig":
-        along = self.branch.along
-        why = f"follows {along}; remove it and set branch.start and branch.stop, or another branch.along"
-        self.refuse_solved_parameter(along, why)
-        if self.parameters.arm is not None and along != "F":
+        parameter = self.branch.along
+        reason = (
+            f"follows {parameter}; remove it and set branch.start and branch.stop, or another branch.along"
+        )
+        self.refuse_solved_parameter(parameter, reason)
+        if self.parameters.arm is not None and parameter != "F":
             raise ValueError(
-                f"branch.along: {along} is not allowed with parameters.arm, which gives {along}; follow F, "
-                "or give the parameters without an arm"
+                f"branch.along: {parameter} is not allowed with parameters.arm, which gives {parameter}; "
+                "follow F, or give the parameters without an arm"
             )
         self.parameters.require_points(self.parameter_names)
         return self

@@ -68,24 +68,26 @@ class LimitCycleConfig(Config):
         values.
         """
         sizes = self.parameters.single_parameter_sizes
-        given = self.limit_cycle.along
-        if given == LONGEST_AXIS:
-            return max(sizes, key=lambda name: sizes[name], default=given)
-        return SINGLE_PARAMETER_OF.get(given, given)
+        parameter = self.limit_cycle.along
+        if parameter == LONGEST_AXIS:
+            return max(sizes, key=lambda name: sizes[name], default=parameter)
+        return SINGLE_PARAMETER_OF.get(parameter, parameter)
 
     @property
     def options_without_effect(self) -> dict[str, str]:
         options = self.limit_cycle
-        found: dict[str, str] = {}
+        required_settings: dict[str, str] = {}
         if options.start != "neighbour":
-            found |= dict.fromkeys(("along", "direction"), "start: neighbour")
+            required_settings |= dict.fromkeys(("along", "direction"), "start: neighbour")
         if options.method == "integration":
-            found |= dict.fromkeys(("start", "along", "direction", "transient"), "method: collocation")
+            required_settings |= dict.fromkeys(
+                ("start", "along", "direction", "transient"), "method: collocation"
+            )
         elif options.start == "hopf":
-            found |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
+            required_settings |= dict.fromkeys(("amplitude", "most_periods", "transient"), "start: mode")
         if not options.shapes:
-            found["nodes"] = "shapes"
-        return found
+            required_settings["nodes"] = "shapes"
+        return required_settings
 
     @property
     def settings_of_results(self) -> dict[str, Any]:
@@ -100,11 +102,13 @@ class LimitCycleConfig(Config):
         self.parameters.require_points(self.parameter_names)
         self.refuse_options_without_effect()
         arm = self.parameters.arm
-        along = self.limit_cycle.along
-        if along in SINGLE_PARAMETER_OF and (arm is None or along not in {arm.load, *arm.quantity_axes}):
+        parameter = self.limit_cycle.along
+        if parameter in SINGLE_PARAMETER_OF and (
+            arm is None or parameter not in {arm.load, *arm.quantity_axes}
+        ):
             raise ValueError(
-                f"limit_cycle.along is {along} but parameters.arm.{along} is not given; give it, or set "
-                f"along to {enumeration(NONLINEAR_PARAMETERS, 'or')}"
+                f"limit_cycle.along is {parameter} but parameters.arm.{parameter} is not given; give it, or "
+                f"set along to {enumeration(NONLINEAR_PARAMETERS, 'or')}"
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(

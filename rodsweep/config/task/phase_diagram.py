@@ -54,18 +54,18 @@ class PhaseDiagramOptions(StrictSection):
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
         given.
         """
-        given = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETERS]
-        return next(((name, axis) for name, axis in given if axis is not None), None)
+        axes = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETERS]
+        return next(((name, axis) for name, axis in axes if axis is not None), None)
 
     @model_validator(mode="after")
     def _require_valid_bautin_along(self) -> "PhaseDiagramOptions":
         if self.bautin_along is None:
             return self
-        given = [name for name in TRANSVERSE_PARAMETERS if getattr(self.bautin_along, name) is not None]
-        if len(given) != 1:
-            raise ValueError(f"bautin_along has {len(given)} parameters; give one, with at least two values")
-        name = given[0]
-        axis = getattr(self.bautin_along, given[0])
+        names = [name for name in TRANSVERSE_PARAMETERS if getattr(self.bautin_along, name) is not None]
+        if len(names) != 1:
+            raise ValueError(f"bautin_along has {len(names)} parameters; give one, with at least two values")
+        name = names[0]
+        axis = getattr(self.bautin_along, names[0])
         if axis.size < 2:
             raise ValueError(f"bautin_along.{name} has a single value; give at least two")
         _require_finite_values(name, axis.array().tolist())
@@ -122,10 +122,10 @@ class PhaseDiagramConfig(LinearConfig):
         settings = super().settings_of_results
         axes = self.parameters.axes
         line = self.plane_parameters[0]
-        asked: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
-        settings |= {"parameters": settings["parameters"] | asked}
+        requested: dict[str, Any] = {line: {"values": axes[line].array().tolist()}}
+        settings |= {"parameters": settings["parameters"] | requested}
         # Criticality changes only the curves, not the rows. Rows depend on gamma1 through their cycles only.
-        asked_of_curves = settings["phase_diagram"].pop("criticality")
+        criticality_requested = settings["phase_diagram"].pop("criticality")
         settings["phase_diagram"].pop("bautin_along", None)
         settings["parameters"].pop("gamma1", None)
         if self.phase_diagram.cycles:
@@ -136,7 +136,7 @@ class PhaseDiagramConfig(LinearConfig):
                     "logarithmic": [name for name in self.plane_parameters if axes[name].is_logarithmic]
                 }
             }
-        if asked_of_curves:
+        if criticality_requested:
             settings["together"]["criticality"] = {"gamma1": self.gamma1}
         if self.phase_diagram.bautin_parameter is not None:
             name, axis = self.phase_diagram.bautin_parameter
@@ -162,25 +162,25 @@ class PhaseDiagramConfig(LinearConfig):
 
     @model_validator(mode="after")
     def _require_two_axes(self) -> "PhaseDiagramConfig":
-        every = enumeration(LINEAR_PARAMETERS, "and")
+        allowed = enumeration(LINEAR_PARAMETERS, "and")
         if self.parameters.points is not None:
             raise ValueError(
                 "parameters.points is given but the task phase_diagram needs axes; remove it and give "
-                f"{every}"
+                f"{allowed}"
             )
         self.parameters.require_points(LINEAR_PARAMETERS, or_points=False)
         if self.parameters.arm_axes:
-            several = next(
+            varied = next(
                 name for name in self.parameters.arm_axes if name not in (*SINGLE_PARAMETER_OF, "drag")
             )
-            changes = "no parameter" if several in FLUID_QUANTITIES else "several parameters at once"
-            why = (
+            changes = "no parameter" if varied in FLUID_QUANTITIES else "several parameters at once"
+            reason = (
                 "is relative to flutter"
-                if several in LOAD_OF_RATIO
+                if varied in LOAD_OF_RATIO
                 else f"has several values, which change {changes}"
             )
             raise ValueError(
-                f"parameters.arm.{LOAD_OF_RATIO.get(several, several)} {why}; the axes of a phase "
+                f"parameters.arm.{LOAD_OF_RATIO.get(varied, varied)} {reason}; the axes of a phase "
                 f"diagram are {enumeration((*SINGLE_PARAMETER_OF, 'drag'), 'or')}, or parameters given in "
                 "addition to the arm"
             )
@@ -189,12 +189,12 @@ class PhaseDiagramConfig(LinearConfig):
             raise ValueError(_axis_count_refusal(long))
         line = self.parameters.axes[long[0]]
         if inf in (line.values or ()):
-            stiff = enumeration(
+            stiffnesses = enumeration(
                 tuple(name for name in LINEAR_PARAMETERS if PARAMETERS[name].rigid_adjective), "and"
             )
             raise ValueError(
                 f"parameters.{long[0]} contains inf, which is not allowed on the axis along which a phase "
-                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiff} may be inf)"
+                f"diagram is searched; remove it (on the other axis, {long[1]}, {stiffnesses} may be inf)"
             )
         return self
 
@@ -204,8 +204,8 @@ class PhaseDiagramConfig(LinearConfig):
             return self
         name, axis = self.phase_diagram.bautin_parameter
         low, high = axis.array()[[0, -1]]
-        given = self.parameters.axes.get(name)
-        value = np.array([PARAMETERS[name].default]) if given is None else given.array()
+        given_axis = self.parameters.axes.get(name)
+        value = np.array([PARAMETERS[name].default]) if given_axis is None else given_axis.array()
         if name in self.plane_parameters or not low <= value[0] <= high:
             raise ValueError(
                 f"phase_diagram.bautin_along.{name} is from {low:g} to {high:g}; parameters.{name} must "
@@ -219,10 +219,11 @@ def _require_finite_values(name: str, values: Sequence[float]) -> None:
     """Raises ValueError for the first of the `values` of the parameter `name` in bautin_along that is
     infinite or outside the range of the parameter."""
     allowed = PARAMETERS[name].allowed
-    bad = next((value for value in values if not allowed.contains(value) or not isfinite(value)), None)
-    if bad is not None:
+    invalid = next((value for value in values if not allowed.contains(value) or not isfinite(value)), None)
+    if invalid is not None:
         raise ValueError(
-            f"bautin_along.{name} = {bad:g} is not allowed; it must be {allowed.finite_description_for(bad)}"
+            f"bautin_along.{name} = {invalid:g} is not allowed; it must be "
+            f"{allowed.finite_description_for(invalid)}"
         )
 
 
@@ -230,8 +231,8 @@ def _axis_count_refusal(long: Sequence[str]) -> str:
     """Message that refuses a config unless two parameters have several values. long: names of the parameters
     with several values."""
     number = f"{len(long)} {'axis' if len(long) == 1 else 'axes'}"
-    listed = f" ({', '.join(long)})" if long else ""
+    names_text = f" ({', '.join(long)})" if long else ""
     return (
-        f"parameters has {number} with more than one value{listed}; a phase diagram needs exactly two of "
+        f"parameters has {number} with more than one value{names_text}; a phase diagram needs exactly two of "
         f"{enumeration(TRANSVERSE_PARAMETERS, 'and')}"
     )

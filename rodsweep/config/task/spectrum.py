@@ -48,10 +48,10 @@ class SpectrumConfig(LinearConfig):
 
     @property
     def options_without_effect(self) -> dict[str, str]:
-        found = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
+        required_settings = {} if self.spectrum.vectors else {"nodes": "vectors: true"}
         if self.spectrum.method == "krylov_schur":
-            found |= dict.fromkeys(("certify", "follow"), "method: determinant")
-        return found
+            required_settings |= dict.fromkeys(("certify", "follow"), "method: determinant")
+        return required_settings
 
     @property
     def certifies(self) -> bool:

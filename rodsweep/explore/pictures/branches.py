@@ -37,7 +37,7 @@ class BranchPicture:
             "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.branch_source
         )  # fmt: skip
         figure.scatter("F", "y", size=5, color="colour", source=self.cycle_source)
-        marks = figure.scatter(
+        special_glyphs = figure.scatter(
             "F",
             "y",
             size=9,
@@ -47,7 +47,7 @@ class BranchPicture:
         )
         figure.add_tools(
             HoverTool(
-                renderers=[marks],
+                renderers=[special_glyphs],
                 tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")],
             )
         )
@@ -57,46 +57,48 @@ class BranchPicture:
             )
             for k in (1, 0)
         ]
-        items = [
+        legend_items = [
             LegendItem(label=text, renderers=[key])
             for text, key in zip(("stable", "unstable"), keys, strict=True)
         ]
-        figure.add_layout(Legend(items=items, location="top_left"))
+        figure.add_layout(Legend(items=legend_items, location="top_left"))
         self.load_line = card.vertical_line(0, card.POINT_COLOUR)
         figure.add_layout(self.load_line)
         self.card = card.Card("branches", figure)
         self.card.set_title("")
 
-    def show(self, found: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
-        """Draws the branches of the answer `found`, with separately solved cycles as dots; the title is the
+    def show(self, answer: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
+        """Draws the branches of the answer `answer`, with separately solved cycles as dots; the title is the
         meaning of the status if the task did not succeed, else the source of the answer. load: horizontal
         axis. length: vertical axis.
         """
-        pieces = found["pieces"]
+        pieces = answer["pieces"]
         self.branch_source.data = {
-            "F": [at * load.factor for at, _, _ in pieces],
+            "F": [forces * load.factor for forces, _, _ in pieces],
             "y": [y * length.factor for _, y, _ in pieces],
             "colour": [STABILITY_COLOURS[stable] for _, _, stable in pieces],
             "dash": [STABILITY_DASHES[stable] for _, _, stable in pieces],
         }
-        cycles = found.get("cycles", NO_CYCLE_COLUMNS)
+        cycles = answer.get("cycles", NO_CYCLE_COLUMNS)
         self.cycle_source.data = {
             "F": cycles["F"] * load.factor,
             "y": cycles["y"] * length.factor,
             "colour": [STABILITY_COLOURS[stable] for stable in cycles["stable"]],
         }
         if pieces or len(cycles["F"]):
-            drawn = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
-            all_F, all_y = (np.concatenate([each[i] for each in drawn]) for i in range(2))
+            lines = [*(piece[:2] for piece in pieces), (cycles["F"], cycles["y"])]
+            all_F, all_y = (np.concatenate([line[i] for line in lines]) for i in range(2))
             margin = SIDE_MARGIN if len(cycles["F"]) else 0.0
             card.set_axis_range(self.card.figure.x_range, *card.axis_limits(all_F * load.factor, margin))
             card.set_axis_range(self.card.figure.y_range, *card.axis_limits(all_y * length.factor))
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
-        special = [(F * load.factor, y * length.factor, *rest) for F, y, *rest in found["special"]]
+        special_points = [(F * load.factor, y * length.factor, *texts) for F, y, *texts in answer["special"]]
         names = ("F", "y", "kind", "period")
-        self.special_point_source.data = {name: [row[i] for row in special] for i, name in enumerate(names)}
-        title = found["sentence"] if found["status"] != "ok" else found.get("source", "")
+        self.special_point_source.data = {
+            name: [row[i] for row in special_points] for i, name in enumerate(names)
+        }
+        title = answer["sentence"] if answer["status"] != "ok" else answer.get("source", "")
         self.card.set_title(title)
         self.card.show_figure()
 

@@ -39,34 +39,33 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
     """Empty Bokeh figure with the page's style, as wide as a column of the page. x_label, y_label: labels of
     the axes. tooltips, options: keywords of Bokeh's `figure`.
     """
-    made = figure(
+    plot = figure(
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
     )  # fmt: skip
-    made.toolbar.autohide = True  # moves the toolbar outside the frame, so that no button covers the plot
-    made.toolbar.logo = None
-    made.toolbar.active_drag = None
-    made.min_border_right = 10
+    plot.toolbar.autohide = True  # moves the toolbar outside the frame, so that no button covers the plot
+    plot.toolbar.logo = None
+    plot.toolbar.active_drag = None
+    plot.min_border_right = 10
     # The outermost half pixel of a canvas is white even on a dark page, so clip it. The canvas begins up to
     # half a pixel beside its layout.
-    made.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(2px); }")]
-    made.xaxis.ticker.desired_num_ticks = TICK_COUNT
-    made.xaxis.formatter.power_limit_high = PLAIN_DIGITS
-    return made
+    plot.stylesheets = [InlineStyleSheet(css=":host { clip-path: inset(2px); }")]
+    plot.xaxis.ticker.desired_num_ticks = TICK_COUNT
+    plot.xaxis.formatter.power_limit_high = PLAIN_DIGITS
+    return plot
 
 
-def vertical_line(at: float, colour: str, dash: str = "solid") -> Span:
-    """Vertical line at x = `at` over the whole height of a figure. When the line moves, Bokeh redraws only
-    the top canvas. dash: line style.
+def vertical_line(position: float, colour: str, dash: str = "solid") -> Span:
+    """Vertical line at x = `position` over the whole height of a figure. When the line moves, Bokeh redraws
+    only the top canvas. dash: line style.
     """
-    return Span(
-        location=at, dimension="height", line_color=colour, line_dash=dash, line_width=1.5, level="overlay"
-    )  # fmt: skip
+    look: dict[str, Any] = {"line_color": colour, "line_dash": dash, "line_width": 1.5}
+    return Span(location=position, dimension="height", level="overlay", **look)
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
     """Bokeh data source with the empty columns `names`. name: name of the source."""
-    return ColumnDataSource({each: [] for each in names}, name=name)
+    return ColumnDataSource({column: [] for column in names}, name=name)
 
 
 def source_columns(**arrays: Array) -> dict[str, list[Any]]:
@@ -93,9 +92,9 @@ def set_axis_range(axis: Range1d, start: float, end: float) -> None:
     axis.update(start=start, end=end, reset_start=start, reset_end=end)
 
 
-def status_sentence(found: dict[str, Any]) -> str:
-    """Meaning of the status of the answer `found`, followed by the solver's message if there is one."""
-    return "; ".join(filter(None, (found["sentence"], found["message"])))
+def status_sentence(answer: dict[str, Any]) -> str:
+    """Meaning of the status of the answer `answer`, followed by the solver's message if there is one."""
+    return "; ".join(filter(None, (answer["sentence"], answer["message"])))
 
 
 class Card:

@@ -46,8 +46,8 @@ def cell_edges(values: Array) -> Array:
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
-    middle = (logs[1:] + logs[:-1]) / 2
-    return np.exp(np.concatenate(([2 * logs[0] - middle[0]], middle, [2 * logs[-1] - middle[-1]])))
+    midpoints = (logs[1:] + logs[:-1]) / 2
+    return np.exp(np.concatenate(([2 * logs[0] - midpoints[0]], midpoints, [2 * logs[-1] - midpoints[-1]])))
 
 
 def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
@@ -57,18 +57,18 @@ def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
 
 
-def joined_cells(sides: Array, levels: Array, counts: Array) -> list[DiagramCell]:
-    """Rectangles of equal numbers of unstable modes in rows of cells. sides: edges of the columns, (columns +
+def joined_cells(edges: Array, levels: Array, counts: Array) -> list[DiagramCell]:
+    """Rectangles of equal numbers of unstable modes in rows of cells. edges: edges of the columns, (columns +
     1,). levels: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
     """
-    found = []
+    cells = []
     for row, line in enumerate(counts):
         start = 0
         for count, group in groupby(map(int, line)):
-            stop = start + len(list(group))
-            found.append(DiagramCell(sides[start], sides[stop], levels[row], levels[row + 1], count))
-            start = stop
-    return found
+            end = start + len(list(group))
+            cells.append(DiagramCell(edges[start], edges[end], levels[row], levels[row + 1], count))
+            start = end
+    return cells
 
 
 def stability_colour(count: int) -> tuple[str, float]:
@@ -84,8 +84,8 @@ def stability_colour(count: int) -> tuple[str, float]:
 
 def unstable_count_words(count: int) -> str:
     """Phrase for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
-    special = {0: "stable", CRUSHED_COUNT: "crushed by the load", UNKNOWN_COUNT: "not searched, or not known"}
-    return special.get(count, counted(count, "unstable mode"))
+    texts = {0: "stable", CRUSHED_COUNT: "crushed by the load", UNKNOWN_COUNT: "not searched, or not known"}
+    return texts.get(count, counted(count, "unstable mode"))
 
 
 class DiagramPicture:
@@ -138,51 +138,51 @@ class DiagramPicture:
         """Whether the figure contains a diagram."""
         return len(self.cell_source.data["left"]) > 0
 
-    def show(self, found: dict[str, Any], load: ControlScale, second: ControlScale) -> None:
-        """Draws the answer `found` to the question "diagram". load, second: scales of the controls whose
+    def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
+        """Draws the answer `answer` to the question "diagram". load, row_scale: scales of the controls whose
         units the axes have.
         """
-        x = found["x"] * load.factor
-        y = found["y"] * second.factor
-        regions = region_table(found)
+        x = answer["x"] * load.factor
+        y = answer["y"] * row_scale.factor
+        regions = region_table(answer)
         grid = (
-            diagram_cells(x, y, found["unstable_count"])
+            diagram_cells(x, y, answer["unstable_count"])
             if regions is None
-            else joined_cells(regions.sides * load.factor, regions.levels * second.factor, regions.counts)
+            else joined_cells(regions.sides * load.factor, regions.levels * row_scale.factor, regions.counts)
         )
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cell_source.data = data
-        self._show_curves(found)
-        kinds = found["crossing_kind"]
+        self._show_curves(answer)
+        kinds = answer["crossing_kind"]
         self.crossing_source.data = {
-            "x": found["crossing_x"] * load.factor,
-            "y": found["crossing_y"] * second.factor,
+            "x": answer["crossing_x"] * load.factor,
+            "y": answer["crossing_y"] * row_scale.factor,
             "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
         }
         figure = self.card.figure
         card.set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
         card.set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
         figure.xaxis.axis_label = load.label
-        figure.yaxis.axis_label = second.label
+        figure.yaxis.axis_label = row_scale.label
         self.card.show_figure()
 
-    def _show_curves(self, found: dict[str, Any]) -> None:
-        x, y, kinds = _curves_of_answer(found, "curve")
+    def _show_curves(self, answer: dict[str, Any]) -> None:
+        x, y, kinds = _curves_of_answer(answer, "curve")
         self.curve_source.data = {
             "x": x,
             "y": y,
             "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
         }
-        x, y, kinds = _curves_of_answer(found, "cycle_curve")
-        looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
+        x, y, kinds = _curves_of_answer(answer, "cycle_curve")
+        curve_looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
         self.cycle_curve_source.data = {
             "x": x,
             "y": y,
-            "colour": [colour for _, colour, _ in looks],
-            "dash": [dash for *_, dash in looks],
+            "colour": [colour for _, colour, _ in curve_looks],
+            "dash": [dash for *_, dash in curve_looks],
         }
         self.legend.visible = len(kinds) > 0
 
@@ -191,11 +191,11 @@ class DiagramPicture:
         self.point_source.data = {"x": [x], "y": [y]}
 
 
-def _curves_of_answer(found: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
-    """Returns (x, y, kinds), lists with one entry per curve of the answer `found`. x, y: arrays, (points,).
+def _curves_of_answer(answer: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
+    """Returns (x, y, kinds), lists with one entry per curve of the answer `answer`. x, y: arrays, (points,).
     name: prefix of the curves' variables, such as "curve".
     """
-    numbers = np.asarray(found[f"{name}_number"])
+    numbers = np.asarray(answer[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
-    x, y = ([found[f"{name}_{axis}"][line] for line in lines] for axis in "xy")
-    return x, y, [str(found[f"{name}_kind"][line[0]]) for line in lines]
+    x, y = ([answer[f"{name}_{axis}"][line] for line in lines] for axis in "xy")
+    return x, y, [str(answer[f"{name}_kind"][line[0]]) for line in lines]

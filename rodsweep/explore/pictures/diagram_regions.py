@@ -25,34 +25,38 @@ class RegionTable(NamedTuple):
     counts: Array
 
 
-def region_table(found: dict[str, Any]) -> RegionTable | None:
-    """Regions of the answer `found` to the question "diagram", in its units. None if the answer has no curve
+def region_table(answer: dict[str, Any]) -> RegionTable | None:
+    """Regions of the answer `answer` to the question "diagram", in its units. None if the answer has no curve
     of Hopf points, or fewer than two finite positive values of the second parameter.
     """
-    x = found["x"]
-    y = found["y"]
-    is_hopf = np.asarray(found["curve_kind"], dtype=object) == "hopf"
+    x = answer["x"]
+    y = answer["y"]
+    is_hopf = np.asarray(answer["curve_kind"], dtype=object) == "hopf"
     if not is_hopf.any() or len(y) < 2 or not (np.isfinite(y) & (y > 0)).all():
         return None
     # The axis of the loads is linear, and the axis of the second parameter logarithmic, for any values.
     plane = DrawnPlane(np.linspace(x[0], x[-1], 3), np.linspace(np.log(y[0]), np.log(y[-1]), 3))
     columns, rows = np.meshgrid(x, np.log(y))
-    counts = np.asarray(found["unstable_count"])
-    known = counts != CRUSHED_COUNT
-    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), counts[known])
-    between = plane.fractions_of_axes(found["between_x"], np.log(found["between_y"]))
-    further = ClassifiedPoints(between, np.asarray(found["between_count"]))
-    numbers = np.asarray(found["curve_number"])
+    counts = np.asarray(answer["unstable_count"])
+    is_counted = counts != CRUSHED_COUNT
+    computed = ClassifiedPoints(
+        plane.fractions_of_axes(columns[is_counted], rows[is_counted]), counts[is_counted]
+    )
+    row_positions = plane.fractions_of_axes(answer["between_x"], np.log(answer["between_y"]))
+    row_points = ClassifiedPoints(row_positions, np.asarray(answer["between_count"]))
+    numbers = np.asarray(answer["curve_number"])
     curves = []
     for number in np.unique(numbers[is_hopf]):
-        own = is_hopf & (numbers == number)
-        curves.append(plane.fractions_of_axes(found["curve_x"][own], np.log(found["curve_y"][own])))
-    ratio = _crushing_ratio(plane, np.log(y), found["crushing_load"])
-    pixels = pixel_classes(computed, further, curves, ratio > CURVES_END_AT_RATIO, UNKNOWN_COUNT)
+        is_of_curve = is_hopf & (numbers == number)
+        curves.append(
+            plane.fractions_of_axes(answer["curve_x"][is_of_curve], np.log(answer["curve_y"][is_of_curve]))
+        )
+    ratio = _crushing_ratio(plane, np.log(y), answer["crushing_load"])
+    pixels = pixel_classes(computed, row_points, curves, ratio > CURVES_END_AT_RATIO, UNKNOWN_COUNT)
     pixels = np.where(ratio < 1, pixels, CRUSHED_COUNT)
-    sides = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
+    column_edges = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
     levels = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
-    return RegionTable(sides, levels, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
+    return RegionTable(column_edges, levels, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
 
 
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:

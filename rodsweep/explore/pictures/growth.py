@@ -43,12 +43,12 @@ class GrowthPicture:
                 color=card.NEUTRAL_COLOUR if width == 1 else card.STABLE_COLOUR,
                 source=self.rate_source,
             )
-        drawn = figure.vspan(
+        spans = figure.vspan(
             x="F", line_color="colour", line_width=2, line_dash="dotted", source=self.threshold_source
         )
         figure.add_tools(
             HoverTool(
-                renderers=[drawn],
+                renderers=[spans],
                 tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("frequency", "@frequency{0.000000}")],
             )
         )
@@ -61,11 +61,11 @@ class GrowthPicture:
         self.card = card.Card("growth", figure, title_lines=2)
         self.card.set_title("")
 
-    def show_rates(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates of the answer `found`. load: horizontal axis."""
-        rates = found["growth_rate"]
+    def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
+        """Draws the growth rates of the answer `answer`. load: horizontal axis."""
+        rates = answer["growth_rate"]
         names = ("first", "second", "third")
-        F = found["F"] * load.factor
+        F = answer["F"] * load.factor
         self.rate_source.data = card.source_columns(
             F=F, **{name: rates[:, i] for i, name in enumerate(names)}
         )
@@ -75,36 +75,36 @@ class GrowthPicture:
         )
         card.set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
-        self.card.figure.yaxis.axis_label = f"growth rate ({found['unit']})"
+        self.card.figure.yaxis.axis_label = f"growth rate ({answer['unit']})"
         self.card.show_figure()
 
-    def show_thresholds(self, found: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the thresholds of the answer `found`, and writes the first threshold of each kind into the
+    def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
+        """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
         title. load: horizontal axis.
         """
-        own = found.get(SI_NAMES["crossing_frequency"], found["crossing_frequency"])
+        frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
         rows = [
             (F * load.factor, *THRESHOLD_LOOKS[kind], frequency)
-            for F, kind, frequency in zip(found["crossing_F"], found["kinds"], own, strict=True)
+            for F, kind, frequency in zip(answer["crossing_F"], answer["kinds"], frequencies, strict=True)
             if kind in THRESHOLD_LOOKS
         ]
         names = ("F", "kind", "colour", "frequency")
         self.threshold_source.data = {name: [row[i] for row in rows] for i, name in enumerate(names)}
-        self.card.set_title(threshold_title(found, load))
+        self.card.set_title(threshold_title(answer, load))
 
     def move_load_line(self, F: float) -> None:
         """Moves the thick line that marks the load of the page. F: load, in the unit of the axis."""
         self.load_line.location = F
 
 
-def threshold_title(found: dict[str, Any], load: PictureAxis) -> str:
-    """Title with the first threshold of each kind in the answer `found`, in the unit of the axis `load`."""
-    words = ARM_THRESHOLD_FORMATS if SI_NAMES["F_hopf"] in found else ROD_THRESHOLD_FORMATS
-    parts = [
-        word.format(load.factor * float(found[name]))
-        for word, name in zip(words, NAMED_THRESHOLDS, strict=True)
-        if np.isfinite(found[name])
+def threshold_title(answer: dict[str, Any], load: PictureAxis) -> str:
+    """Title with the first threshold of each kind in the answer `answer`, in the unit of the axis `load`."""
+    formats = ARM_THRESHOLD_FORMATS if SI_NAMES["F_hopf"] in answer else ROD_THRESHOLD_FORMATS
+    texts = [
+        word.format(load.factor * float(answer[name]))
+        for word, name in zip(formats, NAMED_THRESHOLDS, strict=True)
+        if np.isfinite(answer[name])
     ]
-    proved = "certified" if found["certified"] else "not certified"
-    text = f"{', '.join(parts) or 'no threshold'} ({proved})"
+    proved = "certified" if answer["certified"] else "not certified"
+    text = f"{', '.join(texts) or 'no threshold'} ({proved})"
     return text[0].upper() + text[1:]

@@ -73,70 +73,71 @@ class MovingArmPicture:
         """
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, f"{name}_source") for name in names}
-        more = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
-        return CustomJS(args=sources | more, code=template_text("beating.js"))
+        variables = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
+        return CustomJS(args=sources | variables, code=template_text("beating.js"))
 
     def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
         """Registers the callback `drag(kind, tip)`, called when the user drags or releases the tip. kind:
         "bent" or "motion". tip: position of the tip, in L.
         """
 
-        def dragged(attribute: str, old: Any, new: dict[str, list[Any]]) -> None:
-            if len(new["x"]) == 1:
-                x, y = (float(new[name][0]) / self.length.factor for name in "xy")
-                drag("motion" if new["phase"][0] == "let go" else "bent", (x, y))
+        def dragged(attribute: str, previous: Any, data: dict[str, list[Any]]) -> None:
+            if len(data["x"]) == 1:
+                x, y = (float(data[name][0]) / self.length.factor for name in "xy")
+                drag("motion" if data["phase"][0] == "let go" else "bent", (x, y))
 
         self.grip_source.on_change("data", dragged)
 
-    def show(self, found: dict[str, Any], length: PictureAxis) -> None:
-        """Draws the cycle of an answer `found` of the task `limit_cycle`, with a sentence if the cycle is not
-        stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both axes.
+    def show(self, answer: dict[str, Any], length: PictureAxis) -> None:
+        """Draws the cycle of an answer `answer` of the task `limit_cycle`, with a sentence if the cycle is
+        not stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both
+        axes.
         """
         self.length = length
         self.remove_dragged_shape()
-        x, y = (found[name] * length.factor for name in ("shape_x", "shape_y"))
+        x, y = (answer[name] * length.factor for name in ("shape_x", "shape_y"))
         has_cycle = bool(np.isfinite(x).all())
         if not has_cycle:
-            x, y = (found[name][None] * length.factor for name in "xy")
+            x, y = (answer[name][None] * length.factor for name in "xy")
         self.shapes_source.data = source_of(x, y)
         self._draw_path(x[: len(x) * has_cycle], y[: len(y) * has_cycle], is_closed=True)
         self._fit_axes(x, y)
         self.card.figure.xaxis.axis_label, self.card.figure.yaxis.axis_label = (
             f"{n} ({length.label})" for n in "xy"
         )
-        is_stable = found["status"] == "cycle"
-        self.card.set_title("" if is_stable or not has_cycle else found["sentence"])
+        is_stable = answer["status"] == "cycle"
+        self.card.set_title("" if is_stable or not has_cycle else answer["sentence"])
         if has_cycle:
             self.card.show_figure()
         else:
-            self.card.show_sentence_above(card.status_sentence(found))
+            self.card.show_sentence_above(card.status_sentence(answer))
 
-    def show_bent(self, found: dict[str, Any]) -> None:
-        """Draws the equilibrium shape of the arm whose tip the user drags. found: result of
+    def show_bent(self, answer: dict[str, Any]) -> None:
+        """Draws the equilibrium shape of the arm whose tip the user drags. answer: result of
         `dragged_equilibrium`.
         """
-        self.bent_source.data = {name: found[name] * self.length.factor for name in "xy"}
+        self.bent_source.data = {name: answer[name] * self.length.factor for name in "xy"}
 
-    def show_motion(self, found: dict[str, Any]) -> None:
+    def show_motion(self, answer: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
-        found: result of `released_motion_answer`, and the position `tip`.
+        answer: result of `released_motion_answer`, and the position `tip`.
         """
         factor = self.length.factor
-        step = found["step"]
-        x = found["x"] * factor
-        y = found["y"] * factor
-        shape_x = found["shape_x"] * factor
-        shape_y = found["shape_y"] * factor
-        turn = found["period"] if len(shape_x) else step * found["frames"]
-        self.motion_source.tags = [PERIOD_SECONDS * step / turn, PERIOD_SECONDS]
+        step = answer["step"]
+        x = answer["x"] * factor
+        y = answer["y"] * factor
+        shape_x = answer["shape_x"] * factor
+        shape_y = answer["shape_y"] * factor
+        cycle_frames = answer["period"] if len(shape_x) else step * answer["frames"]
+        self.motion_source.tags = [PERIOD_SECONDS * step / cycle_frames, PERIOD_SECONDS]
         self.reached_source.data = source_of(shape_x, shape_y)
         self.motion_source.data = source_of(x, y)
         self._draw_path(x, y, is_closed=False)
         self._fit_axes(np.concatenate([x, shape_x]), np.concatenate([y, shape_y]))
-        position = ", ".join(f"{each * factor:.3g}" for each in found["tip"])
-        end = END_WORDS.get(found["status"], found["sentence"])
-        part = "" if found["is_whole"] else "; this is the beginning"
-        self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{part}")
+        position = ", ".join(f"{coordinate * factor:.3g}" for coordinate in answer["tip"])
+        end = END_WORDS.get(answer["status"], answer["sentence"])
+        beginning_text = "" if answer["is_whole"] else "; this is the beginning"
+        self.card.set_title(f"Let go at ({position}) {self.length.label}: {end}{beginning_text}")
 
     def remove_dragged_shape(self) -> None:
         """Removes the shape of a dragged arm and its motion after the release from the picture."""
@@ -161,8 +162,8 @@ class MovingArmPicture:
         of the axes.
         """
         factor = self.length.factor
-        reach = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
-        card.set_axis_range(self.card.figure.y_range, -reach, reach)
+        half_height = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
+        card.set_axis_range(self.card.figure.y_range, -half_height, half_height)
         card.set_axis_range(self.card.figure.x_range, min(0.0, float(x.min())) - 0.1 * factor, 1.1 * factor)
 
 

@@ -54,46 +54,46 @@ class NumbersTable:
         self.answers_by_kind: dict[str, dict[str, Any]] = {}
         """Latest answer to each kind of question in the table."""
 
-    def show(self, kind: str, found: dict[str, Any] | None) -> None:
-        """Replaces the rows for the kind of question `kind` by numbers of the answer `found`; None removes
+    def show(self, kind: str, answer: dict[str, Any] | None) -> None:
+        """Replaces the rows for the kind of question `kind` by numbers of the answer `answer`; None removes
         these rows. A kind that is not in ROW_LABELS_BY_KIND has no effect.
         """
         if kind not in ROW_LABELS_BY_KIND:
             return
-        if found is None:
+        if answer is None:
             self.answers_by_kind.pop(kind, None)
         else:
-            self.answers_by_kind[kind] = found
-        parts = [
+            self.answers_by_kind[kind] = answer
+        tables = [
             _table_rows(name, self.answers_by_kind[name])
             for name in ROW_LABELS_BY_KIND
             if name in self.answers_by_kind
         ]
         caveats = dict.fromkeys(map(validity_caveat, self.answers_by_kind.values()))
         sentences = "".join(f'<p class="caveat">{escape(caveat)}</p>' for caveat in caveats if caveat)
-        self.root.text = f"{sentences}<table>{''.join(parts)}</table>"
+        self.root.text = f"{sentences}<table>{''.join(tables)}</table>"
 
 
 def number_text(value: Any, factor: float = 1.0) -> str:
     """First element of the array `value` as text: a real number times `factor`, or an integer; "" for a
     nonfinite number or a negative integer.
     """
-    first = np.ravel(value)[0]
-    if np.issubdtype(np.asarray(first).dtype, np.integer):
-        return str(int(first)) if first >= 0 else ""
-    return f"{factor * float(first):.{TABLE_DIGITS}g}" if np.isfinite(first) else ""
+    number = np.ravel(value)[0]
+    if np.issubdtype(np.asarray(number).dtype, np.integer):
+        return str(int(number)) if number >= 0 else ""
+    return f"{factor * float(number):.{TABLE_DIGITS}g}" if np.isfinite(number) else ""
 
 
-def _table_rows(kind: str, found: dict[str, Any]) -> str:
+def _table_rows(kind: str, answer: dict[str, Any]) -> str:
     rows = []
     for name, meaning in ROW_LABELS_BY_KIND[kind].items():
-        if name not in found or SI_NAMES.get(name, f"{name}_si") in found:
+        if name not in answer or SI_NAMES.get(name, f"{name}_si") in answer:
             continue
-        unit, factor = TABLE_UNITS.get(found["units"][name], (found["units"][name], 1.0))
-        if text := number_text(found[name], factor):
-            shown = "" if unit == "1" else escape(unit)
+        unit, factor = TABLE_UNITS.get(answer["units"][name], (answer["units"][name], 1.0))
+        if text := number_text(answer[name], factor):
+            unit_text = "" if unit == "1" else escape(unit)
             rows.append(
-                f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{shown}</td></tr>'
+                f'<tr data-name="{name}"><td>{escape(meaning)}</td><td>{text}</td><td>{unit_text}</td></tr>'
             )
     if not rows:
         return ""

@@ -26,40 +26,42 @@ class SpectrumPicture:
         self.card = card.Card("spectrum", figure)
         self.card.set_title("")
 
-    def show(self, found: dict[str, Any]) -> None:
-        """Draws the eigenvalues of `found`, an answer of the task `spectrum`; if no eigenvalue is known,
+    def show(self, answer: dict[str, Any]) -> None:
+        """Draws the eigenvalues of `answer`, an answer of the task `spectrum`; if no eigenvalue is known,
         shows the meaning of the status instead.
         """
-        names = [SI_NAMES[name] if SI_NAMES[name] in found else name for name in ("growth_rate", "frequency")]
-        growth, frequency = (found[name] for name in names)
-        known = np.isfinite(growth)
-        if not known.any():
-            self.card.show_sentence_instead(card.status_sentence(found))
+        names = [
+            SI_NAMES[name] if SI_NAMES[name] in answer else name for name in ("growth_rate", "frequency")
+        ]
+        growth, frequency = (answer[name] for name in names)
+        is_finite = np.isfinite(growth)
+        if not is_finite.any():
+            self.card.show_sentence_instead(card.status_sentence(answer))
             return
-        growth = growth[known]
-        frequency = frequency[known]
+        growth = growth[is_finite]
+        frequency = frequency[is_finite]
         colours = np.where(growth > 0, card.UNSTABLE_COLOUR, card.STABLE_COLOUR)
         self.source.data = card.source_columns(growth=growth, frequency=frequency, colour=colours)
         figure = self.card.figure
         card.set_axis_range(figure.x_range, *card.axis_limits(np.append(growth, 0.0)))
         card.set_axis_range(figure.y_range, *card.axis_limits(frequency))
         figure.xaxis.axis_label, figure.yaxis.axis_label = (
-            f"{word} ({found['units'][name]})"
+            f"{word} ({answer['units'][name]})"
             for word, name in zip(("growth rate", "frequency"), names, strict=True)
         )
-        self.card.set_title(unstable_count_sentence(found))
+        self.card.set_title(unstable_count_sentence(answer))
         self.card.show_figure()
 
 
-def unstable_count_sentence(found: dict[str, Any]) -> str:
-    """Sentence that states the number of unstable modes of the answer `found`, and whether this number is
+def unstable_count_sentence(answer: dict[str, Any]) -> str:
+    """Sentence that states the number of unstable modes of the answer `answer`, and whether this number is
     certified; the meaning of the status if the number is unknown.
     """
-    count = int(found["unstable_count"])
+    count = int(answer["unstable_count"])
     if count < 0:
-        return found["sentence"]
+        return answer["sentence"]
     modes = {0: "No unstable mode", 1: "1 unstable mode"}.get(count, f"{count} unstable modes")
-    return f"{modes}, {'certified' if found['certified'] else 'not certified'}"
+    return f"{modes}, {'certified' if answer['certified'] else 'not certified'}"
 
 
 class ModePicture:
@@ -85,15 +87,15 @@ class ModePicture:
         figure.legend.location = "top_left"
         self.card = card.Card("mode", figure)
 
-    def show(self, found: dict[str, Any]) -> None:
-        """Draws the leading mode of `found`, an answer of the task `spectrum`; if the mode is not known,
+    def show(self, answer: dict[str, Any]) -> None:
+        """Draws the leading mode of `answer`, an answer of the task `spectrum`; if the mode is not known,
         shows the meaning of the status instead.
         """
-        real = found["Y_real"][0]
-        imaginary = found["Y_imag"][0]
-        if not np.isfinite(real).all():
-            self.card.show_sentence_instead(card.status_sentence(found))
+        real_part = answer["Y_real"][0]
+        imaginary = answer["Y_imag"][0]
+        if not np.isfinite(real_part).all():
+            self.card.show_sentence_instead(card.status_sentence(answer))
             return
-        self.source.data = card.source_columns(u=found["u"], real=real, imaginary=imaginary)
-        card.set_axis_range(self.card.figure.y_range, *card.axis_limits(np.append(real, imaginary)))
+        self.source.data = card.source_columns(u=answer["u"], real=real_part, imaginary=imaginary)
+        card.set_axis_range(self.card.figure.y_range, *card.axis_limits(np.append(real_part, imaginary)))
         self.card.show_figure()

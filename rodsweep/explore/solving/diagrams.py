@@ -78,8 +78,8 @@ def cycle_diagram_answer(state: PageState) -> dict[str, Any]:
             "on the tab Rod"
         )
     cycles = {"cycles": True, "cycle_accuracy": CYCLE_ACCURACY, "gamma1": state.parameters()["gamma1"]}
-    found = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
-    curves = {name: values for name, values in found.items() if name.startswith("cycle_")}
+    diagram = _diagram_of_rods(state, SLOW_ROW_COUNT, cycles)
+    curves = {name: values for name, values in diagram.items() if name.startswith("cycle_")}
     return _diagram_of_rods(state) | curves
 
 
@@ -140,15 +140,15 @@ def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
     if "class" in data:
         is_crushed = flag_words(data["class"].transpose(second, "F")) == "crushed"
         counts = np.where(is_crushed, CRUSHED_COUNT, counts)
-    found = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_empty_curves()}
+    diagram = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_empty_curves()}
     if "crossing_at" in data:
-        found |= region_bounds(data, second)
+        diagram |= region_bounds(data, second)
     for curve in ("curve", "cycle_curve"):
         if f"{curve}_F" in data and f"{curve}_{second}" in data:
             names = {"x": "F", "y": second, "number": "number"}
-            found |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
-            found[f"{curve}_kind"] = flag_words(data[f"{curve}_kind"])
-    return found | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
+            diagram |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
+            diagram[f"{curve}_kind"] = flag_words(data[f"{curve}_kind"])
+    return diagram | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}
 
 
 def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
@@ -171,18 +171,18 @@ def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """Diagram of arms, with the variables of `diagram_answer`, from the task `thresholds` for values around
     the second quantity of `state`.
     """
-    given = {name: text for name, text in state.arm.items() if name != "pressure"} | MATERIAL_CHOICES[
+    quantities = {name: text for name, text in state.arm.items() if name != "pressure"} | MATERIAL_CHOICES[
         state.law
     ]
     quantity = QUANTITIES[state.second]
-    middle = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
-    values = np.geomspace(middle / ARM_SPAN_RATIO, middle * ARM_SPAN_RATIO, ARM_ROW_COUNT)
-    subject = state.subject()
-    assert isinstance(subject, Arm)
-    arms = given | {state.second: list(map(float, values))}
+    typed_value = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
+    values = np.geomspace(typed_value / ARM_SPAN_RATIO, typed_value * ARM_SPAN_RATIO, ARM_ROW_COUNT)
+    arm = state.subject()
+    assert isinstance(arm, Arm)
+    arms = quantities | {state.second: list(map(float, values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
-    return diagram_from_arm_result(data, values, subject.si.pressure)
+    return diagram_from_arm_result(data, values, arm.si.pressure)
 
 
 def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) -> dict[str, Any]:
@@ -193,8 +193,8 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     neither a pressure nor flutter, the load extends to the largest searched pressure.
     """
     flutter = data["pressure_hopf"].values
-    known = flutter[np.isfinite(flutter)]
-    largest = 2 * max(pressure or 0.0, known.min() if len(known) else 0.0)
+    known_loads = flutter[np.isfinite(flutter)]
+    largest = 2 * max(pressure or 0.0, known_loads.min() if len(known_loads) else 0.0)
     return diagram_from_row_result(
         data, values, "crossing_pressure", largest or float(data["pressure_end"].max())
     )
@@ -207,37 +207,37 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
     values: second parameter, (rows,). name: name of the variable with the loads at the thresholds. largest:
     largest load of the diagram.
     """
-    at = data[name].values
+    loads = data[name].values
     after = data["unstable_after"].values
     kind = flag_words(data["crossing_kind"])
     x = np.linspace(0, largest, LOAD_COUNT)
     counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
     for row in range(len(values)):
-        for load, count in zip(at[row], after[row], strict=True):
+        for load, count in zip(loads[row], after[row], strict=True):
             if np.isfinite(load):
                 counts[row, x > load] = count
         counts[row, ~(x <= ends[row])] = UNKNOWN_COUNT
-    known = np.isfinite(at) & (at <= largest)
-    rows = np.broadcast_to(values[:, None], at.shape)
+    listed = np.isfinite(loads) & (loads <= largest)
+    rows = np.broadcast_to(values[:, None], loads.shape)
     return {
         "x": x, "y": values, "unstable_count": counts, **_empty_curves(),
-        "crossing_x": at[known], "crossing_y": rows[known], "crossing_kind": list(kind[known]),
+        "crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed]),
     }  # fmt: skip
 
 
 def _empty_curves() -> dict[str, Any]:
     empty = np.zeros(0)
     none = {"curve_x": empty, "curve_y": empty, "curve_number": empty, "curve_kind": []}
-    between = {f"between_{name}": empty for name in ("x", "y", "count")}
+    row_points = {f"between_{name}": empty for name in ("x", "y", "count")}
     cycles = {f"cycle_{name}": values for name, values in none.items()}
-    return none | between | cycles | {"crushing_load": empty}
+    return none | row_points | cycles | {"crushing_load": empty}
 
 
 def flag_words(array: Dataset) -> Any:
     """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
     the attributes of the array; an unlisted flag has the word "none".
     """
-    words = str(array.attrs["flag_meanings"]).split()
-    by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), words, strict=True))
+    names = str(array.attrs["flag_meanings"]).split()
+    by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), names, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

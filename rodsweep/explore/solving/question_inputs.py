@@ -42,13 +42,14 @@ def answer_inputs(question: Question) -> AnswerInputs:
     return replace(state.with_values(**blank), across=""), None
 
 
-def state_to_solve(kind: str, state: PageState, drawn: PageState | None) -> PageState:
-    """State for a question of the kind `kind`: `drawn` for the question "cycles" if the rod of the page lies
-    in the drawn diagram, to which the curves of cycles are then added; otherwise `state`. state: state of the
-    page. drawn: state around which the drawn diagram was solved; None if there is no diagram."""
-    if kind != "cycles" or drawn is None or state.tab != "rod":
+def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None) -> PageState:
+    """State for a question of the kind `kind`: `diagram_state` for the question "cycles" if the rod of the
+    page lies in the drawn diagram, to which the curves of cycles are then added; otherwise `state`. state:
+    state of the page. diagram_state: state around which the drawn diagram was solved; None if there is no
+    diagram."""
+    if kind != "cycles" or diagram_state is None or state.tab != "rod":
         return state
-    if answer_inputs(Question("diagram", state)) != answer_inputs(Question("diagram", drawn)):
+    if answer_inputs(Question("diagram", state)) != answer_inputs(Question("diagram", diagram_state)):
         return state
-    low, high = second_parameter_values(drawn, 2)
-    return drawn if low <= float(state.values[state.second]) <= high else state
+    low, high = second_parameter_values(diagram_state, 2)
+    return diagram_state if low <= float(state.values[state.second]) <= high else state

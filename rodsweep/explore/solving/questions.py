@@ -68,8 +68,8 @@ def answer_variables(answer: Answer) -> AnswerVariables:
     """All variables of `answer` by name, and its `status`, `sentence` (meaning of the status), `message` and
     `units` (by variable).
     """
-    found: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
-    return found | {
+    variables: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
+    return variables | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
         "units": answer.units,
     }  # fmt: skip
@@ -90,9 +90,9 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
     the force that crushes the rod. unit: "1/tau2" for a rod, "1/s" for an arm."""
-    subject = state.subject()
-    tau2 = subject.tau2 if isinstance(subject, Arm) else 1.0
-    rod = rod_of(subject)
+    rod_or_arm = state.subject()
+    tau2 = rod_or_arm.tau2 if isinstance(rod_or_arm, Arm) else 1.0
+    rod = rod_of(rod_or_arm)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     F = np.linspace(
@@ -100,7 +100,7 @@ def growth_answer(state: PageState) -> AnswerVariables:
     )
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
     rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
-    unit = "1/s" if isinstance(subject, Arm) else "1/tau2"
+    unit = "1/s" if isinstance(rod_or_arm, Arm) else "1/tau2"
     count = data["unstable_count"].values.reshape(-1)
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
@@ -136,8 +136,8 @@ def branch_answer(state: PageState) -> AnswerVariables:
     """
     answer = state.subject().branch(stop=state.largest_force(), progress=False)
     rod = RodBranches(view_of_dataset(answer.whole, Path(answer.rod)))
-    found = drawn_branches(rod, state.largest_force())
-    return found | {"status": str(answer.status), "sentence": answer.sentence}
+    branches = drawn_branches(rod, state.largest_force())
+    return branches | {"status": str(answer.status), "sentence": answer.sentence}
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
@@ -182,10 +182,10 @@ BranchPiece = tuple[Array, Array, int]
 unstable, -1 unknown."""
 
 
-def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
+def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
     """Variables of the answer "branch" for a rod, by name.
 
-    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `stop`, see `BranchPiece`.
+    pieces: parts of the branches of cycles, and of the straight rod from F = 0 to `end`, see `BranchPiece`.
     special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[BranchPiece] = [
@@ -193,7 +193,7 @@ def drawn_branches(rod: RodBranches, stop: float) -> dict[str, Any]:
         for curve in rod.curves
         for run, stable in stability_runs(curve.stable)
     ]
-    straight = rod.straight_pieces((0.0, stop))
+    straight = rod.straight_pieces((0.0, end))
     pieces += [(np.array([low, high]), np.zeros(2), stable) for low, high, stable in straight]
-    special = [(p.at, p.tip_y_max, p.kind, p.period) for curve in rod.curves for p in curve.special]
-    return {"pieces": pieces, "special": [each for each in special if each[2] != "end"]}
+    special_points = [(p.at, p.tip_y_max, p.kind, p.period) for curve in rod.curves for p in curve.special]
+    return {"pieces": pieces, "special": [point for point in special_points if point[2] != "end"]}

@@ -13,30 +13,32 @@ Dataset = Any
 """An xarray.Dataset, or one of its arrays."""
 
 
-def region_bounds(data: Dataset, second: str) -> dict[str, Any]:
+def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
     """Variables between_x, between_y, between_count and crushing_load of `diagram_answer`, from a result of
-    the task `phase_diagram` over F and the parameter `second`. Raises ValueError for a config that this
-    version of rodsweep does not accept.
+    the task `phase_diagram` over F and the parameter `row_parameter`. Raises ValueError for a config that
+    this version of rodsweep does not accept.
     """
-    y = data[second].values
-    at, after = (
-        data[name].transpose(second, "crossing").values for name in ("crossing_at", "unstable_after")
+    y = data[row_parameter].values
+    positions, unstable_counts = (
+        data[name].transpose(row_parameter, "crossing").values for name in ("crossing_at", "unstable_after")
     )
     build = config_from_resolved(json.loads(data.attrs["config_resolved"])).build
-    share = build.relative_crushing_forces(data["taper"].values if "taper" in data else np.ones(()))
-    crushing = np.broadcast_to(data["k1"].values * share, y.shape)
-    return {"crushing_load": crushing, **_points_between_crossings(y, at, after)}
+    crushing_forces = build.relative_crushing_forces(data["taper"].values if "taper" in data else np.ones(()))
+    crushing = np.broadcast_to(data["k1"].values * crushing_forces, y.shape)
+    return {"crushing_load": crushing, **_points_between_crossings(y, positions, unstable_counts)}
 
 
-def _points_between_crossings(y: np.ndarray, at: np.ndarray, after: np.ndarray) -> dict[str, Any]:
+def _points_between_crossings(
+    y: np.ndarray, positions: np.ndarray, unstable_counts: np.ndarray
+) -> dict[str, Any]:
     """Points midway between neighbouring crossings of a row, with the known number of unstable modes there:
-    between_x, between_y, between_count, (points,) each. y: second parameter, (rows,). at: loads at the
-    crossings, in increasing order, NaN in unused entries, (rows, crossings). after: numbers of unstable modes
-    beyond the crossings, (rows, crossings).
+    between_x, between_y, between_count, (points,) each. y: second parameter, (rows,). positions: loads at the
+    crossings, in increasing order, NaN in unused entries, (rows, crossings). unstable_counts: numbers of
+    unstable modes beyond the crossings, (rows, crossings).
     """
-    rows, places = np.nonzero(np.isfinite(at[:, 1:]) & (after[:, :-1] >= 0))
+    rows, crossing_indices = np.nonzero(np.isfinite(positions[:, 1:]) & (unstable_counts[:, :-1] >= 0))
     return {
-        "between_x": (at[rows, places] + at[rows, places + 1]) / 2,
+        "between_x": (positions[rows, crossing_indices] + positions[rows, crossing_indices + 1]) / 2,
         "between_y": y[rows],
-        "between_count": after[rows, places],
+        "between_count": unstable_counts[rows, crossing_indices],
     }

@@ -87,13 +87,13 @@ class SolverProcess:
         return None if self._process is None else self._process.pid
 
     def ask(
-        self, key: Key, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+        self, key: Key, question: Question, on_reply: ReplyCallback, progress: ReplyCallback = ignore_progress
     ) -> None:
         """Queues a question. An older question with the same key is removed from the queue, or cancelled if
-        it is being solved. done: callback for the reply. progress: callback for progress messages.
+        it is being solved. on_reply: callback for the reply. progress: callback for progress messages.
         """
         self.waiting.pop(key, None)
-        self.waiting[key] = question, done, progress
+        self.waiting[key] = question, on_reply, progress
         if self.current_question is None:
             self._send_next()
         elif self.current_question[0] == key:
@@ -128,26 +128,26 @@ class SolverProcess:
         if self._process is not None:
             return
         start_fork_server()
-        self._connection, theirs = FORK_SERVER.Pipe()
-        watched, self._lifetime_pipe = FORK_SERVER.Pipe(duplex=False)
+        self._connection, far_end = FORK_SERVER.Pipe()
+        lifetime_end, self._lifetime_pipe = FORK_SERVER.Pipe(duplex=False)
         self._process = FORK_SERVER.Process(
-            target=worker.answer_questions, args=(theirs, watched, self.niceness), daemon=True
+            target=worker.answer_questions, args=(far_end, lifetime_end, self.niceness), daemon=True
         )
         self._process.start()
         self.start_count += 1
         self.is_ready = False
-        theirs.close()
-        watched.close()
+        far_end.close()
+        lifetime_end.close()
         IOLoop.current().add_handler(self._connection.fileno(), self._receive_replies, IOLoop.READ)
 
     def _send_next(self) -> None:
         if not self.waiting:
             return
         key = next(iter(self.waiting))
-        question, done, progress = self.waiting.pop(key)
+        question, on_reply, progress = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.current_question = (key, done, progress)
+        self.current_question = (key, on_reply, progress)
         self.solve_start_time = time.monotonic()
         self.question_number += 1
         self._connection.send(question)
@@ -162,14 +162,14 @@ class SolverProcess:
         if reply.outcome == "ready":
             self.is_ready = True
             return
-        asked = self.current_question
+        current = self.current_question
         if reply.outcome == "progress":
-            if asked is not None:
-                asked[2](reply)
+            if current is not None:
+                current[2](reply)
             return
         self.current_question = None
-        if asked is not None and reply.outcome != "cancelled":
-            asked[1](reply)
+        if current is not None and reply.outcome != "cancelled":
+            current[1](reply)
         if self.current_question is None:
             self._send_next()
 
@@ -224,12 +224,16 @@ class Solvers:
             self.ask("warm up", Question(kind, PageState()), lambda reply: None)
 
     def ask(
-        self, session: str, question: Question, done: ReplyCallback, progress: ReplyCallback = ignore_progress
+        self,
+        session: str,
+        question: Question,
+        on_reply: ReplyCallback,
+        progress: ReplyCallback = ignore_progress,
     ) -> None:
-        """Queues a question of a session. done: callback for the reply. progress: callback for progress
+        """Queues a question of a session. on_reply: callback for the reply. progress: callback for progress
         messages.
         """
-        self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, done, progress)
+        self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, on_reply, progress)
 
     def cancel(self, session: str, kind: str) -> None:
         """Cancels the question of the given kind in a session."""

@@ -35,11 +35,11 @@ def released_motion_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, (shapes, nodes), with
     shapes = 0 if there is no cycle. Raises InputError if the motion cannot be integrated.
     """
-    found = released_motion(_motion_job(state, shapes=48), tip)
-    if found is None:
+    motion = released_motion(_motion_job(state, shapes=48), tip)
+    if motion is None:
         raise InputError("the motion after the release could not be integrated")
-    own = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(found.cycle["period"])}
-    return vars(found) | _film_shapes(found) | own
+    page_values = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(motion.cycle["period"])}
+    return vars(motion) | _film_shapes(motion) | page_values
 
 
 def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
@@ -49,25 +49,25 @@ def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     return {"gif": motion_film(motion_in_page_units(state, released_motion_answer(state, tip)))}
 
 
-def motion_in_page_units(state: PageState, found: Mapping[str, Any]) -> FilmedMotion:
-    """The motion after a release, in the units of the page. found: result of `released_motion_answer`."""
-    subject = state.subject()
+def motion_in_page_units(state: PageState, answer: Mapping[str, Any]) -> FilmedMotion:
+    """The motion after a release, in the units of the page. answer: result of `released_motion_answer`."""
+    rod_or_arm = state.subject()
     length = length_axis(state)
-    tau2, time = (subject.tau2, "s") if isinstance(subject, Arm) else (1.0, "tau2")
+    tau2, time = (rod_or_arm.tau2, "s") if isinstance(rod_or_arm, Arm) else (1.0, "tau2")
     return FilmedMotion(
-        x=found["x"] * length.factor,
-        y=found["y"] * length.factor,
-        step=found["step"] * tau2,
+        x=answer["x"] * length.factor,
+        y=answer["y"] * length.factor,
+        step=answer["step"] * tau2,
         length=length.factor,
         units=(length.label, time),
     )
 
 
-def _film_shapes(found: ReleasedMotion) -> dict[str, Any]:
-    x, y = (np.asarray(found.cycle[name]) for name in ("shape_x", "shape_y"))
-    known = x.ndim == 2 and np.isfinite(x).all()
-    nothing = np.zeros((0, found.x.shape[1]))
-    return {"shape_x": x if known else nothing, "shape_y": y if known else nothing}
+def _film_shapes(motion: ReleasedMotion) -> dict[str, Any]:
+    x, y = (np.asarray(motion.cycle[name]) for name in ("shape_x", "shape_y"))
+    has_cycle = x.ndim == 2 and np.isfinite(x).all()
+    no_shapes = np.zeros((0, motion.x.shape[1]))
+    return {"shape_x": x if has_cycle else no_shapes, "shape_y": y if has_cycle else no_shapes}
 
 
 def _motion_job(state: PageState, **options: int) -> Job:

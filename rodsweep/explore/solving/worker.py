@@ -68,11 +68,11 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
     def send_progress(position: SolvePosition) -> None:
         cancellation.is_sending_progress = True
         try:
-            send(Reply("progress", position._asdict(), time.perf_counter() - started))
+            send(Reply("progress", position._asdict(), time.perf_counter() - start))
         finally:
             cancellation.is_sending_progress = False
 
-    started = time.perf_counter()
+    start = time.perf_counter()
     cancellation.is_due = False
     try:
         try:
@@ -97,7 +97,7 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
             traceback.print_exc()
             outcome = "failed"
             content = {"sentence": f"this is a bug of rodsweep: {error!r}"}
-    return Reply(outcome, content, time.perf_counter() - started)
+    return Reply(outcome, content, time.perf_counter() - start)
 
 
 def end_with_page(life: "Connection[Any, Any]") -> None:

@@ -45,18 +45,18 @@ def _style_context(look: FigureLook) -> AbstractContextManager[None]:
     """Context in which matplotlib uses the settings for all figures and the style that the user has chosen.
     Raises InputError for an unknown style.
     """
-    ours = FIGURE_STYLE if look.width is None else PRINT_STYLE
+    package_style = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
-        return matplotlib.rc_context(ours)
+        return matplotlib.rc_context(package_style)
     try:
         if look.style not in matplotlib.style.library:
             Path(look.style).read_text(encoding="utf-8")  # for a file that is no text, matplotlib only logs
-        own = matplotlib.style.library.get(look.style) or rc_params_from_file(
+        user_style = matplotlib.style.library.get(look.style) or rc_params_from_file(
             look.style, use_default_template=False
         )
     except (OSError, ValueError):  # the file does not exist, or is no text
         raise InputError(f"{look.style} is neither a style of matplotlib nor a style file") from None
-    return matplotlib.rc_context(ours | dict(own))
+    return matplotlib.rc_context(package_style | dict(user_style))
 
 
 class FigureChoices(TypedDict, total=False):
@@ -121,7 +121,7 @@ def draw(
     )
     with _style_context(look), np.errstate(all="ignore"):  # NaN and inf are ordinary data of a figure
         try:
-            shown = _draw_and_describe(request)
+            caption = _draw_and_describe(request)
         except OSError as error:
             raise EnvironmentIncomplete(f"{output} cannot be written: {error.strerror or error}") from error
         except RuntimeError as error:  # raised by a program that a style uses, such as LaTeX
@@ -132,16 +132,16 @@ def draw(
             raise InputError(
                 f"{views[0].path} holds numbers that no figure can show ({str(error)[:100]})"
             ) from error
-    return f"wrote {output}: {shown}{_omitted_points_clause(views)}"
+    return f"wrote {output}: {caption}{_omitted_points_clause(views)}"
 
 
 def _omitted_points_clause(views: Sequence[View]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
-    words = np.concatenate([view.status_names for view in views])
+    statuses = np.concatenate([view.status_names for view in views])
     counts = (
-        f"{np.count_nonzero(words == word)} {text}"
+        f"{np.count_nonzero(statuses == word)} {text}"
         for word, text in OMITTED_STATUSES.items()
-        if word in words
+        if word in statuses
     )
     omitted = " and ".join(counts)
-    return f"; of {words.size} points {omitted}" if omitted else ""
+    return f"; of {statuses.size} points {omitted}" if omitted else ""

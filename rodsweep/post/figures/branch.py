@@ -59,38 +59,40 @@ def draw_branch(request: FigureRequest) -> str:
     """
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
-    beating = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
-    style.require_content(view, beating, "branch with cycles")
-    drawn = beating[: len(BRANCH_COLOURS)]
-    curves = [curve for rod in drawn for curve in rod.curves]
-    alone = len(rods) == 1
+    rods_with_cycles = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
+    style.require_content(view, rods_with_cycles, "branch with cycles")
+    drawn_rods = rods_with_cycles[: len(BRANCH_COLOURS)]
+    curves = [curve for rod in drawn_rods for curve in rod.curves]
+    is_single = len(rods) == 1
     colours = (
-        BRANCH_COLOURS if alone else [BRANCH_COLOURS[k] for k, rod in enumerate(drawn) for _ in rod.curves]
+        BRANCH_COLOURS
+        if is_single
+        else [BRANCH_COLOURS[k] for k, rod in enumerate(drawn_rods) for _ in rod.curves]
     )
-    along = followed_parameter(view)
-    beside = any(curve.near_hopf_points() for curve in curves)
-    figure = Figure(figsize=(5.6, 7.6 if beside else 5.6), layout="constrained")
-    upper, lower, *third = figure.subplots(2 + beside, 1)
+    parameter = followed_parameter(view)
+    has_hopf_panel = any(curve.near_hopf_points() for curve in curves)
+    figure = Figure(figsize=(5.6, 7.6 if has_hopf_panel else 5.6), layout="constrained")
+    upper, lower, *hopf_panel = figure.subplots(2 + has_hopf_panel, 1)
     lower.sharex(upper)
     upper.tick_params(labelbottom=False)
-    marked = draw_branch_curves(upper, lower, curves, colours)
-    if alone:
-        draw_straight_rod(upper, drawn[0])
+    marker_handles = draw_branch_curves(upper, lower, curves, colours)
+    if is_single:
+        draw_straight_rod(upper, drawn_rods[0])
     upper.set_ylabel("largest $y/L$ of the tip")
-    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[along], yscale="log")
-    for axes in third:
-        marked["predicted"] = _compare_prediction(axes, curves, colours, along)
+    lower.set(ylabel=r"period$/\tau_2$", xlabel=style.LABELS[parameter], yscale="log")
+    for axes in hopf_panel:
+        marker_handles["predicted"] = _compare_prediction(axes, curves, colours, parameter)
     handles = stability_entries(curves)
-    shared, own = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn])
+    common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
     handles += [
-        Line2D([], [], color=c, lw=2, label=text)
-        for c, text in zip(BRANCH_COLOURS, own, strict=False)
+        Line2D([], [], color=colour, lw=2, label=text)
+        for colour, text in zip(BRANCH_COLOURS, rod_texts, strict=False)
         if text
     ]
-    style.legend_below(figure, [*handles, *marked.values()], columns=3)
-    figure.suptitle(style.heading_text(view, shared))
-    shown = f"{counted(len(curves), 'branch')} of cycles over {along}"
-    return request.write(figure, shown + _omissions_clause(rods, len(beating), len(drawn)))
+    style.legend_below(figure, [*handles, *marker_handles.values()], columns=3)
+    figure.suptitle(style.heading_text(view, common_text))
+    caption = f"{counted(len(curves), 'branch')} of cycles over {parameter}"
+    return request.write(figure, caption + _omissions_clause(rods, len(rods_with_cycles), len(drawn_rods)))
 
 
 def draw_branch_curves(
@@ -99,13 +101,13 @@ def draw_branch_curves(
     """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
     largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically.
     """
-    marked: dict[str, Line2D] = {}
+    marker_handles: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
-        at, y, period, stable = smooth_curve_of_branch(curve)
+        parameter_values, y, period, stable = smooth_curve_of_branch(curve)
         for axes, values in ((upper, y), (lower, period)):
-            _draw_pieces(axes, at, values, stable, colours[number % len(colours)])
-        _mark_special_points(upper, lower, curve, marked)
-    return marked
+            _draw_pieces(axes, parameter_values, values, stable, colours[number % len(colours)])
+        _mark_special_points(upper, lower, curve, marker_handles)
+    return marker_handles
 
 
 def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
@@ -119,26 +121,28 @@ def draw_straight_rod(axes: Axes, rod: RodBranches) -> None:
 def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
     """Legend entries for the line styles of stable and unstable parts of branches, and of parts of unknown
     stability if there are any."""
-    shown = {int(s) for curve in curves for s in curve.stable} | {1, 0}
+    stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
     return [
-        Line2D([], [], color="k", ls=STABILITY_LINES[s][0], label=STABILITY_LINES[s][1])
-        for s in sorted(shown)[::-1]
+        Line2D([], [], color="k", ls=STABILITY_LINES[stability][0], label=STABILITY_LINES[stability][1])
+        for stability in sorted(stabilities)[::-1]
     ]
 
 
-def _omissions_clause(rods: Sequence[RodBranches], beating: int, drawn: int) -> str:
-    """Clause on branches and rods that the figure leaves out. beating: number of rods with cycles. drawn:
-    number of drawn rods.
+def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
+    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles.
+    drawn_count: number of drawn rods.
     """
     hidden = sum(rod.hidden_count for rod in rods)
-    more = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (hidden > 0)
-    if drawn < beating:
-        more += f"; of the first {drawn} of {beating} rods with branches (--at chooses others)"
+    hidden_clause = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (
+        hidden > 0
+    )
+    if drawn_count < cycling:
+        hidden_clause += f"; of the first {drawn_count} of {cycling} rods with branches (--at chooses others)"
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
-    without = computed - beating
-    return more + (
-        f"; {count_of_total(without, computed, 'rod')} {has_or_have(without)} no branch"
-        if without > 0
+    straight = computed - cycling
+    return hidden_clause + (
+        f"; {count_of_total(straight, computed, 'rod')} {has_or_have(straight)} no branch"
+        if straight > 0
         else ""
     )
 
@@ -163,39 +167,43 @@ def _draw_pieces(
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
 
-def _mark_special_points(upper: Axes, lower: Axes, curve: StoredBranch, marked: dict[str, Line2D]) -> None:
+def _mark_special_points(
+    upper: Axes, lower: Axes, curve: StoredBranch, marker_handles: dict[str, Line2D]
+) -> None:
     """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
-    `marked`.
+    `marker_handles`.
     """
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
         if kind not in SPECIAL_POINT_MARKS:
             continue
         marker, word = SPECIAL_POINT_MARKS[kind]
-        (drawn,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
+        (artist,) = upper.plot(special.at, special.tip_y_max, marker, color="k", ms=5, ls="", label=word)
         lower.plot(special.at, special.period, marker, color="k", ms=5, ls="")
-        marked.setdefault(kind, drawn)
+        marker_handles.setdefault(kind, artist)
 
 
-def _compare_prediction(axes: Axes, curves: list[StoredBranch], colours: Sequence[str], along: str) -> Line2D:
+def _compare_prediction(
+    axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter: str
+) -> Line2D:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
     amplitude coefficient |a|; returns the legend entry of the prediction.
 
     Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours:
-    colours of the branches, in order. along: the parameter that varies along the branches.
+    colours of the branches, in order. parameter: the parameter that varies along the branches.
     """
     nearest = []
-    farthest = []
+    distances = []
     for number, curve in enumerate(curves):
-        for at, y, stable in curve.near_hopf_points():
-            _draw_pieces(axes, at, y, stable, colours[number % len(colours)], marker=".")
-            nearest.append(float(at[0]))
-            farthest.append(float(at[-1]))
-    ends = np.array([min(nearest), max(farthest)])
+        for relative_distance, y, stable in curve.near_hopf_points():
+            _draw_pieces(axes, relative_distance, y, stable, colours[number % len(colours)], marker=".")
+            nearest.append(float(relative_distance[0]))
+            distances.append(float(relative_distance[-1]))
+    ends = np.array([min(nearest), max(distances)])
     (law,) = axes.plot(
         ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0, label=PREDICTION_WORD
     )
-    symbol = style.SYMBOLS[along]
+    symbol = style.SYMBOLS[parameter]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol
     ratio = rf"{symbol}/{symbol}^\mathrm{{H}}"

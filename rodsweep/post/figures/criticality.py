@@ -61,17 +61,17 @@ def draw_criticality(request: FigureRequest) -> str:
     style.require_content(
         view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
     )
-    varied = list(varied_parameters_at_points(view))
-    if len(varied) == 1 and np.isfinite(np.unique(view.point_columns[varied[0]])).sum() > 1:
+    names = list(varied_parameters_at_points(view))
+    if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
         return request.write(
-            _curves_figure(view, varied[0]),
-            f"the normal forms of Hopf points along {varied[0]}{left_out_clause(view.point_columns, varied)}",
+            _curves_figure(view, names[0]),
+            f"the normal forms of Hopf points along {names[0]}{left_out_clause(view.point_columns, names)}",
         )
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
-    shown = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
-    return request.write(_maps_figure(view, points, request.look.is_narrow), shown, MAP_ASPECT)
+    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
+    return request.write(_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
 
 
 def _curves_figure(view: View, name: str) -> Figure:
@@ -79,17 +79,19 @@ def _curves_figure(view: View, name: str) -> Figure:
     `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
     """
     x = view.point_columns[name]
-    keep = np.isfinite(x)
+    is_finite = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    side, a, c = (view.by_point(key)[keep] for key in ("criticality", "amplitude_coefficient", "landau_real"))
-    style.require_content(view, np.isfinite(c).any(), f"Hopf point with a finite {name}")
-    small = float(np.nanquantile(np.abs(c), LINEAR_FRACTION))
-    lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(small)))
-    for axes, values in ((upper, a), (lower, c)):
-        handles = _draw_hopf_markers(axes, x[keep], values, side)
+    criticality, a, landau_real = (
+        view.by_point(key)[is_finite] for key in ("criticality", "amplitude_coefficient", "landau_real")
+    )
+    style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
+    linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_FRACTION))
+    lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
+    for axes, values in ((upper, a), (lower, landau_real)):
+        handles = _draw_hopf_markers(axes, x[is_finite], values, criticality)
         axes.axhline(0, color="0.6", lw=0.8, zorder=0)
-        style.scale_axis(axes, "x", np.sort(x[keep]))
+        style.scale_axis(axes, "x", np.sort(x[is_finite]))
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
@@ -99,30 +101,32 @@ def _curves_figure(view: View, name: str) -> Figure:
     return figure
 
 
-def _draw_hopf_markers(axes: Axes, x: Array, values: Array, side: Array) -> list[Line2D]:
+def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) -> list[Line2D]:
     """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
-    crossings). side: signs of Re c, (rods, crossings).
+    crossings). criticality: signs of Re c, (rods, crossings).
     """
-    across = np.broadcast_to(x[:, None], values.shape)
+    x_of_values = np.broadcast_to(x[:, None], values.shape)
     handles = []
     for number, (word, colour, marker) in CRITICALITY_MARKS.items():
-        chosen = side == number
-        if chosen.any():
-            (drawn,) = axes.plot(across[chosen], values[chosen], marker, color=colour, ms=3.5, label=word)
-            handles.append(drawn)
+        is_of_class = criticality == number
+        if is_of_class.any():
+            (artist,) = axes.plot(
+                x_of_values[is_of_class], values[is_of_class], marker, color=colour, ms=3.5, label=word
+            )
+            handles.append(artist)
     return handles
 
 
-def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
-    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. narrow:
+def _maps_figure(view: View, points: PointMap, is_narrow: bool) -> Figure:
+    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
     whether the maps are stacked. Raises InputError if nothing can be drawn.
     """
-    side = view.by_point("criticality")[points.point_indices]
+    criticality = view.by_point("criticality")[points.point_indices]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
-    figure, panels = map_panels(2, narrow)
+    figure, panels = map_panels(2, is_narrow)
     edges = cell_edges(points.x), cell_edges(points.y)
-    classes = _class_indices(side)
+    classes = _class_indices(criticality)
     norm = BoundaryNorm(np.arange(len(CRITICALITY_CLASSES) + 1) - 0.5, len(CRITICALITY_CLASSES))
     colours = ListedColormap([colour for _, colour in CRITICALITY_CLASSES])
     panels[0].pcolormesh(*edges, classes, cmap=colours, norm=norm, rasterized=True)
@@ -130,8 +134,8 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
     entries = [
-        Patch(facecolor=c, label=word)
-        for i, (word, c) in enumerate(CRITICALITY_CLASSES)
+        Patch(facecolor=class_colour, label=word)
+        for i, (word, class_colour) in enumerate(CRITICALITY_CLASSES)
         if (classes == i).any()
     ]
     style.legend_below(figure, entries, columns=3)
@@ -143,16 +147,19 @@ def _maps_figure(view: View, points: PointMap, narrow: bool) -> Figure:
     return figure
 
 
-def _class_indices(side: Array) -> Array:
+def _class_indices(criticality: Array) -> Array:
     """Index in CRITICALITY_CLASSES for each rod, (ny, nx).
 
-    side: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf point.
+    criticality: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf
+    point.
     """
-    first = side[..., 0]
-    later = (side[..., 1:] == 1).any(axis=-1)
+    first_criticality = criticality[..., 0]
+    has_later_subcritical = (criticality[..., 1:] == 1).any(axis=-1)
     # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and the index 0.
-    classes = np.select([first == -1, first == 1, first == 0], [1.0, 3.0, 4.0], 0.0)
-    return np.where((first == -1) & later, 2.0, classes)
+    classes = np.select(
+        [first_criticality == -1, first_criticality == 1, first_criticality == 0], [1.0, 3.0, 4.0], 0.0
+    )
+    return np.where((first_criticality == -1) & has_later_subcritical, 2.0, classes)
 
 
 def draw_predictions(view: View) -> tuple[Figure, str]:
@@ -160,41 +167,41 @@ def draw_predictions(view: View) -> tuple[Figure, str]:
     rods. Raises InputError if nothing can be drawn.
     """
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
-    having = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
-    style.require_content(view, having.size, "Hopf point with a normal form")
-    drawn = having[: len(style.LINE_COLOURS)]
+    rods_with_prediction = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
+    style.require_content(view, rods_with_prediction.size, "Hopf point with a normal form")
+    drawn_rods = rods_with_prediction[: len(style.LINE_COLOURS)]
     figure = Figure(figsize=(5.6, 3.8), layout="constrained")
     axes = figure.subplots()
-    shared, own = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn])
+    common_text, rod_texts = shared_and_own_of_points(view, [int(rod) + 1 for rod in drawn_rods])
     distance = MAX_DRAWN_DISTANCE * np.linspace(0, 1, PREDICTION_POINT_COUNT) ** 2
-    for rod, colour in zip(drawn, style.LINE_COLOURS, strict=False):
-        for kind, at, size in zip(kinds[rod], F[rod], a[rod], strict=True):
+    for rod, colour in zip(drawn_rods, style.LINE_COLOURS, strict=False):
+        for kind, hopf_force, size in zip(kinds[rod], F[rod], a[rod], strict=True):
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
-                beside = at * (1 + np.sign(size) * distance)
+                forces = hopf_force * (1 + np.sign(size) * distance)
                 axes.plot(
-                    beside,
+                    forces,
                     abs(size) * np.sqrt(distance),
                     CRITICALITY_LINES[int(kind)][0],
                     color=colour,
                     lw=1.4,
                 )
-                axes.plot(at, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
+                axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
-    seen = {int(kind) for kind in kinds[drawn].ravel() if np.isfinite(kind)}
+    drawn_kinds = {int(kind) for kind in kinds[drawn_rods].ravel() if np.isfinite(kind)}
     handles = [
         Line2D([], [], color="0.3", ls=ls, label=word)
         for k, (ls, word) in CRITICALITY_LINES.items()
-        if k in seen
+        if k in drawn_kinds
     ]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
-    pairs = zip(style.LINE_COLOURS, own, strict=False)
+    pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(style.heading_text(view, shared))
-    shown = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
-    if len(drawn) < having.size:
-        shown += f", of the first {len(drawn)} of {having.size} rods with Hopf points"
-    return figure, shown
+    figure.suptitle(style.heading_text(view, common_text))
+    caption = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
+    if len(drawn_rods) < rods_with_prediction.size:
+        caption += f", of the first {len(drawn_rods)} of {rods_with_prediction.size} rods with Hopf points"
+    return figure, caption

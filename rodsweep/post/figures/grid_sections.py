@@ -25,13 +25,14 @@ MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
-def section_at_values(view: View, at: Mapping[str, float | str]) -> View:
-    """View of the points at which parameters, or quantities of an arm, have the values `at`, by name.
+def section_at_values(view: View, typed_values: Mapping[str, float | str]) -> View:
+    """View of the points at which parameters, or quantities of an arm, have the values `typed_values`, by
+    name.
 
     The value of a quantity is a number in SI units, or a text with a unit. Raises InputError if no point has
     a value; the message lists the values in the file.
     """
-    for name, value in at.items():
+    for name, value in typed_values.items():
         view = _section_at_value(view, name, _number_in_si(name, value))
     return view
 
@@ -54,24 +55,24 @@ def _number_in_si(name: str, value: float | str) -> float:
 
 def _section_at_value(view: View, name: str, value: float) -> View:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
-    listed = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
+    quantity_names = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
-        listed = [n for n in listed if PARAMETER_STORED_ALONG.get(n) in view.parameters]
-    axes = view.arm_axes or (*view.parameters, *listed)
+        quantity_names = [n for n in quantity_names if PARAMETER_STORED_ALONG.get(n) in view.parameters]
+    axes = view.arm_axes or (*view.parameters, *quantity_names)
     if name not in axes:
         raise InputError(f"--at {name}={value:.15g}: {view.path} {_axes_sentence(view, name, axes)}")
     values = view.variables[name]
-    chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
-    if not chosen.any():
+    is_chosen = np.isclose(values, value, rtol=TYPED_TOLERANCE, atol=0.0)
+    if not is_chosen.any():
         raise InputError(
             f"--at {name}={value:.15g}: {view.path} has no point there; it has {name} = "
             f"{_values_text(np.unique(values), value)}"
         )
     if view.is_grid or view.arm_axes:
-        along = name if name in (*view.arm_axes, *view.parameters) else PARAMETER_STORED_ALONG[name]
-        return _grid_at(view, along, chosen)
+        axis_name = name if name in (*view.arm_axes, *view.parameters) else PARAMETER_STORED_ALONG[name]
+        return _grid_at(view, axis_name, is_chosen)
     variables = {
-        key: data[chosen] if data.shape[:1] == chosen.shape and key not in OTHER_DIMENSIONS else data
+        key: data[is_chosen] if data.shape[:1] == is_chosen.shape and key not in OTHER_DIMENSIONS else data
         for key, data in view.variables.items()
     }
     return replace(view, variables=variables)
@@ -80,35 +81,40 @@ def _section_at_value(view: View, name: str, value: float) -> View:
 def _axes_sentence(view: View, name: str, axes: Sequence[str]) -> str:
     """Predicate that says that `name` is none of the axes `axes`, with a similar name, or with the names of
     the axes that have several values."""
-    close = similar_keys(name, list(axes))
-    varied = [axis for axis in axes if len(np.unique(view.variables[axis])) > 1]
-    hint = f"did you mean {close[0]}?" if close else f"the points differ in {', '.join(varied or axes)}"
+    similar = similar_keys(name, list(axes))
+    varied_axes = [axis for axis in axes if len(np.unique(view.variables[axis])) > 1]
+    hint = (
+        f"did you mean {similar[0]}?" if similar else f"the points differ in {', '.join(varied_axes or axes)}"
+    )
     followed = f"; {name} is not an axis of points in this file" if name in NONLINEAR_PARAMETERS else ""
     return f"has no such axis{followed}; {hint}"
 
 
-def _values_text(values: np.ndarray, wanted: float) -> str:
+def _values_text(values: np.ndarray, requested: float) -> str:
     """The increasing values of an axis as text; of more than MAX_LISTED_VALUES values, the first and the last
-    value and the two values around `wanted`."""
+    value and the two values around `requested`."""
     if len(values) <= MAX_LISTED_VALUES:
-        return ", ".join(f"{one:.15g}" for one in values)
-    after = int(np.clip(np.searchsorted(values, wanted), 1, len(values) - 1))
-    nearest = " and ".join(f"{one:.15g}" for one in values[after - 1 : after + 1])
+        return ", ".join(f"{value:.15g}" for value in values)
+    next_index = int(np.clip(np.searchsorted(values, requested), 1, len(values) - 1))
+    nearest = " and ".join(f"{value:.15g}" for value in values[next_index - 1 : next_index + 1])
     return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest}"
 
 
-def _grid_at(view: View, name: str, chosen: np.ndarray) -> View:
-    """View of a grid restricted to some values of the axis `name`. chosen: mask of these values."""
+def _grid_at(view: View, name: str, is_chosen: np.ndarray) -> View:
+    """View of a grid restricted to some values of the axis `name`. is_chosen: mask of these values."""
     names = view.arm_axes or view.parameters
     shape = view.variables["status"].shape
     axis = names.index(name)
-    along = {name, *(quantity for quantity, moved in PARAMETER_STORED_ALONG.items() if moved == name)}
+    sliced_names = {
+        name,
+        *(quantity for quantity, changed_name in PARAMETER_STORED_ALONG.items() if changed_name == name),
+    }
     variables = {}
     for key, data in view.variables.items():
-        if key in along and np.ndim(data):
-            variables[key] = data[chosen]
+        if key in sliced_names and np.ndim(data):
+            variables[key] = data[is_chosen]
         elif data.shape[: len(shape)] == shape and key not in (*names, *OTHER_DIMENSIONS):
-            variables[key] = np.compress(chosen, data, axis=axis)
+            variables[key] = np.compress(is_chosen, data, axis=axis)
         else:
             variables[key] = data
     return replace(view, variables=variables)
@@ -127,18 +133,20 @@ def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> 
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite. columns: values by parameter, (n,) each.
     """
-    left_out = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]
-    return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
+    omissions = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]
+    return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
-def checked_section_values(given: Mapping[str, float | str]) -> dict[str, float | str]:
+def checked_section_values(section_values: Mapping[str, float | str]) -> dict[str, float | str]:
     """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
     that is neither a number nor a text.
     """
     try:
-        return {str(n): value if isinstance(value, str) else float(value) for n, value in given.items()}
+        return {
+            str(n): value if isinstance(value, str) else float(value) for n, value in section_values.items()
+        }
     except (AttributeError, TypeError, ValueError):
-        shown = short_repr(given)
+        given_text = short_repr(section_values)
         raise InputError(
-            f"at = {shown} is not allowed; give numbers by parameter, as at={{'k1': 150}}"
+            f"at = {given_text} is not allowed; give numbers by parameter, as at={{'k1': 150}}"
         ) from None

@@ -72,14 +72,14 @@ def chosen_figure_kind(request: FigureRequest) -> str:
     """Kind of figure that the user has chosen by --what, or the default kind. Raises InputError for options
     that do not match the files.
     """
-    first, *others = request.views
-    for view in others:
-        if view.task != first.task:
+    first_view, *other_views = request.views
+    for view in other_views:
+        if view.task != first_view.task:
             request.refuse_choices(view)
     name = request.what or _default_figure_kind(request)
     if name not in FIGURE_KINDS_BY_TASK["limit_cycle"]:
-        request.refuse_points(first)
-    if others and name != "amplitude":
+        request.refuse_points(first_view)
+    if other_views and name != "amplitude":
         raise InputError(f"--what {name} draws a single file; only amplitudes of several files form a figure")
     if request.points and name in ALL_POINT_FIGURES:
         raise InputError(f"--point is given, but {ALL_POINT_FIGURES[name]} show all points; remove --point")
@@ -92,30 +92,30 @@ def _default_figure_kind(request: FigureRequest) -> str:
     An animation for an output file with the suffix of an animation; shapes or transients for a few points;
     maps for many lines; else amplitudes.
     """
-    first, *others = request.views
+    first_view, *other_views = request.views
     if request.output.suffix in FILM_SUFFIXES:
         return "animation"
-    if others:
+    if other_views:
         return "amplitude"
-    beats = first.status_names == "cycle"
-    chosen = [number - 1 for number in request.points]
-    few_cycles = len(chosen) > 0 or beats.sum() <= MAX_CYCLES
-    few_points = len(chosen) > 0 or beats.size <= MAX_CYCLES
-    shaped = SHAPE_VARIABLES[0] in first.variables
-    drawable = shaped and beats.any() and beats[[n for n in chosen if 0 <= n < beats.size]].all()
-    if few_points and TRANSIENT_VARIABLE_NAMES[0] in first.variables and not drawable:
+    is_cycle = first_view.status_names == "cycle"
+    indices = [number - 1 for number in request.points]
+    few_cycles = len(indices) > 0 or is_cycle.sum() <= MAX_CYCLES
+    few_points = len(indices) > 0 or is_cycle.size <= MAX_CYCLES
+    shaped = SHAPE_VARIABLES[0] in first_view.variables
+    drawable = shaped and is_cycle.any() and is_cycle[[n for n in indices if 0 <= n < is_cycle.size]].all()
+    if few_points and TRANSIENT_VARIABLE_NAMES[0] in first_view.variables and not drawable:
         return "transient"
-    if chosen or (few_cycles and shaped):
+    if indices or (few_cycles and shaped):
         return "cycle"
-    if _has_many_lines(first):
+    if _has_many_lines(first_view):
         return "maps"
-    varied = varied_parameters_at_points(first)
-    return "amplitude" if "F" in varied or (varied and beats.size > MAX_CYCLES) else "cycle"
+    names = varied_parameters_at_points(first_view)
+    return "amplitude" if "F" in names or (names and is_cycle.size > MAX_CYCLES) else "cycle"
 
 
 def _has_many_lines(view: View) -> bool:
     """Whether the points form a map that has more lines than a figure of amplitudes can show."""
     if not varies_two_parameters_on_grid(view):
         return False
-    across = next(name for name in point_map(view).names if name != abscissa_parameter(view))
-    return len(np.unique(view.point_columns[across])) > len(BRANCH_LOOKS)
+    other_name = next(name for name in point_map(view).names if name != abscissa_parameter(view))
+    return len(np.unique(view.point_columns[other_name])) > len(BRANCH_LOOKS)

@@ -31,28 +31,30 @@ def draw_modes(request: FigureRequest) -> str:
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     require_content(view, points.size, "computed point")
-    narrow = request.look.is_narrow
-    drawn = points[: 1 if narrow else MAX_RODS]
-    rows, columns = (len(drawn) * len(MODE_PANELS), 1) if narrow else (len(drawn), len(MODE_PANELS))
-    size = (4.6, 2.4 * rows + 0.4) if narrow else (10.0, 2.8 * rows + 0.4)
+    is_narrow = request.look.is_narrow
+    drawn_points = points[: 1 if is_narrow else MAX_RODS]
+    rows, columns = (
+        (len(drawn_points) * len(MODE_PANELS), 1) if is_narrow else (len(drawn_points), len(MODE_PANELS))
+    )
+    size = (4.6, 2.4 * rows + 0.4) if is_narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(len(drawn), len(MODE_PANELS)), drawn, strict=True):
+    for row, point in zip(panels.reshape(len(drawn_points), len(MODE_PANELS)), drawn_points, strict=True):
         for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
-        if len(drawn) > 1:
+        if len(drawn_points) > 1:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    texts = _point_texts(view, int(drawn[0])) if len(drawn) == 1 else ()
+    texts = _point_texts(view, int(drawn_points[0])) if len(drawn_points) == 1 else ()
     figure.suptitle(heading_text(view, constant_quantities_text(view), *texts))
-    legend_below(figure, _part_entries(view, drawn), columns=2)
-    left = f" of the first of {points.size} points" if len(drawn) == 1 < points.size else ""
-    if points.size > len(drawn) > 1:
-        left = f" of the first {len(drawn)} of {points.size} points"
-    left += " (--at chooses others)" if left else ""
-    return request.write(figure, f"the leading mode{left}: real part solid, imaginary part dotted")
+    legend_below(figure, _part_entries(view, drawn_points), columns=2)
+    omission_clause = f" of the first of {points.size} points" if len(drawn_points) == 1 < points.size else ""
+    if points.size > len(drawn_points) > 1:
+        omission_clause = f" of the first {len(drawn_points)} of {points.size} points"
+    omission_clause += " (--at chooses others)" if omission_clause else ""
+    return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
 
 
 def _part_entries(view: View, points: np.ndarray) -> list[Line2D]:
@@ -60,8 +62,8 @@ def _part_entries(view: View, points: np.ndarray) -> list[Line2D]:
     (dotted). points: indices of the drawn points, (n,).
     """
     oscillates = view.by_point("frequency")[points, 0].any()
-    looks = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
-    return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in looks]
+    line_styles = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
+    return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in line_styles]
 
 
 def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
@@ -69,9 +71,9 @@ def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[s
     height. point: index of the point. fields: (field, label) of the two fields.
     """
     u = view.variables["u"]
-    both = panel, panel.twinx()
-    spans = []
-    for axes, (name, label), colour in zip(both, fields, (BLUE, VERMILION), strict=True):
+    twins = panel, panel.twinx()
+    limits = []
+    for axes, (name, label), colour in zip(twins, fields, (BLUE, VERMILION), strict=True):
         shape = (-1, *view.variables[f"{name}_real"].shape[-2:])
         real, imag = (view.variables[f"{name}_{part}"].reshape(shape)[point, 0] for part in ("real", "imag"))
         axes.plot(u, real, color=colour, lw=1.5)
@@ -79,19 +81,21 @@ def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[s
             axes.plot(u, imag, ":", color=colour, lw=1.5)
         axes.tick_params(axis="y", colors=colour)
         axes.set_ylabel(label, color=colour)
-        spans.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))
-    zero = max(-low / (high - low) if high > low else 0.5 for low, high in spans)
-    for axes, (low, high) in zip(both, spans, strict=True):
+        limits.append((min(real.min(), imag.min(), 0.0), max(real.max(), imag.max(), 0.0)))
+    zero = max(-low / (high - low) if high > low else 0.5 for low, high in limits)
+    for axes, (low, high) in zip(twins, limits, strict=True):
         height = max(high / (1 - zero) if zero < 1 else 0.0, -low / zero if zero > 0 else 0.0) or 1.0
         axes.set_ylim(-1.06 * zero * height - 0.02 * height, 1.06 * (1 - zero) * height + 0.02 * height)
-    both[1].spines["right"].set_visible(True)
+    twins[1].spines["right"].set_visible(True)
     panel.axhline(0, color="0.8", lw=0.6, zorder=0)
     panel.set_xlim(0, 1)
 
 
 def _point_texts(view: View, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
-    at = {name: values[point] for name, values in view.point_columns.items()}
-    w = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
-    imaginary = rf" + {number_in_tex(w[1])}\,\mathrm{{i}}" if w[1] else ""
-    return parameter_text(at, digits=4), rf"$\omega_1\tau_2 = {number_in_tex(w[0])}{imaginary}$"
+    parameters = {name: values[point] for name, values in view.point_columns.items()}
+    eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
+    imaginary = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
+    return parameter_text(
+        parameters, digits=4
+    ), rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"

@@ -60,16 +60,16 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     style.require_content(view, (values >= 0).any(), "computed row")
     x = view.variables[line]
     y = view.parameter_values[row]
-    keep = np.isfinite(y)
-    if keep.sum() < 2:
+    is_finite = np.isfinite(y)
+    if is_finite.sum() < 2:
         rows = f", for each {row}" if len(y) > 1 else ""
-        shown = f"behaviour of the rod over {line}{rows}"
-        return request.write(_draw_rows(view, palette, line, row), shown, BAR_ASPECT * len(y))
-    table = values.reshape(len(y), len(x))[keep]
-    y = y[keep]
+        caption = f"behaviour of the rod over {line}{rows}"
+        return request.write(_draw_rows(view, palette, line, row), caption, BAR_ASPECT * len(y))
+    table = values.reshape(len(y), len(x))[is_finite]
+    y = y[is_finite]
     plane = DrawnPlane(x, y)
-    at = (plane.pixel_centres(x), plane.pixel_centres(y))
-    ratio = crushing_ratio(view, line, row, at[0], at[1][:, None])
+    pixel_coordinates = (plane.pixel_centres(x), plane.pixel_centres(y))
+    ratio = crushing_ratio(view, line, row, pixel_coordinates[0], pixel_coordinates[1][:, None])
     figure = Figure(figsize=(5.8, 4.6), layout="constrained")
     axes = figure.subplots()
     pixels = _class_of_pixels(view, palette, line, row, ClassMap(plane, table, ratio))
@@ -77,9 +77,10 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    edge = _draw_crushing(axes, ratio, *at)
+    crushing_line = _draw_crushing(axes, ratio, *pixel_coordinates)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
-    handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
+    curves = _draw_stored_curves(axes, view, palette, line, row)
+    handles = [*palette.legend_entries(pixels), *curves, *crushing_line]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     figure.suptitle(
         style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
@@ -135,15 +136,17 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    share = np.linspace(0, 1, PIXEL_COUNT + 1)
-    edges = x[0] * (x[-1] / x[0]) ** share if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * share
+    fractions = np.linspace(0, 1, PIXEL_COUNT + 1)
+    edges = (
+        x[0] * (x[-1] / x[0]) ** fractions if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * fractions
+    )
     table = np.array(
         [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
     )
-    looks: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
-    axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **looks)
-    for between in np.arange(len(y) - 1) + 0.5:
-        axes.axhline(between, color="white", lw=4)
+    keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
+    axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **keywords)
+    for separator in np.arange(len(y) - 1) + 0.5:
+        axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
     axes.set_yticks(
         np.arange(len(y)), [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
@@ -164,22 +167,27 @@ def _class_of_pixels(view: View, palette: Palette, line: str, row: str, map_: Cl
     line, row: parameters along a row, and constant on a row.
     """
     plane = map_.plane
-    crushed = flag_number("crushed", palette.words)
+    crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
-    known = map_.classes != crushed
-    computed = ClassifiedPoints(plane.fractions_of_axes(columns[known], rows[known]), map_.classes[known])
-    further = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
+    is_known = map_.classes != crushed_class
+    computed = ClassifiedPoints(
+        plane.fractions_of_axes(columns[is_known], rows[is_known]), map_.classes[is_known]
+    )
+    row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
-        x, at, found = classes_between_crossings(view, line, row)
-        further = ClassifiedPoints(plane.fractions_of_axes(x, at), found)
+        x, row_values, row_classes = classes_between_crossings(view, line, row)
+        row_points = ClassifiedPoints(plane.fractions_of_axes(x, row_values), row_classes)
     curves = []
     v = view.variables
     for kind in (kind for kind in ("curve", "cycle_curve") if f"{kind}_number" in v):
         number = v[f"{kind}_number"]
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
             number = np.where(v["curve_kind"] == 1, number, 0)
-        ones = [number == one for one in np.unique(number[number > 0])]
-        curves += [plane.fractions_of_axes(v[f"{kind}_{line}"][one], v[f"{kind}_{row}"][one]) for one in ones]
+        masks = [number == region_number for region_number in np.unique(number[number > 0])]
+        curves += [
+            plane.fractions_of_axes(v[f"{kind}_{line}"][region_number], v[f"{kind}_{row}"][region_number])
+            for region_number in masks
+        ]
     undecided = flag_number("undecided", palette.words)
-    pixels = pixel_classes(computed, further, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
-    return np.where(map_.crushing_ratio < 1, pixels, crushed)
+    pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
+    return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

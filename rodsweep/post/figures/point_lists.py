@@ -31,11 +31,11 @@ def as_grid_if_possible(view: View) -> View:
     count = len(view.variables["point"])
     values = {name: np.unique(column, return_inverse=True) for name, column in columns.items()}
     sizes = tuple(len(unique) for unique, _ in values.values())
-    places = np.ravel_multi_index([index.ravel() for _, index in values.values()], sizes)
-    is_complete = np.prod(sizes) == count and len(np.unique(places)) == count
+    flat_indices = np.ravel_multi_index([index.ravel() for _, index in values.values()], sizes)
+    is_complete = np.prod(sizes) == count and len(np.unique(flat_indices)) == count
     if not is_complete or sum(size > 1 for size in sizes) > 2:
         return view
-    order = np.argsort(places)
+    order = np.argsort(flat_indices)
     variables = {name: data for name, data in view.variables.items() if name != "point"}
     for name, data in variables.items():
         if data.shape[:1] == (count,) and name not in OTHER_DIMENSIONS:
@@ -58,14 +58,14 @@ def label_point_numbers(axes: Axes, view: View, count: int) -> None:
     """
     axes.set_xlim(0.5, count + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(min(count, MAX_LABELLED_POINTS), integer=True, min_n_ticks=1))
-    varied = _varied_quantities(view)
-    if varied and count <= MAX_LABELLED_POINTS:
-        columns = zip(*(numbers for _, numbers in varied), strict=True)
+    varied_values = _varied_quantities(view)
+    if varied_values and count <= MAX_LABELLED_POINTS:
+        columns = zip(*(numbers for _, numbers in varied_values), strict=True)
         axes.set_xticks(np.arange(1, count + 1), ["\n".join(numbers) for numbers in columns])
-        axes.set_xlabel("\n".join(name for name, _ in varied))
+        axes.set_xlabel("\n".join(name for name, _ in varied_values))
     else:
-        spans = (f"{name}: {numbers[0]} to {numbers[-1]}" for name, numbers in varied)
-        axes.set_xlabel("\n".join(["point of the list", *spans]))
+        range_texts = (f"{name}: {numbers[0]} to {numbers[-1]}" for name, numbers in varied_values)
+        axes.set_xlabel("\n".join(["point of the list", *range_texts]))
 
 
 def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:

@@ -73,9 +73,10 @@ class FigureLook:
         `fit_layout`. min_aspect: smallest ratio of height to width of a panel.
         """
         if self.width_in_inches is not None:
-            across, down = figure.get_size_inches()
+            width_inches, height_inches = figure.get_size_inches()
             figure.set_size_inches(
-                self.width_in_inches, down * min(1.0, self.width_in_inches / across) ** HEIGHT_EXPONENT
+                self.width_in_inches,
+                height_inches * min(1.0, self.width_in_inches / width_inches) ** HEIGHT_EXPONENT,
             )
         fit_layout(figure, min_aspect)
 
@@ -86,14 +87,14 @@ def _inches(width: str) -> float:
     """
     if width in WIDTHS:
         return WIDTHS[width]
-    refusal = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
+    message = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
     try:
         inches = quantity_in_si("width", width, "m", "89 mm") / METRES_PER_INCH
     except InputError:
-        raise InputError(refusal) from None
+        raise InputError(message) from None
     if not MIN_WIDTH <= inches <= MAX_WIDTH:
         low, high = (1e3 * METRES_PER_INCH * limit for limit in (MIN_WIDTH, MAX_WIDTH))
-        raise InputError(f"{refusal}, from {low:.0f} to {high:.0f} mm")
+        raise InputError(f"{message}, from {low:.0f} to {high:.0f} mm")
     return inches
 
 
@@ -144,7 +145,9 @@ class FigureRequest:
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
             )
         if self.what and self.what not in kinds:
-            task = next(task for task, known in FIGURE_KINDS_BY_TASK.items() if self.what in known)
+            task = next(
+                task for task, kinds_of_task in FIGURE_KINDS_BY_TASK.items() if self.what in kinds_of_task
+            )
             raise InputError(
                 f"{view.path}: --what {self.what} is for results of {task}, and this is a result of "
                 f"{view.task}"
@@ -160,8 +163,8 @@ class FigureRequest:
         if self.is_protected:
             raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
 
-    def write(self, figure: Figure, shown: str, min_aspect: float = MIN_ASPECT) -> str:
-        """Writes the figure, with second scales and hatches for an arm; returns `shown`, the
+    def write(self, figure: Figure, caption: str, min_aspect: float = MIN_ASPECT) -> str:
+        """Writes the figure, with second scales and hatches for an arm; returns `caption`, the
         description of the figure. min_aspect: smallest ratio of height to width of a panel.
 
         """
@@ -173,7 +176,7 @@ class FigureRequest:
         if self.figure_callback is not None:
             self.look.fit(figure, min_aspect)
             self.figure_callback(figure)
-            return shown
+            return caption
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved
         self.look.fit(figure, min_aspect)
@@ -181,4 +184,4 @@ class FigureRequest:
             None
         )  # `fit_layout` has laid out the figure; savefig would repeat the layout
         save_figure(figure, self.output)
-        return shown
+        return caption

@@ -51,52 +51,59 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
     between corners.
     """
-    places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
-    extent = np.ptp(places, axis=0)
+    vertices = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    extent = np.ptp(vertices, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
-    moves = (np.abs(np.diff(places, axis=0)) > COINCIDENCE_TOLERANCE * extent).any(axis=1)
-    own = places[np.append(True, moves)]
-    stable = curve.stable[moves]
-    if len(own) <= MIRRORED_CYCLE_COUNT:
+    is_distinct = (np.abs(np.diff(vertices, axis=0)) > COINCIDENCE_TOLERANCE * extent).any(axis=1)
+    cycles = vertices[np.append(True, is_distinct)]
+    stable = curve.stable[is_distinct]
+    if len(cycles) <= MIRRORED_CYCLE_COUNT:
         return curve.at, curve.y, curve.period, curve.stable
-    corners = branch_corners(own, extent)
+    corners = branch_corners(cycles, extent)
     for i in sorted(corners, reverse=True):
-        own = np.insert(own, i + 1, corners[i], axis=0)
+        cycles = np.insert(cycles, i + 1, corners[i], axis=0)
         stable = np.insert(stable, i, stable[i])
-    inner = [i + 1 + k for k, i in enumerate(sorted(corners))]
-    parts = [
-        _smooth_vertices(own[low : high + 1], extent) for low, high in pairwise([0, *inner, len(own) - 1])
+    corner_indices = [i + 1 + k for k, i in enumerate(sorted(corners))]
+    smooth_parts = [
+        _smooth_vertices(cycles[low : high + 1], extent)
+        for low, high in pairwise([0, *corner_indices, len(cycles) - 1])
     ]
-    at, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
-    return at, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
+    values, y, log_period = np.concatenate(
+        [*(smooth_part[:-1] for smooth_part in smooth_parts), smooth_parts[-1][-1:]]
+    ).T
+    return values, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
 
 
-def _smooth_vertices(own: Array, extent: Array) -> Array:
-    """Vertices, (m, 3), of a smooth curve through the cycles `own`, (n, 3), with SEGMENT_COUNT segments
+def _smooth_vertices(cycles: Array, extent: Array) -> Array:
+    """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENT_COUNT segments
     between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,).
 
     At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
     therefore give the curve a square-root shape.
     """
-    before = own[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
-    behind = own[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
-    first = len(before) if own[0, 1] == 0 else 0
-    last = len(behind) if own[-1, 1] == 0 else 0
-    whole = np.concatenate([before[:first], own, behind[:last]])
-    variables = [_cumulative_chord_lengths(whole, extent, shares, power) for shares, power in CHORD_VARIABLES]
-    s = min(variables, key=lambda variable: _largest_cubic_deviation(variable, whole / extent))
-    ends = s[first : first + len(own)]
-    finer = np.append(
+    before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
+    after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
+    first = len(before) if cycles[0, 1] == 0 else 0
+    last = len(after) if cycles[-1, 1] == 0 else 0
+    extended = np.concatenate([before[:first], cycles, after[:last]])
+    variables = [
+        _cumulative_chord_lengths(extended, extent, weights, power) for weights, power in CHORD_VARIABLES
+    ]
+    s = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
+    ends = s[first : first + len(cycles)]
+    s_drawn = np.append(
         np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel(), ends[-1]
     )
-    places: Array = scipy.interpolate.CubicHermiteSpline(s, whole, slopes_at_cycles(s, whole))(finer)
-    return places
+    vertices: Array = scipy.interpolate.CubicHermiteSpline(s, extended, slopes_at_cycles(s, extended))(
+        s_drawn
+    )
+    return vertices
 
 
-def branch_corners(own: Array, extent: Array) -> dict[int, Array]:
-    """Corners of a branch through the cycles `own`, (n, 3), as {index of the previous cycle: (parameter, y,
-    log period), (3,)}. extent: ranges of the branch, (3,).
+def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
+    """Corners of a branch through the cycles `cycles`, (n, 3), as {index of the previous cycle: (parameter,
+    y, log period), (3,)}. extent: ranges of the branch, (3,).
 
     At a corner, a different maximum of y(t) becomes the largest maximum, so y is continuous and its slope
     increases. On each interval between cycles, one polynomial for y passes through the cycles before the
@@ -104,31 +111,31 @@ def branch_corners(own: Array, extent: Array) -> dict[int, Array]:
     polynomials is the arc length of (parameter, log period), which is smooth. Of candidates on neighbouring
     intervals, the candidate with the largest change of slope is the corner.
     """
-    lengths = _cumulative_chord_lengths(own * CHORD_WEIGHTS_WITHOUT_Y, extent)
-    found: dict[int, tuple[float, Array]] = {}
-    for i in range(1, len(own) - 2):
+    lengths = _cumulative_chord_lengths(cycles * CHORD_WEIGHTS_WITHOUT_Y, extent)
+    candidates: dict[int, tuple[float, Array]] = {}
+    for i in range(1, len(cycles) - 2):
         window = slice(max(0, i + 1 - CORNER_CYCLE_COUNT), i + 1 + CORNER_CYCLE_COUNT)
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
-        rises = [_jump_polynomial(x, column) for column in own[window].T]
-        for root in rises[1].roots():
-            angles = [float(rise.deriv()(root.real)) for rise in rises]
+        differences = [_jump_polynomial(x, column) for column in cycles[window].T]
+        for root in differences[1].roots():
+            slope_jumps = [float(difference.deriv()(root.real)) for difference in differences]
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
             if (
                 is_between
-                and angles[1] > MIN_ANGLE
-                and angles[1] > MIN_ANGLE_RATIO * max(map(abs, angles[::2]))
+                and slope_jumps[1] > MIN_ANGLE
+                and slope_jumps[1] > MIN_ANGLE_RATIO * max(map(abs, slope_jumps[::2]))
             ):
-                place = scipy.interpolate.barycentric_interpolate(x, own[window], root.real)
-                place[1] = scipy.interpolate.barycentric_interpolate(
-                    x[x < 0.5], own[window][x < 0.5, 1], root.real
+                corner = scipy.interpolate.barycentric_interpolate(x, cycles[window], root.real)
+                corner[1] = scipy.interpolate.barycentric_interpolate(
+                    x[x < 0.5], cycles[window][x < 0.5, 1], root.real
                 )
-                found[i] = angles[1], place
+                candidates[i] = slope_jumps[1], corner
     return {
-        i: place
-        for i, (angle, place) in found.items()
-        if angle == max(found[k][0] for k in found if abs(k - i) < CORNER_CYCLE_COUNT)
+        i: corner
+        for i, (slope_jump, corner) in candidates.items()
+        if slope_jump == max(candidates[k][0] for k in candidates if abs(k - i) < CORNER_CYCLE_COUNT)
     }
 
 
@@ -136,47 +143,47 @@ def _jump_polynomial(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
     the slope of the steepest chord. x, values: (m,) each.
     """
-    before, behind = (
+    left, right = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
     )
-    return (behind - before) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
+    return (right - left) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
 def _cumulative_chord_lengths(
-    places: Array, extent: Array, shares: Array = CHORD_WEIGHTS, power: float = 1.0
+    points: Array, extent: Array, weights: Array = CHORD_WEIGHTS, power: float = 1.0
 ) -> Array:
     """Sum of the chord lengths to the power `power`, from the first point to each point, (n,).
 
-    places: points, (n, 3). extent: ranges of the branch, (3,). shares: weights of the coordinates, (3,).
+    points: points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,).
     """
-    chords = np.linalg.norm(np.diff(places / extent * shares, axis=0), axis=1)
+    chords = np.linalg.norm(np.diff(points / extent * weights, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
-def _largest_cubic_deviation(s: Array, places: Array) -> float:
+def _largest_cubic_deviation(s: Array, points: Array) -> float:
     """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
-    the point. s: variable, (n,). places: points, (n, columns).
+    the point. s: variable, (n,). points: points, (n, columns).
     """
-    beside = (-2, -1, 1, 2)
-    off = [
-        places[i]
+    neighbour_steps = (-2, -1, 1, 2)
+    deviations = [
+        points[i]
         - scipy.interpolate.barycentric_interpolate(
-            s[[i + k for k in beside]], places[[i + k for k in beside]], s[i]
+            s[[i + k for k in neighbour_steps]], points[[i + k for k in neighbour_steps]], s[i]
         )
         for i in range(2, len(s) - 2)
     ]
-    return float(np.abs(off).max()) if off else 0.0
+    return float(np.abs(deviations).max()) if deviations else 0.0
 
 
-def slopes_at_cycles(s: Array, places: Array) -> Array:
+def slopes_at_cycles(s: Array, points: Array) -> Array:
     """Derivatives of the points with respect to s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT
-    neighbouring points. s: (n,). places: points, (n, columns).
+    neighbouring points. s: (n,). points: points, (n, columns).
     """
     count = min(SLOPE_CYCLE_COUNT, len(s))
-    slopes = np.empty_like(places)
+    slopes = np.empty_like(points)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):
-        beside = s[start : start + count] - s[i]
-        size = np.abs(beside).max()
-        powers = np.vander(beside / size, increasing=True)
-        slopes[i] = np.linalg.solve(powers, places[start : start + count])[1] / size
+        distances = s[start : start + count] - s[i]
+        size = np.abs(distances).max()
+        vandermonde = np.vander(distances / size, increasing=True)
+        slopes[i] = np.linalg.solve(vandermonde, points[start : start + count])[1] / size
     return slopes

@@ -72,17 +72,17 @@ def draw_spectrum(request: FigureRequest) -> str:
     if not view.is_grid:
         return request.write(draw_list_of_spectra(view), "the stored eigenvalues of every point")
     long = style.varied_axes(view)
-    few = min(long, key=lambda name: len(view.parameter_values[name]))
-    if len(long) > 1 and len(view.parameter_values[few]) <= MAX_LINE_PANELS:
-        return _draw_line_per_value(view, few, request)
-    left_out = left_out_clause(view.parameter_values, long)
+    shortest = min(long, key=lambda name: len(view.parameter_values[name]))
+    if len(long) > 1 and len(view.parameter_values[shortest]) <= MAX_LINE_PANELS:
+        return _draw_line_per_value(view, shortest, request)
+    omissions = left_out_clause(view.parameter_values, long)
     view = without_infinite_values(view)
     long = style.varied_axes(view)
     if len(long) == 1:
         roots = roots_to_follow([view], request.roots)
-        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + left_out)
+        return request.write(draw_line(view, long[0], roots), ROOT_CHOICE_TEXTS[roots] + omissions)
     _refuse_roots(view, request.roots, "a map of the leading growth rate; --at draws one of its lines")
-    return request.write(_growth_map(view, long), f"the leading growth rate{left_out}", MAP_ASPECT)
+    return request.write(_growth_map(view, long), f"the leading growth rate{omissions}", MAP_ASPECT)
 
 
 def _refuse_roots(view: View, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
@@ -95,24 +95,26 @@ def _refuse_roots(view: View, roots: str | None, figure: str, allowed: Sequence[
         )
 
 
-def _draw_line_per_value(view: View, few: str, request: FigureRequest) -> str:
-    """Draws a panel of spectra for each value of the parameter `few`, which has too few values for a map;
-    returns a sentence."""
+def _draw_line_per_value(view: View, curve_parameter: str, request: FigureRequest) -> str:
+    """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
+    for a map; returns a sentence."""
     lines = [
-        without_infinite_values(section_at_values(view, {few: float(value)}))
-        for value in view.parameter_values[few]
+        without_infinite_values(section_at_values(view, {curve_parameter: float(value)}))
+        for value in view.parameter_values[curve_parameter]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
-    others = [name for name in style.varied_axes(view) if name != few]
-    return _draw_line_panels(views, request, f"{few}{left_out_clause(view.parameter_values, others)}")
+    others = [name for name in style.varied_axes(view) if name != curve_parameter]
+    return _draw_line_panels(
+        views, request, f"{curve_parameter}{left_out_clause(view.parameter_values, others)}"
+    )
 
 
-def _draw_line_panels(views: Sequence[View], request: FigureRequest, each: str) -> str:
-    """Draws a panel for each view, a line of spectra; returns a sentence. each: noun for a view, and a clause
-    on what is left out."""
+def _draw_line_panels(views: Sequence[View], request: FigureRequest, panel_noun: str) -> str:
+    """Draws a panel for each view, a line of spectra; returns a sentence. panel_noun: noun for a view, and a
+    clause on what is left out."""
     roots = roots_to_follow(views, request.roots)
     figure = draw_panels(views, roots, request.look.is_narrow)
-    return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {each}")
+    return request.write(figure, f"{ROOT_CHOICE_TEXTS[roots]}, in a panel for each {panel_noun}")
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -127,8 +129,8 @@ def _draw_files(request: FigureRequest) -> str:
         )
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
-    left_out = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
-    return _draw_line_panels(views, request, f"of {len(views)} files{max(left_out, key=len)}")
+    omissions = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
+    return _draw_line_panels(views, request, f"of {len(views)} files{max(omissions, key=len)}")
 
 
 def _line_of_spectra(view: View, request: FigureRequest) -> View:
@@ -156,17 +158,17 @@ def _growth_map(view: View, names: list[str]) -> Figure:
     y = view.parameter_values[vertical]
     figure = Figure(figsize=(5.6, 4.4), layout="constrained")
     axes = figure.subplots()
-    reach = float(np.nanmax(np.abs(growth)))
-    linear = max(1.0, reach * LINEAR_SHADE_FRACTION)
-    norm = matplotlib.colors.SymLogNorm(linear, vmin=-reach, vmax=reach)
+    max_rate = float(np.nanmax(np.abs(growth)))
+    linear = max(1.0, max_rate * LINEAR_SHADE_FRACTION)
+    norm = matplotlib.colors.SymLogNorm(linear, vmin=-max_rate, vmax=max_rate)
     # Zero is a level of the filled contours, so that the line of zero growth and the colours agree.
     shades = norm.inverse(np.linspace(0.0, 1.0, 2 * SHADES_PER_SIGN + 1))
-    shades[[0, SHADES_PER_SIGN, -1]] = np.nextafter(-reach, -np.inf), 0.0, np.nextafter(reach, np.inf)
-    drawn = np.ma.masked_invalid(growth.T)
-    axes.contourf(x, y, drawn, shades, norm=norm, cmap=MAP_COLOURS, zorder=-1)
+    shades[[0, SHADES_PER_SIGN, -1]] = np.nextafter(-max_rate, -np.inf), 0.0, np.nextafter(max_rate, np.inf)
+    masked_growth = np.ma.masked_invalid(growth.T)
+    axes.contourf(x, y, masked_growth, shades, norm=norm, cmap=MAP_COLOURS, zorder=-1)
     axes.set_rasterization_zorder(0)
     if np.nanmin(growth) < 0 < np.nanmax(growth):
-        axes.contour(x, y, drawn, levels=[0.0], colors="k", linewidths=1.2)
+        axes.contour(x, y, masked_growth, levels=[0.0], colors="k", linewidths=1.2)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
@@ -189,16 +191,16 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
     x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny).
     """
     limits = axes.axis()
-    across, up = np.meshgrid(x, y, indexing="ij")
-    axes.scatter(across.ravel(), up.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
+    x_grid, y_grid = np.meshgrid(x, y, indexing="ij")
+    axes.scatter(x_grid.ravel(), y_grid.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
     axes.axis(limits)
 
 
-def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
-    """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. narrow: whether
-    the panels are stacked.
+def draw_panels(views: Sequence[View], roots: str, is_narrow: bool) -> Figure:
+    """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. is_narrow:
+    whether the panels are stacked.
     """
-    columns = 1 if narrow else 2
+    columns = 1 if is_narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
     figure = Figure(figsize=size, layout="constrained")
@@ -221,6 +223,6 @@ def draw_panels(views: Sequence[View], roots: str, narrow: bool) -> Figure:
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()
-    style.legend_below(figure, list(handles.values()), 2 if narrow else 3)
+    style.legend_below(figure, list(handles.values()), 2 if is_narrow else 3)
     figure.suptitle(ROOT_CHOICE_TEXTS[roots])
     return figure

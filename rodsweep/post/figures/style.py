@@ -88,12 +88,14 @@ def file_label(view: View, views: Sequence[View]) -> str:
     """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
     title if all titles differ, else file name.
     """
-    laws = [material_words(each) or "linear" for each in views]
+    laws = [material_words(other_view) or "linear" for other_view in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
-    titles = [" ".join(escape_dollar_signs(each.attributes.get("title", "")).split()) for each in views]
-    distinct = len(set(titles)) == len(titles) and all(titles)
-    return titles[list(views).index(view)] if distinct else escape_dollar_signs(view.path.stem)
+    titles = [
+        " ".join(escape_dollar_signs(other_view.attributes.get("title", "")).split()) for other_view in views
+    ]
+    are_titles_distinct = len(set(titles)) == len(titles) and all(titles)
+    return titles[list(views).index(view)] if are_titles_distinct else escape_dollar_signs(view.path.stem)
 
 
 def number_in_tex(value: float, digits: int = 6) -> str:
@@ -123,10 +125,10 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     )
 
 
-def constant_parameters_text(view: View, *drawn: str) -> str:
-    """Constant parameters with their values, as text. drawn: names of the parameters on axes."""
+def constant_parameters_text(view: View, *axis_names: str) -> str:
+    """Constant parameters with their values, as text. axis_names: names of the parameters on axes."""
     return parameter_text(
-        {name: values[0] for name, values in view.parameter_values.items() if name not in drawn}
+        {name: values[0] for name, values in view.parameter_values.items() if name not in axis_names}
     )
 
 
@@ -148,12 +150,12 @@ def varied_axes(view: View) -> list[str]:
     return long
 
 
-def require_content(view: View, available: object, what: str) -> None:
-    """Raises InputError if `available` is false or empty. what: noun for the missing content."""
+def require_content(view: View, available: object, noun: str) -> None:
+    """Raises InputError if `available` is false or empty. noun: noun for the missing content."""
     if not available:
         if (view.variables["status"] == MISSING_STATUS).all():
             raise InputError(f"no point of {view.path} is computed yet; `rodsweep run` continues the run")
-        raise InputError(f"{view.path} holds no {what} that could be drawn")
+        raise InputError(f"{view.path} holds no {noun} that could be drawn")
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
@@ -173,18 +175,18 @@ def is_logarithmic(values: np.ndarray) -> bool:
     ratios = values[1:] / values[:-1]
     if len(values) > 2 and np.ptp(steps) <= 1e-6 * values[-1]:
         return False
-    even = len(values) > 2 and np.ptp(ratios) < 1e-6 * ratios[0]
-    return bool(even or values[-1] > 10 * values[0])
+    is_even = len(values) > 2 and np.ptp(ratios) < 1e-6 * ratios[0]
+    return bool(is_even or values[-1] > 10 * values[0])
 
 
-def scale_axis(axes: Axes, which: Literal["x", "y"], values: np.ndarray) -> None:
-    """Makes the axis `which` logarithmic, with suitable tick labels, if `is_logarithmic(values)`. values:
+def scale_axis(axes: Axes, letter: Literal["x", "y"], values: np.ndarray) -> None:
+    """Makes the axis `letter` logarithmic, with suitable tick labels, if `is_logarithmic(values)`. values:
     (n,).
     """
     if not is_logarithmic(values):
         return
-    axes.set(**{f"{which}scale": "log"})
-    label_few_decades(axes.xaxis if which == "x" else axes.yaxis, values[0], values[-1])
+    axes.set(**{f"{letter}scale": "log"})
+    label_few_decades(axes.xaxis if letter == "x" else axes.yaxis, values[0], values[-1])
 
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
@@ -192,11 +194,11 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
     axis is short. All labels are numbers, or all are powers of ten.
     """
     if high < FEW_DECADES_RATIO * low:
-        subs = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
-        axis.set_major_locator(LogLocator(subs=subs))
-        written_out = low >= 10.0**-MIN_POWER and high < 10.0 ** (MAX_PLAIN_POWER + 1)
+        multiples = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
+        axis.set_major_locator(LogLocator(subs=multiples))
+        is_plain = low >= 10.0**-MIN_POWER and high < 10.0 ** (MAX_PLAIN_POWER + 1)
         axis.set_major_formatter(
-            FuncFormatter(lambda value, _: f"{value:g}" if written_out else f"${number_in_tex(value)}$")
+            FuncFormatter(lambda value, _: f"{value:g}" if is_plain else f"${number_in_tex(value)}$")
         )
         axis.set_minor_formatter(NullFormatter())
 
@@ -233,6 +235,6 @@ def draw_coloured_cells(
         # Equal zeros would give a scale below zero.
         norm = Normalize(low, high if high != low or low else 1.0)
     mesh = axes.pcolormesh(*edges, np.ma.masked_invalid(values), norm=norm, cmap=colours, rasterized=True)
-    bar = axes.figure.colorbar(mesh, ax=axes, label=label)
+    colorbar = axes.figure.colorbar(mesh, ax=axes, label=label)
     if isinstance(norm, LogNorm):
-        label_few_decades(bar.ax.yaxis, low, high)
+        label_few_decades(colorbar.ax.yaxis, low, high)

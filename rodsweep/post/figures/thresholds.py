@@ -52,13 +52,13 @@ def draw_thresholds(request: FigureRequest) -> str:
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     long = style.varied_axes(view)
-    found = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
-    style.require_content(view, found, "threshold")
-    few = min(len(view.parameter_values[name]) for name in long) <= MAX_LINES
-    if request.what == "map" or (len(long) == 2 and not few and request.what != "lines"):
-        figure, left_out = _threshold_maps(view, found, request.look.is_narrow)
-        return request.write(figure, f"critical forces over {' and '.join(long)}{left_out}", MAP_ASPECT)
-    if len(long) == 1 or few:
+    drawable_names = [name for name, *_ in CRITICAL_FORCES if np.isfinite(view.variables[name]).any()]
+    style.require_content(view, drawable_names, "threshold")
+    has_few_lines = min(len(view.parameter_values[name]) for name in long) <= MAX_LINES
+    if request.what == "map" or (len(long) == 2 and not has_few_lines and request.what != "lines"):
+        figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
+        return request.write(figure, f"critical forces over {' and '.join(long)}{omissions}", MAP_ASPECT)
+    if len(long) == 1 or has_few_lines:
         return request.write(*draw_lines_of_grid(view, long, searched_range_clause(view)))
     return request.write(
         *draw_selected_lines(view, long, request.look.is_narrow, searched_range_clause(view))
@@ -73,7 +73,7 @@ def _draw_files(request: FigureRequest) -> str:
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()
     views = request.views
-    along = (
+    names = (
         style.varied_axes(views[0]) if views[0].is_grid else []
     )  # a list over an arm's quantities has many
     if len(views) > len(FILE_COLOURS):
@@ -86,12 +86,12 @@ def _draw_files(request: FigureRequest) -> str:
                 f"{view.path} is of the task {view.task} and {views[0].path} of the task {views[0].task}; "
                 "files of different tasks share no figure"
             )
-        if not view.is_grid or style.varied_axes(view) != along or along[1:]:
+        if not view.is_grid or style.varied_axes(view) != names or names[1:]:
             raise InputError(
                 f"{view.path}: files of thresholds share a figure only if all are grids over one parameter, "
                 "the same in every file; plot each file by itself"
             )
-    return request.write(*draw_lines_of_files(views, along[0], searched_range_clause(*views)))
+    return request.write(*draw_lines_of_files(views, names[0], searched_range_clause(*views)))
 
 
 def searched_range_clause(*views: View) -> str:
@@ -101,13 +101,13 @@ def searched_range_clause(*views: View) -> str:
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
-def _threshold_maps(view: View, names: list[str], narrow: bool) -> tuple[Figure, str]:
+def _threshold_maps(view: View, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, left_out). The figure has a map over two parameters for each kind of threshold in
-    `names`. left_out: clause on infinite values of the parameters. narrow: whether the maps are stacked.
+    `names`. left_out: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
     Raises InputError if nothing can be drawn.
     """
     points = point_map(view)
-    figure, panels = map_panels(len(names), narrow)
+    figure, panels = map_panels(len(names), is_narrow)
     lacking = False
     for axes, (name, word, *_) in zip(
         panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True

@@ -44,17 +44,17 @@ class ColumnTexts:
 
     def absolute_error(self, name: str) -> Array:
         """Absolute error of the variable `name`, (rows,); NaN where the error is unknown."""
-        base = self._base.get(name)
-        if base in self.columns:
+        error_text = self._base.get(name)
+        if error_text in self.columns:
             with np.errstate(divide="ignore", invalid="ignore"):
-                return self.absolute_error(base) * np.abs(self._values[name] / self._values[base])
+                return self.absolute_error(error_text) * np.abs(self._values[name] / self._values[error_text])
         if name in EXACT_VARIABLES:
             return np.zeros_like(self._values[name])
         if name in self._other_errors:
             return self._other_errors[name]
-        known = absolute_errors(self._values, name)
+        errors = absolute_errors(self._values, name)
         has_error = any(table.get(name, "") in self.columns for table in (RELATIVE_ERRORS, ABSOLUTE_ERRORS))
-        return known if has_error else np.where(known > 0, known, np.nan)
+        return errors if has_error else np.where(errors > 0, errors, np.nan)
 
     def value_and_error_texts(self, name: str) -> list[tuple[str, str]]:
         """Pairs (value, absolute error) of the variable `name` as text, one per row. An unknown error is an
@@ -66,11 +66,11 @@ class ColumnTexts:
         if column.words or column.values.dtype.kind != "f":
             return [(text, "") for text in column.texts()]
         if column.is_estimate:
-            stated = self._values[name] + self._rounding(name)
-            texts = (error_text(float(value)) if value else "0" for value in stated)
-            return [("" if none else text, "") for text, none in zip(texts, column.absent, strict=True)]
+            stated_error = self._values[name] + self._rounding(name)
+            texts = (error_text(float(value)) if value else "0" for value in stated_error)
+            return [("" if no_text else text, "") for text, no_text in zip(texts, column.absent, strict=True)]
         rows = zip(self._values[name], self.absolute_error(name), column.absent, strict=True)
-        return [("", "") if none else number_and_error(float(x), float(dx)) for x, dx, none in rows]
+        return [("", "") if no_text else number_and_error(float(x), float(dx)) for x, dx, no_text in rows]
 
     def _rounding(self, error: str) -> Array:
         """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
@@ -78,11 +78,13 @@ class ColumnTexts:
         """
         largest = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
-            for name in (name for name, known in table.items() if known == error and name in self.columns):
+            for name in (
+                name for name, table_errors in table.items() if table_errors == error and name in self.columns
+            ):
                 values = self._values[name]
-                printed = np.array([float(text) if text else np.nan for text in self.texts(name)])
+                printed_values = np.array([float(text) if text else np.nan for text in self.texts(name)])
                 with np.errstate(divide="ignore", invalid="ignore"):
-                    rounding = np.abs(printed - values) / (np.abs(values) if relative else 1.0)
+                    rounding = np.abs(printed_values - values) / (np.abs(values) if relative else 1.0)
                 largest = np.fmax(largest, np.where(np.isfinite(rounding), rounding, 0.0))
         return largest
 
@@ -113,12 +115,12 @@ class OneRod:
         self.view = view
         self.tables = Tables(view)
         self.si_names = _si_variable_names(view)
-        own = [column for column in self.tables.table(POINTS).columns if not column.is_input]
+        answer_columns = [column for column in self.tables.table(POINTS).columns if not column.is_input]
         self.list_texts: dict[str, ColumnTexts] = {
             name: ColumnTexts(self.tables.list_columns(name), self.si_names)
             for name in self.tables.contents.tables[1:]
         }
-        self.point_texts = ColumnTexts(own, self.si_names, self._threshold_errors())
+        self.point_texts = ColumnTexts(answer_columns, self.si_names, self._threshold_errors())
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
@@ -130,14 +132,14 @@ class OneRod:
         ):
             return {}
         columns = self.list_texts[CROSSINGS_TABLE].columns
-        at = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
-        found = {}
+        positions = next((columns[name] for name in ("crossing_F", "crossing_at") if name in columns), None)
+        errors = {}
         for event in FIRST_THRESHOLD_KINDS:
             force = self.view.variables.get(f"F_{event}")
-            if at is not None and force is not None:
-                error = columns["crossing_error"].values[at.values == force.ravel()[0]]
-                found[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
-        return found
+            if positions is not None and force is not None:
+                error = columns["crossing_error"].values[positions.values == force.ravel()[0]]
+                errors[f"F_{event}"] = error[:1] if error.size else np.array([np.nan])
+        return errors
 
     def preferred_name(self, digits: ColumnTexts, name: str) -> str:
         """Name of the variable that is printed for the variable `name`: the corresponding SI variable if

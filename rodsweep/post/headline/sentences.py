@@ -52,15 +52,15 @@ def threshold_sentence(rod: OneRod) -> str:
         "hopf": "flutter from",
         "restabilization": "stable again from",
     }
-    parts = []
+    clauses = []
     for event, verb in verbs.items():
         column = rod.column(f"F_{event}")
         if column is not None:
             name = column.name.removesuffix(f"_{event}")
-            parts.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
-    parts += _later_flutter(rod)
+            clauses.append(f"{verb} {name} = {rod.text(f'F_{event}')}")
+    clauses += _later_flutter(rod)
     none = "" if rod.count("crossing_count") else f"no threshold up to {_search_end_text(rod)}"
-    return (", ".join(parts) or none) + _early_end_clause(rod)
+    return (", ".join(clauses) or none) + _early_end_clause(rod)
 
 
 def _later_flutter(rod: OneRod) -> list[str]:
@@ -83,8 +83,10 @@ def hopf_sentence(rod: OneRod) -> str:
         return ""
     if count == 0:
         return f"no Hopf point up to {_search_end_text(rod)}{_early_end_clause(rod)}"
-    sides = Counter(word or "of unknown criticality" for word in rod.words("crossings", "criticality"))
-    kinds = ", ".join(f"{number} {word}" for word, number in sides.items())
+    criticality_counts = Counter(
+        word or "of unknown criticality" for word in rod.words("crossings", "criticality")
+    )
+    kinds = ", ".join(f"{number} {word}" for word, number in criticality_counts.items())
     return f"{counted(count, 'Hopf point')}: {kinds}{_early_end_clause(rod)}"
 
 
@@ -94,12 +96,12 @@ def branch_sentence(rod: OneRod) -> str:
     branches = rod.count("branch_count")
     if branches is None:
         return ""
-    along, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
+    parameter, start, stop = (rod.view.config["branch"][key] for key in ("along", "start", "stop"))
     if not branches:
-        return f"no branch of cycles: no Hopf point for {along} from {start:g} to {stop:g}"
+        return f"no branch of cycles: no Hopf point for {parameter} from {start:g} to {stop:g}"
     cycles = rod.list_texts["cycles"]
-    begin = counted(rod.count("hopf_count") or 0, "Hopf point")
-    text = f"{counted(branches, 'branch')} of cycles from {begin}"
+    hopf_text = counted(rod.count("hopf_count") or 0, "Hopf point")
+    text = f"{counted(branches, 'branch')} of cycles from {hopf_text}"
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
@@ -111,8 +113,8 @@ def cycle_sentence(rod: OneRod) -> str:
     """Sentence on the period and the amplitude of the cycle; empty if the result has no period."""
     if period := rod.text("period"):
         status = str(rod.view.status_names[0])
-        beats = "the rod beats" if status == "cycle" else f"{status.replace('_', ' ')} cycle"
-        return f"{beats}: period {period}, largest tip y {rod.text('tip_y_max')}"
+        cycle_phrase = "the rod beats" if status == "cycle" else f"{status.replace('_', ' ')} cycle"
+        return f"{cycle_phrase}: period {period}, largest tip y {rod.text('tip_y_max')}"
     return ""
 
 

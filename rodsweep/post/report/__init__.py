@@ -45,25 +45,25 @@ def write_report(views: Sequence[View], output: Path, shapes: ShapeFunction | No
     require_page(output, [view.path for view in views])
     numbers = count(1)
     results = [report_contents(view, pictures_of([view], shapes, numbers)) for view in views]
-    together = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
-    text = page_text(results, together)
+    common_pictures = pictures_of(views, shapes, numbers) if views[1:] else Pictures(())
+    text = page_text(results, common_pictures)
     with atomic_write(output) as stream:
         stream.write(text)
-    pictures = sum(len(result.pictures.shown) for result in results) + len(together.shown)
+    pictures = sum(len(result.pictures.shown) for result in results) + len(common_pictures.shown)
     return f"wrote {output}: {counted(len(views), 'result')}, {counted(pictures, 'figure')}"
 
 
 def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> str:
     """HTML text of the page. shared_pictures: figures that show several results in the same panels."""
-    pictures = [each.picture for result in results for each in result.pictures.shown]
-    pictures += [each.picture for each in shared_pictures.shown]
+    pictures = [captioned.picture for result in results for captioned in result.pictures.shown]
+    pictures += [captioned.picture for captioned in shared_pictures.shown]
     title = "; ".join(result.title for result in results)
     return rendered_template("page.html", pictures, title=title, results=results, together=shared_pictures)
 
 
-def rendered_template(template: str, drawn: Sequence[VectorPicture], **contents: Any) -> str:
-    """HTML text made from a template of this package. template: file name. drawn: all pictures of the page.
-    contents: variables of the template.
+def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **contents: Any) -> str:
+    """HTML text made from a template of this package. template: file name. page_pictures: all pictures of the
+    page. contents: variables of the template.
     """
     environment = Environment(
         loader=PackageLoader(__name__),
@@ -75,7 +75,7 @@ def rendered_template(template: str, drawn: Sequence[VectorPicture], **contents:
     )
     environment.filters["svg"] = Markup  # made here from numbers and escaped texts
     environment.filters["with_code"] = _with_code
-    colours = sorted(set[str]().union(*(picture.colours for picture in drawn)))
+    colours = sorted(set[str]().union(*(picture.colours for picture in page_pictures)))
     return environment.get_template(template).render(
         colours=[(colour, dark_page_colour(colour)) for colour in colours],
         max_rows=MAX_ROWS,

@@ -60,35 +60,37 @@ class HoverSeries:
 def hover_points(figure: Figure) -> list[HoverPoint]:
     """Texts for the values in a figure, in the order of drawing; series of more than MAX_UNTHINNED_POINTS
     values are thinned, to about MAX_POINTS values together. The layout of the figure must be final."""
-    words = _legend_words(figure)
-    found = [series for axes in figure.axes for series in _panel_series(axes, words)]
-    long = sum(len(series.texts) for series in found if len(series.texts) > MAX_UNTHINNED_POINTS)
+    meanings = _legend_words(figure)
+    series_list = [series for axes in figure.axes for series in _panel_series(axes, meanings)]
+    long = sum(len(series.texts) for series in series_list if len(series.texts) > MAX_UNTHINNED_POINTS)
     step = max(1, ceil(long / MAX_POINTS))
     height = figure.get_size_inches()[1] * POINTS_PER_INCH
     scale = POINTS_PER_INCH / figure.dpi
     points = []
-    for series in found:
-        every = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
-        for (x, y), text in zip(series.places[::every], series.texts[::every], strict=True):
+    for series in series_list:
+        stride = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
+        for (x, y), text in zip(series.places[::stride], series.texts[::stride], strict=True):
             points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
     return points
 
 
-def _panel_series(axes: Axes, words: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for all values inside the frame of a panel. words: legend entries by colour."""
+def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]:
+    """Yields the texts for all values inside the frame of a panel. meanings: legend entries by colour."""
     if axes.get_label() == "<colorbar>" or not axes.get_visible():
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
-    found = [*_cell_series(axes, names, words), *_bar_series(axes, names, words)]
+    series_list = [*_cell_series(axes, names, meanings), *_bar_series(axes, names, meanings)]
     for line in axes.lines:
         if line.get_visible():
-            found.append(_line_series(axes, line, names))
-    found += [_scatter_series(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)]
-    frame = axes.bbox.padded(FRAME_MARGIN)
-    for series in found:
-        inside = np.isfinite(series.places).all(axis=1)
-        inside[inside] = [frame.contains(x, y) for x, y in series.places[inside]]
-        yield HoverSeries(series.places[inside], [series.texts[i] for i in np.flatnonzero(inside)])
+            series_list.append(_line_series(axes, line, names))
+    series_list += [
+        _scatter_series(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)
+    ]
+    panel_box = axes.bbox.padded(FRAME_MARGIN)
+    for series in series_list:
+        is_inside = np.isfinite(series.places).all(axis=1)
+        is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.places[is_inside]]
+        yield HoverSeries(series.places[is_inside], [series.texts[i] for i in np.flatnonzero(is_inside)])
 
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
@@ -97,12 +99,12 @@ def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSerie
     """
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # zero has no position on a logarithmic axis
-        places = line.get_transform().transform(data)
+        pixels = line.get_transform().transform(data)
     label = _series_name(line.get_label())
     if line.get_transform() == axes.transData:
-        return HoverSeries(places, _curve_point_texts(names, data, label))
+        return HoverSeries(pixels, _curve_point_texts(names, data, label))
     # A line across the whole panel: a threshold has a name, and an axis at zero needs no text.
-    return HoverSeries(places.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
+    return HoverSeries(pixels.mean(axis=0, keepdims=True)[: bool(label)], [label][: bool(label)])
 
 
 def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
@@ -112,101 +114,107 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
     An invisible scatter plot contains the points between which filled contours are interpolated.
     """
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
-    places = dots.get_offset_transform().transform(data)
+    pixels = dots.get_offset_transform().transform(data)
     texts = _curve_point_texts(names, data, _series_name(dots.get_label()))
     values = dots.get_array()
     if values is None:
-        return HoverSeries(places, texts)
+        return HoverSeries(pixels, texts)
     name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
     name = name or _series_name(dots.get_label())
     return HoverSeries(
-        places,
+        pixels,
         [
-            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, at)}" if name else text
-            for value, at, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
+            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, point)}" if name else text
+            for value, point, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
         ],
     )
 
 
-def _cell_series(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
+def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
-    colour, and coordinates. names: labels of the two axes. words: legend entries by colour.
+    colour, and coordinates. names: labels of the two axes. meanings: legend entries by colour.
     """
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
         corners = np.asarray(mesh.get_coordinates(), float)
         edges = axes.transData.transform(corners.reshape(-1, 2)).reshape(corners.shape)
-        across = cell_centres(edges[0, :, 0])
-        up = cell_centres(edges[:, 0, 1])
-        places = np.stack(np.meshgrid(across, up), axis=-1).reshape(-1, 2)
+        x = cell_centres(edges[0, :, 0])
+        y = cell_centres(edges[:, 0, 1])
+        pixels = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
         values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
         name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
-        kept = np.flatnonzero(~np.ma.getmaskarray(values))
+        drawn_indices = np.flatnonzero(~np.ma.getmaskarray(values))
         texts = []
-        for at, value in zip(
-            axes.transData.inverted().transform(places[kept]).reshape(-1, 2), values[kept], strict=True
+        for centre, value in zip(
+            axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2),
+            values[drawn_indices],
+            strict=True,
         ):
             word = (
-                f"{name}: {_coordinate_text(value)}" if name else words.get(to_hex(mesh.to_rgba(value)), "")
+                f"{name}: {_coordinate_text(value)}"
+                if name
+                else meanings.get(to_hex(mesh.to_rgba(value)), "")
             )
-            texts.append("\n".join(filter(None, (word, _coordinates_text(names, at)))))
-        yield HoverSeries(places[kept], texts)
+            texts.append("\n".join(filter(None, (word, _coordinates_text(names, centre)))))
+        yield HoverSeries(pixels[drawn_indices], texts)
 
 
-def _bar_series(axes: Axes, names: tuple[str, str], words: dict[str, str]) -> Iterator[HoverSeries]:
+def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
-    labels of the two axes. words: legend entries by colour.
+    labels of the two axes. meanings: legend entries by colour.
     """
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
-        along = 0 if bars.orientation == "horizontal" else 1
+        long_axis = 0 if bars.orientation == "horizontal" else 1
         for bar in bars.patches:
-            low, high = bar.get_bbox().get_points()[:, along]
-            word = words.get(to_hex(bar.get_facecolor()), "")
-            ends = f"{names[along]} from {_coordinate_text(low)} to {_coordinate_text(high)}"
+            low, high = bar.get_bbox().get_points()[:, long_axis]
+            word = meanings.get(to_hex(bar.get_facecolor()), "")
+            ends = f"{names[long_axis]} from {_coordinate_text(low)} to {_coordinate_text(high)}"
             middle = axes.transData.transform(bar.get_bbox().get_points().mean(axis=0))
             yield HoverSeries(middle[None], ["\n".join(filter(None, (word, ends)))])
 
 
-def axis_name(axes: Axes, which: Literal["x", "y"]) -> str:
-    """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `which` if
+def axis_name(axes: Axes, letter: Literal["x", "y"]) -> str:
+    """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `letter` if
     there is no label.
     """
-    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    for each in (axes, *shared.get_siblings(axes), *_panels_with_same_axis(axes, which)):
-        label = each.get_xlabel() if which == "x" else each.get_ylabel()
+    shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
+    for panel in (axes, *shared_axes.get_siblings(axes), *_panels_with_same_axis(axes, letter)):
+        label = panel.get_xlabel() if letter == "x" else panel.get_ylabel()
         if label:
             return label_text(label)
-    return which
+    return letter
 
 
-def _panels_with_same_axis(axes: Axes, which: Literal["x", "y"]) -> list[Axes]:
+def _panels_with_same_axis(axes: Axes, letter: Literal["x", "y"]) -> list[Axes]:
     """Other panels in the same column (for "x") or row (for "y") with the same limits on this axis."""
 
     def place(panel: Axes) -> object:
         grid = panel.get_subplotspec()
         if grid is None:
             return None
-        if which == "x":
+        if letter == "x":
             return grid.colspan.start, panel.get_xlim()
         return grid.rowspan.start, panel.get_ylim()
 
     figure = axes.get_figure()
     panels = [] if figure is None else figure.axes
-    return [each for each in panels if each is not axes and place(each) == place(axes)]
+    return [
+        other_panel for other_panel in panels if other_panel is not axes and place(other_panel) == place(axes)
+    ]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:
     """Legend entries of coloured patches in a figure, by colour."""
     legends = [*figure.legends, *(legend for axes in figure.axes if (legend := axes.get_legend()))]
-    words = {}
+    meanings = {}
     for legend in legends:
         for handle, text in zip(legend.legend_handles, legend.get_texts(), strict=True):
             if isinstance(handle, Patch):
-                words[to_hex(handle.get_facecolor())] = label_text(text.get_text())
-    return words
+                meanings[to_hex(handle.get_facecolor())] = label_text(text.get_text())
+    return meanings
 
 
 def _series_name(label: object) -> str:
@@ -219,14 +227,14 @@ def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list
     """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
     data: points in data coordinates, (n, 2).
     """
-    return ["\n".join(filter(None, (series, _coordinates_text(names, at)))) for at in data]
+    return ["\n".join(filter(None, (series, _coordinates_text(names, point)))) for point in data]
 
 
-def _coordinates_text(names: tuple[str, str], at: Array) -> str:
-    """Coordinates of a point as text, one line each. names: labels of the axes. at: point in data
+def _coordinates_text(names: tuple[str, str], point: Array) -> str:
+    """Coordinates of a point as text, one line each. names: labels of the axes. point: point in data
     coordinates, (2,).
     """
-    return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, at, strict=True))
+    return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, point, strict=True))
 
 
 def _coordinate_text(value: float) -> str:

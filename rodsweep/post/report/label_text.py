@@ -31,20 +31,20 @@ TEX_SIGNS = {
 
 def label_text(label: str) -> str:
     """A label as plain text on one line. An escaped dollar sign becomes a dollar sign."""
-    text = FORMULA.sub(lambda found: _formula(found[1]), label).replace(r"\$", "$")
+    text = FORMULA.sub(lambda match: _formula(match[1]), label).replace(r"\$", "$")
     return " ".join(text.split())
 
 
 def _formula(tex: str) -> str:
     """A formula as text: a subscript directly after its letter, a power after "^"."""
-    tex = DERIVATIVE.sub(lambda found: rf"d{found[1] or found[2]}/dt\,", tex)
+    tex = DERIVATIVE.sub(lambda match: rf"d{match[1] or match[2]}/dt\,", tex)
     previous = None
     while previous != tex:  # arguments may contain commands
         previous = tex
-        tex = COMMAND_WITH_ARGUMENT.sub(lambda found: found[1] or found[2] or "", tex)
-    tex = SUBSCRIPT.sub(lambda found: found[1] or found[2], tex)
-    tex = SUPERSCRIPT.sub(lambda found: _superscript_text(found[1] or found[2]), tex)
-    return TEX_COMMAND.sub(lambda found: _command_text(found[1]), tex).replace("{", "").replace("}", "")
+        tex = COMMAND_WITH_ARGUMENT.sub(lambda match: match[1] or match[2] or "", tex)
+    tex = SUBSCRIPT.sub(lambda match: match[1] or match[2], tex)
+    tex = SUPERSCRIPT.sub(lambda match: _superscript_text(match[1] or match[2]), tex)
+    return TEX_COMMAND.sub(lambda match: _command_text(match[1]), tex).replace("{", "").replace("}", "")
 
 
 def _superscript_text(exponent: str) -> str:

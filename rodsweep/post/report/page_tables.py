@@ -60,18 +60,18 @@ def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
     listed separately.
     """
-    filled = [column for column in table.columns if not column.absent.all()]
-    alike = [column for column in filled if table.rows > 1 and _is_constant(column)]
-    shown = [column for column in filled if column not in alike]
-    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in shown]
+    filled_columns = [column for column in table.columns if not column.absent.all()]
+    constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
+    varied_columns = [column for column in filled_columns if column not in constant_columns]
+    cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
     return PageTable(
         name=table.name,
-        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in shown),
+        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
         rows=tuple(zip(*cells, strict=True)),
         total_rows=table.rows,
         constant_columns=tuple(
             (column.name, _cells(column.rows(slice(0, 1)))[0], column.printed_unit, column.meaning)
-            for column in alike
+            for column in constant_columns
         ),
     )
 
@@ -95,5 +95,5 @@ def _cell(column: Column, text: str, value: float) -> Cell:
     is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
     if not text or not is_number:
         return Cell(text)
-    short = f"{value:.{CELL_DIGITS}g}"
-    return Cell(short, text) if len(short) < len(text) else Cell(text)
+    rounded = f"{value:.{CELL_DIGITS}g}"
+    return Cell(rounded, text) if len(rounded) < len(text) else Cell(text)

@@ -48,21 +48,21 @@ def pictures_of(views: Sequence[View], shapes: ShapeFunction | None, numbers: "c
     # Remove the folders from the paths, so that no sentence on the page names a folder.
     views = [replace(view, path=Path(view.path.name)) for view in views]
     kinds = [kind for kind in FIGURE_KINDS_BY_TASK.get(views[0].task, ()) if kind != ANIMATION_KIND]
-    found: dict[str, CaptionedPicture] = {}
-    refusal = ""
+    by_kind: dict[str, CaptionedPicture] = {}
+    first_refusal = ""
     for kind in (None, *kinds):
-        kept: list[Figure] = []
+        figures: list[Figure] = []
         drawn_shapes = shapes if kind is None else None
 
-        def keep(figure: Figure, kept: list[Figure] = kept) -> None:
-            kept.append(figure)
+        def keep(figure: Figure, figures: list[Figure] = figures) -> None:
+            figures.append(figure)
 
         try:
             sentence = draw(views, SVG_REQUEST_NAME, what=kind, shapes=drawn_shapes, figure_callback=keep)
         except InputError as error:
-            refusal = refusal or str(error)
+            first_refusal = first_refusal or str(error)
             continue
         caption = sentence.removeprefix(f"wrote {SVG_REQUEST_NAME}: ")
-        if caption not in found:
-            found[caption] = CaptionedPicture(caption, vector_picture(kept[0], next(numbers), caption))
-    return Pictures(tuple(found.values()), "" if found else refusal)
+        if caption not in by_kind:
+            by_kind[caption] = CaptionedPicture(caption, vector_picture(figures[0], next(numbers), caption))
+    return Pictures(tuple(by_kind.values()), "" if by_kind else first_refusal)

@@ -81,10 +81,10 @@ def _with_parameter_ranges(view: View, statuses: TextTable) -> TextTable:
     """
     if len(statuses.rows) == 1:
         return statuses
-    listed = view.as_list
+    list_view = view.as_list
     rows = []
     for word, count, meaning in statuses.rows:
-        where = region_text(listed, listed.has_status(word)) if word in view.flags.values() else ""
-        rows.append((word, count, where, meaning))
+        region = region_text(list_view, list_view.has_status(word)) if word in view.flags.values() else ""
+        rows.append((word, count, region, meaning))
     first, second, last = statuses.headings
     return TextTable((first, second, "where", last), tuple(rows))

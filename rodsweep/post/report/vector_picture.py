@@ -48,8 +48,8 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):
         figure.savefig(written, format="svg", transparent=False, metadata={"Date": None})
     root = ElementTree.fromstring(written.getvalue())
-    for place in ("metadata", "defs/style"):
-        _remove_element(root, place)
+    for element_path in ("metadata", "defs/style"):
+        _remove_element(root, element_path)
     colours = frozenset[str]()
     has_image = next(root.iter(f"{{{SVG}}}image"), None) is not None
     if not has_image:
@@ -63,25 +63,25 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     return VectorPicture(ElementTree.tostring(root, encoding="unicode"), colours, width)
 
 
-def _remove_element(root: ElementTree.Element, place: str) -> None:
-    """Removes the first element at a path below `root`. place: path of element names, such as
+def _remove_element(root: ElementTree.Element, element_path: str) -> None:
+    """Removes the first element at a path below `root`. element_path: path of element names, such as
     "defs/style".
     """
-    *above, name = place.split("/")
-    parent = root.find("/".join(f"{{{SVG}}}{each}" for each in above)) if above else root
+    *parents, name = element_path.split("/")
+    parent = root.find("/".join(f"{{{SVG}}}{tag}" for tag in parents)) if parents else root
     if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
         parent.remove(found)
 
 
 def _name_colours(root: ElementTree.Element) -> frozenset[str]:
     """Replaces the colours of all elements by CSS variables; returns the colours."""
-    found = {"000000"}
+    colours = {"000000"}
     for element in root.iter():
         for attribute in ("style", "fill", "stroke"):
             if text := element.get(attribute):
-                found |= set(HEX_COLOUR.findall(text))
+                colours |= set(HEX_COLOUR.findall(text))
                 element.set(attribute, HEX_COLOUR.sub(r"var(--c\1, \g<0>)", text))
-    return frozenset(found)
+    return frozenset(colours)
 
 
 def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
@@ -90,8 +90,8 @@ def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
     """
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
-        place = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
-        circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", place)
+        circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
+        circle = ElementTree.SubElement(group, f"{{{SVG}}}circle", circle_attributes)
         ElementTree.SubElement(circle, f"{{{SVG}}}title").text = point.text
 
 
@@ -108,29 +108,33 @@ LIGHTENING_STEP_COUNT = 20
 
 def dark_page_colour(colour: str) -> str:
     """Colour that replaces `colour` on the dark page. Colours are texts of six hexadecimal digits."""
-    parts = [int(colour[start : start + 2], 16) for start in (0, 2, 4)]
-    if len(set(parts)) == 1:
-        parts = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * part / 255) for part in parts]
+    rgb = [int(colour[start : start + 2], 16) for start in (0, 2, 4)]
+    if len(set(rgb)) == 1:
+        rgb = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * value / 255) for value in rgb]
     else:
         lighter = (
-            [part + (255 - part) * step / LIGHTENING_STEP_COUNT for part in parts]
+            [value + (255 - value) * step / LIGHTENING_STEP_COUNT for value in rgb]
             for step in range(LIGHTENING_STEP_COUNT + 1)
         )
-        parts = next([round(part) for part in each] for each in lighter if _contrast(each) >= MIN_CONTRAST)
-    return "".join(f"{part:02x}" for part in parts)
+        rgb = next(
+            [round(value) for value in candidate]
+            for candidate in lighter
+            if _contrast(candidate) >= MIN_CONTRAST
+        )
+    return "".join(f"{value:02x}" for value in rgb)
 
 
-def _contrast(parts: list[float]) -> float:
-    """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. parts: red,
+def _contrast(channels: list[float]) -> float:
+    """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. channels: red,
     green and blue, from 0 to 255.
     """
-    return (_luminance(parts) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
+    return (_luminance(channels) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
 
 
-def _luminance(parts: list[float]) -> float:
-    """Relative luminance, from 0 to 1, as defined by WCAG 2. parts: red, green and blue, from 0 to 255."""
+def _luminance(channels: list[float]) -> float:
+    """Relative luminance, from 0 to 1, as defined by WCAG 2. channels: red, green and blue, from 0 to 255."""
     linear = [
-        part / 255 / 12.92 if part <= 0.04045 * 255 else ((part / 255 + 0.055) / 1.055) ** 2.4
-        for part in parts
+        channel / 255 / 12.92 if channel <= 0.04045 * 255 else ((channel / 255 + 0.055) / 1.055) ** 2.4
+        for channel in channels
     ]
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]

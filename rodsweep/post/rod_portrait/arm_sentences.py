@@ -22,18 +22,18 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
         f"{quantities['tau2']:.6g} s."
     )
     validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
-    when = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
+    flutter_clause = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
     branch = results.views.get("branch")
     caveat = validity_caveat(branch.variables) if branch else ""
     on_branches = [f"somewhere on its branches of cycles {caveat}"] if caveat else []
-    sentences = [validity_sentence(validity, when), *on_branches, *plane_lines(view.quantities)]
+    sentences = [validity_sentence(validity, flutter_clause), *on_branches, *plane_lines(view.quantities)]
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
 
 def cycle_caveat(view: View) -> str:
     """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
     empty text. view: result with one limit cycle."""
-    applies = view.variables.get("model_applies")
-    if applies is None or (applies != Validity.does_not_apply).any():
+    validity = view.variables.get("model_applies")
+    if validity is None or (validity != Validity.does_not_apply).any():
         return ""
     return f" ({validity_caveat(view.variables)})"

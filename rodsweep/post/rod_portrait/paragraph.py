@@ -55,19 +55,19 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
     """
     end = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
-    reached = units.load_text(end)
+    end_text = units.load_text(end)
     requested_force = units.load_text(results.F_max)
     kind = results.rod.kind
-    searched = f"was searched up to {reached}"
+    search_text = f"was searched up to {end_text}"
     if not isfinite(end):
-        searched = "could not be searched"
-    elif reached != requested_force:
+        search_text = "could not be searched"
+    elif end_text != requested_force:
         early = results.views["thresholds"].has_status("ended_early").all()
         ends = "the search ended early: the list was full, or modes could not be counted"
-        searched += (
-            f", not to {requested_force}: {ends if early else f'just above {reached} the {kind} is crushed'}"
+        search_text += (
+            f", not to {requested_force}: {ends if early else f'just above {end_text} the {kind} is crushed'}"
         )
-    yield f"The {kind} with {results.rod.description} {searched}."
+    yield f"The {kind} with {results.rod.description} {search_text}."
     if results.rod.arm:
         yield from arm_sentences(results)
 
@@ -76,11 +76,11 @@ def _threshold_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the thresholds of the straight rod, with the criticality of the Hopf points."""
     view = results.views["thresholds"]
     v = view.point_values(0)
-    places = np.flatnonzero(v["crossing_kind"] > 0)
+    crossing_indices = np.flatnonzero(v["crossing_kind"] > 0)
     units = results.units
     end = units.load_text(float(v["F_end"]))
     clauses = []
-    for i in places:
+    for i in crossing_indices:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         clause = THRESHOLD_CLAUSES[kind].format(F=units.load_text(v["crossing_F"][i], v["crossing_error"][i]))
         if frequency := float(v["crossing_frequency"][i]):
@@ -103,12 +103,14 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     if view is None:
         return ""
     v = view.point_values(0)
-    same = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
-    sides = v["criticality"][same & np.isfinite(v["criticality"])]
-    if not sides.size:
+    is_same_crossing = np.abs(v["crossing_F"] - F) <= SAME_FORCE_TOLERANCE * abs(F)
+    criticalities = v["criticality"][is_same_crossing & np.isfinite(v["criticality"])]
+    if not criticalities.size:
         return ""
-    a = float(v["amplitude_coefficient"][same][0])
-    return f"; {CRITICALITY_WORDS[int(sides[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
+    a = float(v["amplitude_coefficient"][is_same_crossing][0])
+    return (
+        f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
+    )
 
 
 def _branch_sentences(results: RodResults) -> Iterator[str]:
@@ -129,26 +131,28 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         return
     units = results.units
     cycles = sum(int(curve.cycles.sum()) for curve in curves)
-    special = [
-        f"{counted(len(at), word)} at {units.load_phrase(', '.join(at))}"
+    texts = [
+        f"{counted(len(loads), word)} at {units.load_phrase(', '.join(loads))}"
         for kind, word in SPECIAL_POINT_WORDS.items()
-        if (at := _special_point_loads(curves, kind, units.force.factor))
+        if (loads := _special_point_loads(curves, kind, units.force.factor))
     ]
     accuracy = results.views["branch"].config["accuracy"]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
-    begin = "begins at a Hopf point" if len(curves) == 1 else "begin at its Hopf points"
+    begins = "begins at a Hopf point" if len(curves) == 1 else "begin at its Hopf points"
     if breakings := sum(curve.special[0].kind != "hopf" for curve in curves):
-        begin += f" and {counted(breakings, 'symmetry breaking')}"
-    end = f"with {' and '.join(special)}" if special else "without a fold or another change of stability"
-    yield f"{number} {begin}, {end}."
+        begins += f" and {counted(breakings, 'symmetry breaking')}"
+    end = f"with {' and '.join(texts)}" if texts else "without a fold or another change of stability"
+    yield f"{number} {begins}, {end}."
     yield from _work_limit_sentence(curves, units)
-    stable = [piece for curve in curves for piece in curve.stable_ranges]
+    stable = [stable_range for curve in curves for stable_range in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
     no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
     yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
     if not rod.hidden_count:
-        beside = rod.coexistence_ranges
-        ranges = units.load_ranges_text(beside, rod.parameter_errors) if beside else ""
+        coexistence_ranges = rod.coexistence_ranges
+        ranges = (
+            units.load_ranges_text(coexistence_ranges, rod.parameter_errors) if coexistence_ranges else ""
+        )
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
@@ -162,8 +166,8 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
         return
     ends = [units.load_text(curve.special[-1].at) for curve in limited if curve.cycles.any()]
     clauses = [f"{len(ends)} of them {is_or_are(len(ends))} drawn only to {', '.join(ends)}"] if ends else []
-    if absent := len(limited) - len(ends):
-        clauses.append(f"{absent} {is_or_are(absent)} not drawn")
+    if missing_count := len(limited) - len(ends):
+        clauses.append(f"{missing_count} {is_or_are(missing_count)} not drawn")
     yield (
         f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "
         "`rodsweep run` with task: branch follows branches to their ends."
@@ -187,13 +191,13 @@ def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: floa
     """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
     branches of the rod.
     """
-    found = {
+    load_texts = {
         rounded_text(factor * special.at, factor * special.error): None
         for curve in curves
         for special in curve.special
         if special.kind == kind
     }
-    return list(found)
+    return list(load_texts)
 
 
 def _cycle_sentences(results: RodResults) -> Iterator[str]:

@@ -61,17 +61,17 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
         modes = list(results.modes) or [""]
         widths = [MODE_WIDTH] * len(modes) + [1.0] * CYCLE_COUNT
         grid = figure.add_gridspec(4, len(widths), height_ratios=heights, width_ratios=widths)
-        bar = figure.add_subplot(grid[0, :])
-        upper = figure.add_subplot(grid[1, :], sharex=bar)
-        lower = figure.add_subplot(grid[2, :], sharex=bar)
-        handles = _draw_thresholds(bar, results)
+        bar_panel = figure.add_subplot(grid[0, :])
+        upper = figure.add_subplot(grid[1, :], sharex=bar_panel)
+        lower = figure.add_subplot(grid[2, :], sharex=bar_panel)
+        handles = _draw_thresholds(bar_panel, results)
         handles += _draw_branches(upper, lower, results)
-        _show_units((bar, upper, lower), results)
+        _show_units((bar_panel, upper, lower), results)
         if not lower.axison:  # the bar has the only axis of the force
-            bar.tick_params(labelbottom=True)
-            bar.set_xlabel(results.units.labels[0])
-        for place, kind in enumerate(modes):
-            _draw_mode(figure.add_subplot(grid[3, place]), results, kind)
+            bar_panel.tick_params(labelbottom=True)
+            bar_panel.set_xlabel(results.units.labels[0])
+        for column, kind in enumerate(modes):
+            _draw_mode(figure.add_subplot(grid[3, column]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
         style.legend_below(figure, handles, columns=4)
@@ -110,10 +110,12 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
         _write_sentence(axes, f"thresholds: {_status_meaning(view)}", PARAGRAPH_WIDTH)
         return []
     axes.set_xlim(0, float(v["F_end"]))
-    seen = draw_class_bar(axes, view, 0, upright=False)
+    drawn_classes = draw_class_bar(axes, view, 0, is_vertical=False)
     force = results.units.force
-    marks = mark_thresholds_on_bars(axes, view, upright=False, unit=force.name, factor=force.factor)
-    return [*class_legend_entries(seen), *marks]
+    mark_handles = mark_thresholds_on_bars(
+        axes, view, is_vertical=False, unit=force.name, factor=force.factor
+    )
+    return [*class_legend_entries(drawn_classes), *mark_handles]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
@@ -151,14 +153,14 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
     entry, empty without such cycles."""
-    beating = [
+    cycles = [
         (F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()
     ]
     handles: list[Line2D] = []
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        values = [float(v[name]) for _, v in beating]
+        values = [float(v[name]) for _, v in cycles]
         handles = axes.plot(
-            [F for F, _ in beating],
+            [F for F, _ in cycles],
             values,
             "*",
             color="k",
@@ -167,7 +169,7 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
             mew=0.6,
             label=CYCLE_LEGEND_ENTRY,
         )
-    return handles if beating else []
+    return handles if cycles else []
 
 
 def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
@@ -181,10 +183,10 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     if not np.isfinite(v["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
         return
-    parts = {part: v[f"Y_{part}"][0] for part in ("real", "imag")}
-    for part, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
-        if np.abs(parts[part]).max() > MIN_DRAWN_PART * np.abs(parts["real"]).max():
-            axes.plot(view.variables["u"], parts[part], line, color=style.BLUE, lw=1.5, label=label)
+    mode_parts = {part_name: v[f"Y_{part_name}"][0] for part_name in ("real", "imag")}
+    for part_name, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
+        if np.abs(mode_parts[part_name]).max() > MIN_DRAWN_PART * np.abs(mode_parts["real"]).max():
+            axes.plot(view.variables["u"], mode_parts[part_name], line, color=style.BLUE, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
     axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
@@ -197,10 +199,10 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
-    drawn = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()]
+    cycles = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()]
     units = results.units
     length = units.length.factor
-    reach = max((float(np.abs(v["shape_y"]).max()) for v in drawn), default=0.0) + ARROW_LENGTH
+    max_y = max((float(np.abs(v["shape_y"]).max()) for v in cycles), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
         v = view.point_values(0)
         force = units.force_title(F)
@@ -216,7 +218,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
         axes.set_title(f"{force}\n$T$ = {period}".replace("tau2", r"$\tau_2$"))
         ends = length * np.array([-0.1, 1 + ARROW_LENGTH])
-        axes.set(xlim=ends, ylim=(-length * reach, length * reach), aspect="equal")
+        axes.set(xlim=ends, ylim=(-length * max_y, length * max_y), aspect="equal")
         axes.set(xlabel=units.axis_label("x"), ylabel=units.axis_label("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
 

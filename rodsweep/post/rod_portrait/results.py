@@ -31,11 +31,13 @@ class DescribedRod:
     @property
     def description(self) -> str:
         """Description of the rod as text: quantities of an arm, parameters other than F, and material."""
-        words = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
-        words += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
-        words += [f"{name} {self.material[name]}" for name in ("law", "section") if name in self.material]
-        words += ["a profile along its length"] if "profile" in self.material else []
-        return ", ".join(words)
+        quantity_texts = [f"{name.replace('_', ' ')} {_quantity(value)}" for name, value in self.arm.items()]
+        quantity_texts += [f"{name} = {value:g}" for name, value in self.parameters.items() if name != "F"]
+        quantity_texts += [
+            f"{name} {self.material[name]}" for name in ("law", "section") if name in self.material
+        ]
+        quantity_texts += ["a profile along its length"] if "profile" in self.material else []
+        return ", ".join(quantity_texts)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

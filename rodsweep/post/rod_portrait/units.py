@@ -67,9 +67,9 @@ class PortraitUnits:
         the ends, by end.
         """
         factor = self.force.factor
-        own = [(factor * low, factor * high) for low, high in ranges]
+        scaled_ranges = [(factor * low, factor * high) for low, high in ranges]
         return self.load_phrase(
-            ranges_text(own, {factor * end: factor * error for end, error in errors.items()})
+            ranges_text(scaled_ranges, {factor * end: factor * error for end, error in errors.items()})
         )
 
     def frequency_text(self, omega: float) -> str:

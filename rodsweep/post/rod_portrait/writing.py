@@ -47,13 +47,13 @@ def write_portrait(results: RodResults, output: Path) -> str:
 def portrait_caption(results: RodResults) -> str:
     """Description of the picture: the results that it shows."""
     branches = results.branches
-    parts = {
+    part_is_shown = {
         "thresholds": True,
         "branches of cycles": branches is not None and bool(branches.curves),
         "modes at the thresholds": bool(results.modes),
         CYCLE_COUNT_WORDS[len(results.cycles)]: bool(results.cycles),
     }
-    return enumeration([part for part, is_shown in parts.items() if is_shown])
+    return enumeration([part_name for part_name, is_shown in part_is_shown.items() if is_shown])
 
 
 def portrait_page(results: RodResults) -> str:
@@ -61,9 +61,9 @@ def portrait_page(results: RodResults) -> str:
     caption = portrait_caption(results)
     picture = vector_picture(portrait_figure(results, with_words=False), 1, caption)
     views = [*results.views.items()]
-    at = results.units.load_text
-    views += [(f"modes at {at(F)}", view) for F, view in results.modes.values()]
-    views += [(f"limit cycle at {at(F)}", view) for F, view in results.cycles]
+    load_text = results.units.load_text
+    views += [(f"modes at {load_text(F)}", view) for F, view in results.modes.values()]
+    views += [(f"limit cycle at {load_text(F)}", view) for F, view in results.cycles]
     return rendered_template(
         "portrait.html",
         [picture],

@@ -57,16 +57,16 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     """
     view = view.as_list
     status = view.variables["status"]
-    done = status != MISSING_STATUS
+    computed = status != MISSING_STATUS
     noun = POINT_NOUNS.get(view.task, "point")
-    rods = done & (status < NOT_SLENDER)
-    nothing = SummaryLines([] if done.any() else [f"no {noun} is computed yet"])
-    lines = SUMMARIES[view.task](view, rods) if rods.any() else nothing
+    rods = computed & (status < NOT_SLENDER)
+    no_points_lines = SummaryLines([] if computed.any() else [f"no {noun} is computed yet"])
+    lines = SUMMARIES[view.task](view, rods) if rods.any() else no_points_lines
     a = view.attributes
     return Summary(
-        answer=_answer_lines(view, done, lines),
+        answer=_answer_lines(view, computed, lines),
         reliability=[
-            *_unfinished_lines(view, int((~done).sum()), noun),
+            *_unfinished_lines(view, int((~computed).sum()), noun),
             *lines.reliability,
             *_failure_sentences(view),
         ],
@@ -77,7 +77,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
         material=material_lines(view),
         axes=_axes_table(view),
         numbers=lines.numbers,
-        provenance=[*time_lines(view, done, noun), *rank_lines(a, noun), *provenance_lines(a)],
+        provenance=[*time_lines(view, computed, noun), *rank_lines(a, noun), *provenance_lines(a)],
     )
 
 
@@ -126,21 +126,21 @@ def wraps_lines(console: Console) -> bool:
 
 def _print_numbers(console: Console, table: TextTable) -> None:
     """Prints a table of numbers in blocks of columns that fit into the window, each after an empty line."""
-    heads = [(*heading.split("\n"), "")[:2] for heading in table.headings]
-    cells = zip(heads, zip(*table.rows, strict=True), strict=True)
-    columns = [column_cells(head, column) for head, column in cells]
+    heading_lines = [(*heading.split("\n"), "")[:2] for heading in table.headings]
+    cells = zip(heading_lines, zip(*table.rows, strict=True), strict=True)
+    columns = [column_cells(heading_pair, column) for heading_pair, column in cells]
     for block in table_blocks(columns, console.width if wraps_lines(console) else MAX_TABLE_WIDTH):
         for line in ("", *block):
             console.print(line, soft_wrap=True)
 
 
-def _answer_lines(view: View, done: np.ndarray, summary: SummaryLines) -> list[str]:
-    """Lines of the answer; for an arm first in SI units, then dimensionless. done: mask of the computed
+def _answer_lines(view: View, computed: np.ndarray, summary: SummaryLines) -> list[str]:
+    """Lines of the answer; for an arm first in SI units, then dimensionless. computed: mask of the computed
     points, of the shape of the points. summary: lines of the task.
     """
-    if not view.quantities or not done.any():
+    if not view.quantities or not computed.any():
         return [*summary.answer]
-    lines = [*arm_answer(view, done), *summary.arm_sentences, *arm_lines(view, done)]
+    lines = [*arm_answer(view, computed), *summary.arm_sentences, *arm_lines(view, computed)]
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
@@ -179,22 +179,22 @@ def _failure_sentences(view: View) -> Iterable[str]:
     """
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS_ATTRIBUTE, "")).splitlines():
-        where, _, outcome = line.partition(": ")
+        points_text, _, outcome = line.partition(": ")
         name, _, reason = outcome.partition(" ")
-        here = view.has_status(name).ravel()
-        for parameter, _, text in (pair.partition("=") for pair in where.split(", ")):
-            here &= columns.get(parameter, float(text)) == float(text)
-        if here.any() and reason:  # a later run may have computed the point anew
+        has_status = view.has_status(name).ravel()
+        for parameter, _, text in (pair.partition("=") for pair in points_text.split(", ")):
+            has_status &= columns.get(parameter, float(text)) == float(text)
+        if has_status.any() and reason:  # a later run may have computed the point anew
             yield failure_sentence(line)
 
 
 def _terminal_table(table: TextTable) -> Table:
     """The table in a form for the terminal: without borders, numbers aligned at their decimal points."""
-    printed = Table(*table.headings, box=None, pad_edge=False)
+    rich_table = Table(*table.headings, box=None, pad_edge=False)
     if table.rows:
         for row in zip(*map(point_aligned, zip(*table.rows, strict=True)), strict=True):
-            printed.add_row(*(Text(cell.rstrip()) for cell in row))
-    return printed
+            rich_table.add_row(*(Text(cell.rstrip()) for cell in row))
+    return rich_table
 
 
 def _axes_table(view: View) -> TextTable:
@@ -204,15 +204,17 @@ def _axes_table(view: View) -> TextTable:
     rows = []
     for name, values in view.quantities.items():
         if name == "drag":
-            words = [DRAG_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
-            rows.append((name, str(len(words)), words[0], words[-1] if words[1:] else "", ""))
+            names = [DRAG_NAMES[int(value)] for value in np.unique(values[~np.isnan(values)])]
+            rows.append((name, str(len(names)), names[0], names[-1] if names[1:] else "", ""))
             continue
         si = ALL_QUANTITIES[name].unit
         unit = view.typed_units.get(name, si)
         rows.append(
             (
                 name,
-                *_count_and_range(np.vectorize(lambda x, to=unit, of=si: value_in_unit(x, to, of))(values)),
+                *_count_and_range(
+                    np.vectorize(lambda v, to=unit, to_unit=si: value_in_unit(v, to, to_unit))(values)
+                ),
                 unit,
             )
         )
@@ -230,18 +232,18 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     values. NaN is ignored. `largest` is empty if all values are equal.
     """
     # Twelve digits, because values computed from an arm may differ by rounding.
-    different = {f"{value:.12g}" for value in values[~np.isnan(values)]}
-    ends = sorted(map(float, different))
+    distinct = {f"{value:.12g}" for value in values[~np.isnan(values)]}
+    ends = sorted(map(float, distinct))
     texts = [f"{end:.6g}" for end in ends]
     return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
-def _status_rows(view: View, status: np.ndarray, every: bool) -> Iterable[tuple[str, ...]]:
-    """Yields (status, number of points, meaning of the status). every: whether statuses that no point has are
-    included.
+def _status_rows(view: View, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
+    """Yields (status, number of points, meaning of the status). is_every_shown: whether statuses that no
+    point has are included.
     """
     sentences = view.sentences | {"missing": "not computed yet"}
-    found = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
-    for value in sorted(view.flags.keys() | found.keys()) if every else found:
+    counts = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
+    for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:
         name = view.flags.get(value, f"unknown ({value})")
-        yield name, str(found.get(value, 0)), sentences.get(name, "")
+        yield name, str(counts.get(value, 0)), sentences.get(name, "")

@@ -40,119 +40,121 @@ BRANCH_END_WORDS = {
 """Phrase for the end of a branch, by reason of the end."""
 
 
-def branch_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Summary of branches. done: mask of the computed points, of the shape of the points."""
-    if done.size == 1:
-        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [_searched_range_line(view, done)])
+def branch_summary(view: View, computed: np.ndarray) -> SummaryLines:
+    """Summary of branches. computed: mask of the computed points, of the shape of the points."""
+    if computed.size == 1:
+        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [_searched_range_line(view, computed)])
     v = view.variables
-    rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(done.ravel())]
-    counts = v["branch_count"][done]
+    rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
+    counts = v["branch_count"][computed]
     branches = counted(int(counts.clip(min=0).sum()), "branch")
-    cycles = counted(int(v["point_count"][done].clip(min=0).sum()), "cycle")
-    at = count_of_total((counts > 0).sum(), len(rods), "rod")
-    line = f"{branches} at {at}, {cycles}{_sizes_text(view, done)}"
-    along = followed_parameter(view)
+    cycles = counted(int(v["point_count"][computed].clip(min=0).sum()), "cycle")
+    count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
+    line = f"{branches} at {count_text}, {cycles}{_sizes_text(view, computed)}"
+    parameter = followed_parameter(view)
     ranges = uncrushed_ranges(view, (rod.index for rod in rods))
-    crushed = sum(low >= high for low, high in ranges)
-    answer = [line, *_special_lines(rods, along), *_coexistence_lines(rods, along)]
-    if crushed:
-        everywhere = f"everywhere in the range of {along}"
-        answer.insert(1, f"the force crushes {count_of_total(crushed, len(rods), 'rod')} {everywhere}")
-    return SummaryLines(answer, [_searched_range_line(view, done)])
+    crushed_count = sum(low >= high for low, high in ranges)
+    answer = [line, *_special_lines(rods, parameter), *_coexistence_lines(rods, parameter)]
+    if crushed_count:
+        whole_range = f"everywhere in the range of {parameter}"
+        answer.insert(1, f"the force crushes {count_of_total(crushed_count, len(rods), 'rod')} {whole_range}")
+    return SummaryLines(answer, [_searched_range_line(view, computed)])
 
 
 def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
     """Yields lines about every branch of the only rod in a file, with the errors of its special points."""
-    along = followed_parameter(rod.view)
+    parameter = followed_parameter(rod.view)
     v = rod.view.variables
     if rod.hidden_count:
-        part = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
-        yield f"{part} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
+        count = count_of_total(rod.hidden_count, rod.hidden_count + len(rod.curves), "branch")
+        yield f"{count} {is_or_are(rod.hidden_count)} not shown: {LIST_IS_FULL_REASON}"
     elif v["branch_count"].max() < 0:
         yield "the branches of this rod are not known: its solve failed"
     elif not rod.curves:
         [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
         if not low < high:
-            yield f"the force crushes the rod everywhere in the range of {along}"
+            yield f"the force crushes the rod everywhere in the range of {parameter}"
             return
-        yield f"no Hopf point in the range of {along}, so that no branch begins there"
+        yield f"no Hopf point in the range of {parameter}, so that no branch begins there"
     for number, curve in enumerate(rod.curves, 1):
         errors = v["amplitude_error"].ravel()[v["branch"].ravel() == number]
-        yield f"branch {number}, {_ends_phrase(curve, along)}: {_extent_text(curve, errors, along)}"
-        yield from _special_points_between_ends(curve, along)
+        yield f"branch {number}, {_ends_phrase(curve, parameter)}: {_extent_text(curve, errors, parameter)}"
+        yield from _special_points_between_ends(curve, parameter)
         if curve.stable_ranges:
-            yield f"  stable cycles at {along} = {ranges_text(curve.stable_ranges, curve.parameter_errors)}"
+            text = ranges_text(curve.stable_ranges, curve.parameter_errors)
+            yield f"  stable cycles at {parameter} = {text}"
         else:
             yield "  no stable cycle" if curve.is_decided else "  no cycle is known to be stable"
     if rod.curves and not rod.hidden_count:
         nowhere = "nowhere in the range" if rod.coexistence_is_decided else "not known"
-        common = rod.coexistence_ranges
-        words = f"{along} = {ranges_text(common, rod.parameter_errors)}" if common else nowhere
-        yield f"{COEXISTENCE_WORDS}: {words}"
+        ranges = rod.coexistence_ranges
+        text = f"{parameter} = {ranges_text(ranges, rod.parameter_errors)}" if ranges else nowhere
+        yield f"{COEXISTENCE_WORDS}: {text}"
         if pairs := rod.two_cycle_ranges:
-            yield f"{TWO_CYCLES_WORDS} at {along} = {ranges_text(pairs, rod.parameter_errors)}"
+            yield f"{TWO_CYCLES_WORDS} at {parameter} = {ranges_text(pairs, rod.parameter_errors)}"
 
 
-def _extent_text(curve: StoredBranch, errors: Array, along: str) -> str:
-    """Number of cycles on a branch, range of the parameter `along`, and range of the largest tip y, as text.
-    errors: relative errors of y, (cycles,).
+def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
+    """Number of cycles on a branch, range of the parameter `parameter`, and range of the largest tip y, as
+    text. errors: relative errors of y, (cycles,).
     """
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
     sizes = curve.y[cycles]
-    ranges = f"{along} = {span_text(curve.at[cycles])}, largest tip y {span_text(sizes, errors * sizes)} L"
-    return f"{counted(int(cycles.sum()), 'cycle')}, {ranges}"
+    text = f"{parameter} = {span_text(curve.at[cycles])}, largest tip y {span_text(sizes, errors * sizes)} L"
+    return f"{counted(int(cycles.sum()), 'cycle')}, {text}"
 
 
-def _special_points_between_ends(curve: StoredBranch, along: str) -> Iterator[str]:
-    """Yields one line for each special point between the ends of a branch. along: followed parameter."""
+def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterator[str]:
+    """Yields one line for each special point between the ends of a branch. parameter: followed parameter."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
             continue
         if special in (curve.special[0], curve.special[-1]) and special.kind == "symmetry_breaking":
             continue
-        at = number_with_error(special.at, special.error)
+        position = number_with_error(special.at, special.error)
         kind = special.kind.replace("_", " ")
         kind += f", where branch {special.meets} meets it," * (special.meets > 0)
         period = number_with_error(special.period, special.period * special.period_error)
         y = number_with_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
-        yield f"  {kind} at {along} = {at}, period {period} tau2, largest tip y {y} L"
+        yield f"  {kind} at {parameter} = {position}, period {period} tau2, largest tip y {y} L"
 
 
-def _ends_phrase(curve: StoredBranch, along: str) -> str:
-    """Phrase for the start and the end of a branch: "from ... to ...". along: followed parameter."""
+def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
+    """Phrase for the start and the end of a branch: "from ... to ...". parameter: followed parameter."""
     first = curve.special[0]
     last = curve.special[-1]
-    start = f"from the Hopf point at {along} = {number_with_error(first.at, first.error)}"
+    start = f"from the Hopf point at {parameter} = {number_with_error(first.at, first.error)}"
     if first.kind == "symmetry_breaking":
-        where = f"{along} = {number_with_error(first.at, first.error)}"
-        start = f"without mirror symmetry, from branch {first.meets} at {where}"
-    end = f"{along} = {number_with_error(last.at, last.error)}"
+        position = f"{parameter} = {number_with_error(first.at, first.error)}"
+        start = f"without mirror symmetry, from branch {first.meets} at {position}"
+    end = f"{parameter} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
     if last.kind == "symmetry_breaking":
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to {BRANCH_END_WORDS[last.kind]}, {end}"
-    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {along} = {rounded_text(last.at, last.error)}"
+    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {parameter} = {rounded_text(last.at, last.error)}"
 
 
-def _sizes_text(view: View, done: np.ndarray) -> str:
-    """Clause with the ranges of period and amplitude over all cycles at the points in the mask `done`; empty
-    if there is no cycle.
+def _sizes_text(view: View, computed: np.ndarray) -> str:
+    """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
+    empty if there is no cycle.
     """
     v = view.variables
-    if not np.isfinite(v["period"][done]).any():
+    if not np.isfinite(v["period"][computed]).any():
         return ""
-    period, y = (known_range_text(v, name, done) for name in ("period", "tip_y_max"))
+    period, y = (known_range_text(v, name, computed) for name in ("period", "tip_y_max"))
     return f": period {period} tau2, largest tip y {y} L"
 
 
-def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
+def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
-    then a line for each branch that stopped because no further cycle was found. along: followed parameter."""
-    found: dict[str, list[tuple[float, float]]] = {
+    then a line for each branch that stopped because no further cycle was found. parameter: followed
+    parameter."""
+    points: dict[str, list[tuple[float, float]]] = {
         word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
     }
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
@@ -160,28 +162,29 @@ def _special_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
         for special in curve.special:
             kind = special.reason if special.kind == "end" else special.kind
             is_counted = 0 < special.meets < number  # already counted on the other branch at this point
-            if kind in found and not is_counted:
-                found[kind].append((special.at, special.error))
-    for kind, located in found.items():
+            if kind in points and not is_counted:
+                points[kind].append((special.at, special.error))
+    for kind, located in points.items():
         if not located:
             continue
-        where = f"{along} = {span_text(*np.array(located).T)}"
+        span = f"{parameter} = {span_text(*np.array(located).T)}"
         if kind in SPECIAL_POINT_WORDS:
-            yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {where}"
+            yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {span}"
         else:
             verb = "ends" if len(located) == 1 else "end"
-            yield f"{counted(len(located), 'branch')} {verb} at {BRANCH_END_WORDS[kind]}: {where}"
+            yield f"{counted(len(located), 'branch')} {verb} at {BRANCH_END_WORDS[kind]}: {span}"
     stopped = [
-        f"{point_text(rod.view, rod.index)}: branch {number}, at {along} = {rounded_text(end.at, end.error)}"
+        f"{point_text(rod.view, rod.index)}: branch {number}, at {parameter} = "
+        f"{rounded_text(end.at, end.error)}"
         for rod, number, curve in curves
         if (end := curve.special[-1]).reason == "no_cycle_found"
     ]
     yield from first_lines(stopped, "branch")
 
 
-def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]:
+def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
-    along: followed parameter.
+    parameter: followed parameter.
     """
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
@@ -189,43 +192,49 @@ def _coexistence_lines(rods: Sequence[RodBranches], along: str) -> Iterator[str]
         yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
         yield from _lines_on_rods_with(
-            complete, along, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
+            complete, parameter, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
         )
-    two_cycle_ranges = [rod.two_cycle_ranges for rod in complete]
-    if any(two_cycle_ranges):
-        yield from _lines_on_rods_with(complete, along, TWO_CYCLES_WORDS, two_cycle_ranges)
+    two_cycles = [rod.two_cycle_ranges for rod in complete]
+    if any(two_cycles):
+        yield from _lines_on_rods_with(complete, parameter, TWO_CYCLES_WORDS, two_cycles)
 
 
 def _lines_on_rods_with(
-    rods: Sequence[RodBranches], along: str, words: str, ranges: Sequence[list[ParameterRange]]
+    rods: Sequence[RodBranches], parameter: str, phrase: str, ranges: Sequence[list[ParameterRange]]
 ) -> Iterator[str]:
-    """Yields a line with the number of rods that have ranges with the property `words`, and a line for each
-    of the first such rods. ranges: for each rod, ranges of the parameter `along` with the property.
+    """Yields a line with the number of rods that have ranges with the property `phrase`, and a line for each
+    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property.
     """
-    unknown = sum(not (own or rod.coexistence_is_decided) for rod, own in zip(rods, ranges, strict=True))
-    having = [
+    unknown = sum(
+        not (rod_ranges or rod.coexistence_is_decided) for rod, rod_ranges in zip(rods, ranges, strict=True)
+    )
+    texts = [
         ": ".join(
             filter(
-                None, (point_text(rod.view, rod.index), f"{along} = {ranges_text(own, rod.parameter_errors)}")
+                None,
+                (
+                    point_text(rod.view, rod.index),
+                    f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}",
+                ),
             )
         )
-        for rod, own in zip(rods, ranges, strict=True)
-        if own
+        for rod, rod_ranges in zip(rods, ranges, strict=True)
+        if rod_ranges
     ]
-    yield f"{words} at {count_of_total(len(having), len(rods), 'rod')}{unknown_clause(unknown)}"
-    yield from first_lines(having, "rod")
+    yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{unknown_clause(unknown)}"
+    yield from first_lines(texts, "rod")
 
 
-def _searched_range_line(view: View, done: np.ndarray) -> str:
-    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points. done:
-    mask of the computed points.
+def _searched_range_line(view: View, computed: np.ndarray) -> str:
+    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
+    computed: mask of the computed points.
     """
-    along = followed_parameter(view)
-    start, stop = branch_ends(view)
-    ranges = uncrushed_ranges(view, np.flatnonzero(done.ravel()).tolist())
-    crushed = "" if set(ranges) <= {(start, stop)} else ", where the force does not crush the rod"
-    proved = count_of_total(view.variables["certified"][done].sum(), done.sum(), "rod")
+    parameter = followed_parameter(view)
+    start, end = branch_ends(view)
+    ranges = uncrushed_ranges(view, np.flatnonzero(computed.ravel()).tolist())
+    note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
+    proved = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
     return (
-        f"followed in {along} from {start:g} to {stop:g}{crushed}; the list of Hopf points "
+        f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
         f"{proof_clause(view)} for {proved}; cycles that lie on no branch from a Hopf point are not found"
     )

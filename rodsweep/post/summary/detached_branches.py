@@ -29,20 +29,20 @@ def detached_branch_lines(view: View, row: str) -> list[str]:
     ]
 
 
-def rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np.intp]) -> list[str]:
+def rows_without_cycles_of_curve(view: View, line: str, row: str, indices: NDArray[np.intp]) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
     has this special point. line: parameter that varies along a row. row: parameter that is constant on a row.
-    on: indices of the points of the curve, (points,).
+    indices: indices of the points of the curve, (points,).
     """
     v = view.variables
-    if len(on) < 2:
+    if len(indices) < 2:
         return []
-    kind = int(v["cycle_curve_kind"][on[0]])
+    kind = int(v["cycle_curve_kind"][indices[0]])
     kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line}"))
-    near = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
-    along = zip(v[f"cycle_curve_{row}"][on], v[f"cycle_curve_{line}"][on], strict=True)
+    tolerance = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
+    points = zip(v[f"cycle_curve_{row}"][indices], v[f"cycle_curve_{line}"][indices], strict=True)
     lines = []
-    for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(along)):
+    for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(points)):
         for index, value in enumerate(view.point_columns[row]):
             if view.status_names[index] != "ok":
                 continue
@@ -50,8 +50,8 @@ def rows_without_cycles_of_curve(view: View, line: str, row: str, on: NDArray[np
             if (value == x and number > 0) or (x - value) * (next_x - value) > 0:
                 continue
             low, high = sorted((y, next_y))
-            own = specials[index][kinds[index] == kind]
-            if not ((own >= low - near) & (own <= high + near)).any():
+            on_row = specials[index][kinds[index] == kind]
+            if not ((on_row >= low - tolerance) & (on_row <= high + tolerance)).any():
                 lines.append(
                     f"this curve crosses the row {row} = {value:g} between {line} = {low:.6g} and "
                     f"{high:.6g}, but no branch of this row was found there: the stable states of the row do "

@@ -63,19 +63,19 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
-        on = np.flatnonzero(v["cycle_curve_number"] == number)
-        what = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][on[0]])]]
+        indices = np.flatnonzero(v["cycle_curve_number"] == number)
+        noun = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][indices[0]])]]
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
-            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{side}'][i])]]})"
-            for side, i in zip(END_SUFFIXES, on[[0, -1]], strict=True)
+            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{suffix}'][i])]]})"
+            for suffix, i in zip(END_SUFFIXES, indices[[0, -1]], strict=True)
         )
 
-        error = error_text(float(v["cycle_curve_error"][on].max()))
-        points = counted(len(on), "point")
-        lines.append(f"curve of {what}: from {ends}; {points}, largest error of {line} {error}")
-        lines += rows_without_cycles_of_curve(view, line, row, on)
+        error = error_text(float(v["cycle_curve_error"][indices].max()))
+        points = counted(len(indices), "point")
+        lines.append(f"curve of {noun}: from {ends}; {points}, largest error of {line} {error}")
+        lines += rows_without_cycles_of_curve(view, line, row, indices)
     return lines + detached_branch_lines(view, row)
 
 
@@ -83,21 +83,23 @@ def curve_count_lines(view: View, line: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
     along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
     v = view.variables
-    hopf = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
-    double = len(np.unique(v["curve_number"])) - hopf
-    within = error_text(float(v["curve_agreement"]))
-    near = f"crossings located on rows lie on them within {within} of the range of {line}; "
-    near *= hopf + double > 0
+    hopf_count = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
+    double_count = len(np.unique(v["curve_number"])) - hopf_count
+    error = error_text(float(v["curve_agreement"]))
+    agreement = f"crossings located on rows lie on them within {error} of the range of {line}; "
+    agreement *= hopf_count + double_count > 0
     lines = [
-        f"curves: {hopf} of Hopf points, {double} of double eigenvalues; {near}"
+        f"curves: {hopf_count} of Hopf points, {double_count} of double eigenvalues; {agreement}"
         f"{_on_no_curve_clause(int(v['curves_untraced']), 'crossing')}"
     ]
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
-        within = error_text(float(v["cycle_curve_agreement"]))
-        near = f"points located on rows lie on them within {within} of the range of {line}; " * (curves > 0)
+        error = error_text(float(v["cycle_curve_agreement"]))
+        agreement = f"points located on rows lie on them within {error} of the range of {line}; " * (
+            curves > 0
+        )
         untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
-        lines.append(f"curves of folds and torus points of cycles: {curves}; {near}{untraced}")
+        lines.append(f"curves of folds and torus points of cycles: {curves}; {agreement}{untraced}")
     return lines
 
 
@@ -107,13 +109,15 @@ def incomplete_curve_lines(view: View, line: str, row: str) -> list[str]:
     """
     v = view.variables
     lines = []
-    for why in ("not_followed", "list_full"):
-        reason = list(CURVE_ENDS).index(why)
+    for end in ("not_followed", "list_full"):
+        reason = list(CURVE_ENDS).index(end)
         for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
-            what = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
-            where = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
+            noun = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
+            position = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
             number = int(v["curve_number"][i])
-            lines.append(f"curve {number}, of {what}, is incomplete: it stops at {where}: {CURVE_ENDS[why]}")
+            lines.append(
+                f"curve {number}, of {noun}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}"
+            )
     return lines
 
 
@@ -130,10 +134,10 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
     """
     v = view.variables
     lines = []
-    for i, (kind, of) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
-        what = "Hopf points" if kind else "double eigenvalues"
-        where = _position_text(view, "fold", i, (row, line))
-        lines.append(f"fold of the curve of {what}, where {(line, row)[int(of)]} is extremal: {where}")
+    for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
+        noun = "Hopf points" if kind else "double eigenvalues"
+        position = _position_text(view, "fold", i, (row, line))
+        lines.append(f"fold of the curve of {noun}, where {(line, row)[int(name)]} is extremal: {position}")
     if "partial_beam_k1" in v:
         lines.append(
             f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
@@ -142,13 +146,13 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def _position_text(view: View, what: str, i: int, names: tuple[str, str]) -> str:
-    """Position of the i-th fold or generalised Hopf point as text, with errors. what: prefix of the
+def _position_text(view: View, prefix: str, i: int, names: tuple[str, str]) -> str:
+    """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
     variables, "fold" or "bautin". names: parameters.
     """
     v = view.variables
     return ", ".join(
-        f"{name} = {number_with_error(v[f'{what}_{name}'][i], v[f'{what}_{name}_error'][i])}"
+        f"{name} = {number_with_error(v[f'{prefix}_{name}'][i], v[f'{prefix}_{name}_error'][i])}"
         for name in names
     )
 
@@ -157,15 +161,15 @@ def criticality_lines(view: View) -> list[str]:
     """List with a line on gamma1 and on the numbers of points of the Hopf curves by criticality, including
     undecided and unknown."""
     v = view.variables
-    side = v["curve_criticality"][v["curve_kind"] == 1]
+    criticality = v["curve_criticality"][v["curve_kind"] == 1]
     kinds = {
-        "supercritical": side < 0,
-        "subcritical": side > 0,
-        "undecided": side == 0,
-        "without a normal form": np.isnan(side),
+        "supercritical": criticality < 0,
+        "subcritical": criticality > 0,
+        "undecided": criticality == 0,
+        "without a normal form": np.isnan(criticality),
     }
     counts = [f"{int(mask.sum())} {word}" for word, mask in kinds.items() if mask.any()]
-    points = counted(len(side), "point")
+    points = counted(len(criticality), "point")
     return [
         f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
         f"{', '.join(counts) or 'none'}"
@@ -194,13 +198,14 @@ def bautin_curve_lines(view: View) -> list[str]:
     lines = []
     names = [name for name in LINEAR_PARAMETERS if f"bautin_along_{name}" in v]
     for number in np.unique(v["bautin_along_curve"]):
-        on = v["bautin_along_curve"] == number
-        where = ", ".join(f"{name} = {span_text(v[f'bautin_along_{name}'][on])}" for name in names)
+        mask = v["bautin_along_curve"] == number
+        span = ", ".join(f"{name} = {span_text(v[f'bautin_along_{name}'][mask])}" for name in names)
         start, end = (
-            BAUTIN_END_WORDS[BAUTIN_ENDS[int(v[f"bautin_along_{side}"][on].max())]] for side in END_SUFFIXES
+            BAUTIN_END_WORDS[BAUTIN_ENDS[int(v[f"bautin_along_{suffix}"][mask].max())]]
+            for suffix in END_SUFFIXES
         )
         lines.append(
-            f"curve {int(number)} of generalised Hopf points: {counted(int(on.sum()), 'point')}, {where}; "
+            f"curve {int(number)} of generalised Hopf points: {counted(int(mask.sum()), 'point')}, {span}; "
             + (f"both ends lie at {start}" if start == end else f"it begins at {start} and ends at {end}")
         )
     return lines

@@ -57,10 +57,10 @@ def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
     error. v: variables of the file.
     """
-    whole, _, part = name.rpartition("_")
+    stem, _, part_name = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
-        if whole in COMPLEX_VARIABLES and part != "error" and f"{whole}_error" in v:
-            return np.hypot(v[f"{whole}_real"], v[f"{whole}_imag"]) * v[f"{whole}_error"]
+        if stem in COMPLEX_VARIABLES and part_name != "error" and f"{stem}_error" in v:
+            return np.hypot(v[f"{stem}_real"], v[f"{stem}_imag"]) * v[f"{stem}_error"]
         return _errors_of_real_variable(v, name)
 
 
@@ -70,16 +70,16 @@ def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarr
     """
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
-        return EIGENVALUE_ERROR * np.hypot(*(v[part] for part in STRAIGHT_EIGENVALUE))
+        return EIGENVALUE_ERROR * np.hypot(*(v[part_name] for part_name in STRAIGHT_EIGENVALUE))
     if name in CYCLE_POWER_VARIABLES and "amplitude_error" in v:
         return values * relative_power_error(v, fluctuation=name.endswith("rms"))
     if name in EXTREMA_VARIABLES and "extrema_error" in v:
-        beside = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
-        return v["extrema_error"] * v["tip_y_max"] + beside
+        dip_error = MAX_DIP_BETWEEN_NODES * np.abs(1 - v[name]) if name == "least_stretch" else 0.0
+        return v["extrema_error"] * v["tip_y_max"] + dip_error
     if name == "transient_time" and "growth_error" in v:
         # The growth is quadratic near its maximum, and is 1 at t = 0.
-        rise = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
-        return values * np.sqrt(v["growth_error"] / rise)
+        log_growth = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
+        return values * np.sqrt(v["growth_error"] / log_growth)
     if RELATIVE_ERRORS.get(name, "") in v:
         return values * v[RELATIVE_ERRORS[name]]
     return v[ABSOLUTE_ERRORS[name]] if ABSOLUTE_ERRORS.get(name, "") in v else np.zeros_like(values, float)
@@ -93,9 +93,9 @@ def relative_power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False)
     injection and dissipation have a common error from the interpolation between steps, at most about the
     error of the extrema.
     """
-    mean = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
-    mean = mean + np.where(np.isnan(v["multiplier"]), v["extrema_error"], 0.0)
-    return mean + 2 * v["extrema_error"] if fluctuation else mean
+    error = 2 * v["amplitude_error"] + v["period_error"] + np.abs(v["energy_imbalance"])
+    error = error + np.where(np.isnan(v["multiplier"]), v["extrema_error"], 0.0)
+    return error + 2 * v["extrema_error"] if fluctuation else error
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
@@ -115,5 +115,5 @@ def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -
     """Range of the known values of the variable `name` over the points in `mask`, (...,), as text, rounded
     according to the errors. v: variables of the file.
     """
-    chosen = mask & is_known(v, name) if name == "transient_time" else mask
-    return span_text(v[name][chosen], absolute_errors(v, name)[chosen])
+    selected = mask & is_known(v, name) if name == "transient_time" else mask
+    return span_text(v[name][selected], absolute_errors(v, name)[selected])

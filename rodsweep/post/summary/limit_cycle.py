@@ -42,26 +42,28 @@ CYCLE_NUMBERS = (
 """(printed name, variable, unit) of the numbers printed for a single cycle."""
 
 
-def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Summary of limit cycles. done: mask of the computed points, of the shape of the points."""
+def limit_cycle_summary(view: View, computed: np.ndarray) -> SummaryLines:
+    """Summary of limit cycles. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
-    beats = done & view.has_status("cycle")
-    orbit = done & view.has_status(*CYCLE_STATUSES)
+    beats = computed & view.has_status("cycle")
+    orbit = computed & view.has_status(*CYCLE_STATUSES)
     stability, arm_sentences = _threshold_lines(view)
-    answer = [outcome_line(view, done, region_text), *stability, *_second_state_lines(view, done)]
-    if view.quantities and done.size > 1 and not beats[done].all():
-        arm_sentences.insert(0, outcome_line(view, done, region_of_arms))
+    answer = [outcome_line(view, computed, region_text), *stability, *_second_state_lines(view, computed)]
+    if view.quantities and computed.size > 1 and not beats[computed].all():
+        arm_sentences.insert(0, outcome_line(view, computed, region_of_arms))
     reliability = _proof_lines(view)
-    rate, frequency = (known_range_text(v, f"linear_{name}", done) for name in ("growth_rate", "frequency"))
+    rate, frequency = (
+        known_range_text(v, f"linear_{name}", computed) for name in ("growth_rate", "frequency")
+    )
     details = [f"straight rod: leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
     numbers = None
-    on_torus = done & view.has_status("torus")
+    on_torus = computed & view.has_status("torus")
     if on_torus.any():
         details.append(
             "quasiperiodic motions: the unstable cycles inside the tori have a largest |Floquet multiplier| "
             f"of {known_range_text(v, 'multiplier', on_torus)}"
         )
-    if done.size == 1 and orbit.any():
+    if computed.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))
         numbers = orbit_table(v)
     elif beats.any():
@@ -72,26 +74,28 @@ def limit_cycle_summary(view: View, done: np.ndarray) -> SummaryLines:
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_line(view: View, done: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
+def outcome_line(view: View, computed: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
     """Line on the number of points with each outcome, and on the region of parameters of these points.
 
-    done: mask of the computed points, of the shape of the points. region: function that describes the points
-    of a mask.
+    computed: mask of the computed points, of the shape of the points. region: function that describes the
+    points of a mask.
     """
     status = view.variables["status"]
-    whole = counted(int(done.sum()), "point")
-    masks = {word: done & (status == value) for value, word in view.flags.items() if value >= 0}
+    total = counted(int(computed.sum()), "point")
+    masks = {word: computed & (status == value) for value, word in view.flags.items() if value >= 0}
     found = {
         OUTCOME_WORDS.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()
     }
     if len(found) == 1:
         word = next(iter(found))
         outcome = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
-        if done.size > 1:
-            return f"{outcome} at all {whole}" if done.sum() > 1 else f"{outcome} at the only solved point"
+        if computed.size > 1:
+            return (
+                f"{outcome} at all {total}" if computed.sum() > 1 else f"{outcome} at the only solved point"
+            )
         return outcome
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
-    return f"of {whole}: {', '.join(counts)}"
+    return f"of {total}: {', '.join(counts)}"
 
 
 def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
@@ -102,11 +106,11 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
-        found, found_arm_sentences = stability_lines(
+        threshold_text, sentences = stability_lines(
             view, name, StoredThresholds(view, name).thresholds_up_to_end
         )
-        lines += found
-        arm_sentences += found_arm_sentences
+        lines += threshold_text
+        arm_sentences += sentences
     return lines, arm_sentences
 
 
@@ -137,86 +141,90 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     each.
     """
     rows = []
-    for words, name, unit in CYCLE_NUMBERS:
+    for label, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
         if np.isfinite(value):
-            rows.append((words, *number_and_error(value, float(absolute_errors(v, name).max())), unit))
+            rows.append((label, *number_and_error(value, float(absolute_errors(v, name).max())), unit))
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
-def _second_state_lines(view: View, done: np.ndarray) -> list[str]:
+def _second_state_lines(view: View, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
-    is stable but the motion ended in no stable state. done: mask of the computed points.
+    is stable but the motion ended in no stable state. computed: mask of the computed points.
     """
     v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
-    straight, cycle = (done & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible"))
-    two = straight & view.has_status("cycle", "torus")
-    if two.any():
-        lines.append(f"two stable states{_at_count(two, done)}: the straight rod is stable as well")
-    if (one := straight & ~two).any():
+    straight, cycle = (
+        computed & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible")
+    )
+    both = straight & view.has_status("cycle", "torus")
+    if both.any():
+        lines.append(f"two stable states{_at_count(both, computed)}: the straight rod is stable as well")
+    if (straight_only := straight & ~both).any():
         lines.append(
-            f"the straight rod is stable{_at_count(one, done)} where the motion reached no stable state"
+            f"the straight rod is stable{_at_count(straight_only, computed)} where the motion reached no "
+            "stable state"
         )
     if cycle.any():
         lines.append(
-            f"a stable cycle may exist beside the straight rod{_at_count(cycle, done)}: the Hopf point at "
-            f"F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection may "
-            "lead to a cycle; `task: branch` follows the branch of these cycles"
+            f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "
+            f"at F = {span_text(v['subcritical_F'][cycle])} is subcritical, so a larger initial deflection "
+            "may lead to a cycle; `task: branch` follows the branch of these cycles"
         )
     return lines
 
 
-def _at_count(some: np.ndarray, done: np.ndarray) -> str:
-    """Clause on the number of points in the mask `done` that are also in the mask `some`; empty if `done` has
-    a single point.
+def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
+    """Clause on the number of points in the mask `computed` that are also in the mask `mask`; empty if
+    `computed` has a single point.
     """
-    return "" if done.sum() == 1 else f" at {count_of_total(some.sum(), done.sum(), 'point')}"
+    return "" if computed.sum() == 1 else f" at {count_of_total(mask.sum(), computed.sum(), 'point')}"
 
 
-def _cycle_lines(v: Mapping[str, np.ndarray], beats: np.ndarray) -> list[str]:
+def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
-    h1 of the cycles. v: variables of the file. beats: mask of the points with a cycle.
+    h1 of the cycles. v: variables of the file. is_cycle: mask of the points with a cycle.
     """
     tips = (
-        f"{what} {known_range_text(v, f'tip_{name}', beats)} {unit}"
-        for what, name, unit in (
+        f"{label} {known_range_text(v, f'tip_{name}', is_cycle)} {unit}"
+        for label, name, unit in (
             ("least x", "x_min", "L"), ("largest x", "x_max", "L"), ("largest |theta|", "theta_max", "rad"),
         )
     )  # fmt: skip
-    frequency = known_range_text(v, "frequency", beats)
-    lines = [f"frequency of the cycle: {frequency} rad/tau2{_relative_frequency_clause(v, beats)}"]
+    frequency = known_range_text(v, "frequency", is_cycle)
+    lines = [f"frequency of the cycle: {frequency} rad/tau2{_relative_frequency_clause(v, is_cycle)}"]
     if "period_tau1" in v:
-        lines.append(f"period: {known_range_text(v, 'period_tau1', beats)} tau1")
+        lines.append(f"period: {known_range_text(v, 'period_tau1', is_cycle)} tau1")
     return [
         *lines,
         f"tip: {', '.join(tips)}",
-        f"mean power of the force: {known_range_text(v, 'injection_mean', beats)} k3/(L tau2)",
-        f"largest |Floquet multiplier|: {known_range_text(v, 'multiplier', beats)}; periods integrated in "
-        f"time: {span_text(v['periods'][beats])}; smallest stretch h1: "
-        f"{known_range_text(v, 'least_stretch', beats)}",
+        f"mean power of the force: {known_range_text(v, 'injection_mean', is_cycle)} k3/(L tau2)",
+        f"largest |Floquet multiplier|: {known_range_text(v, 'multiplier', is_cycle)}; periods integrated in "
+        f"time: {span_text(v['periods'][is_cycle])}; smallest stretch h1: "
+        f"{known_range_text(v, 'least_stretch', is_cycle)}",
     ]
 
 
-def _relative_frequency_clause(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
+def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
-    no frequency of a leading mode is known. v: variables of the file. beats: mask of the points with a cycle.
+    no frequency of a leading mode is known. v: variables of the file. is_cycle: mask of the points with a
+    cycle.
     """
-    oscillates = beats & (np.abs(v["linear_frequency"]) > 0)
-    monotone = beats & (v["linear_frequency"] == 0)
+    oscillates = is_cycle & (np.abs(v["linear_frequency"]) > 0)
+    steady = is_cycle & (v["linear_frequency"] == 0)
     clause = ""
     if oscillates.any():
         ratio = v["frequency"][oscillates] / v["linear_frequency"][oscillates]
         times = span_text(ratio, ratio * v["period_error"][oscillates])
         clause = f", {times} times that of the leading mode of the straight rod"
-    if monotone.any():
-        clause += f"; the leading mode of the straight rod does not oscillate{_at_count(monotone, beats)}"
+    if steady.any():
+        clause += f"; the leading mode of the straight rod does not oscillate{_at_count(steady, is_cycle)}"
     return clause
 
 
-def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
-    """Line on the largest errors of the cycles. v: variables of the file. beats: mask of the points with a
+def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
+    """Line on the largest errors of the cycles. v: variables of the file. is_cycle: mask of the points with a
     cycle.
     """
     names = {
@@ -228,6 +236,6 @@ def _error_line(v: Mapping[str, np.ndarray], beats: np.ndarray) -> str:
     }
     errors = []
     for word, name in names.items():
-        known = np.abs(v[name][beats & np.isfinite(v[name])])
-        errors.append(f"{word} {error_text(float(known.max())) if known.size else 'not known'}")
+        sizes = np.abs(v[name][is_cycle & np.isfinite(v[name])])
+        errors.append(f"{word} {error_text(float(sizes.max())) if sizes.size else 'not known'}")
     return f"worst errors: {', '.join(errors)}; multiplier errors are absolute, all other errors are relative"

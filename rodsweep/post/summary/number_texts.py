@@ -36,11 +36,11 @@ def span_text(values: np.ndarray, errors: np.ndarray | None = None, max_digits: 
     is_finite = np.isfinite(values)
     if not is_finite.any():
         return NONE_TEXT
-    known = np.zeros_like(values) if errors is None else np.asarray(errors, dtype=float)
-    flat = values[is_finite]
-    known = np.nan_to_num(known[is_finite], nan=0.0)
-    ends = (int(flat.argmin()), int(flat.argmax()))
-    low, high = (rounded_text(flat[i], known[i], max_digits) for i in ends)
+    known_errors = np.zeros_like(values) if errors is None else np.asarray(errors, dtype=float)
+    finite_values = values[is_finite]
+    known_errors = np.nan_to_num(known_errors[is_finite], nan=0.0)
+    ends = (int(finite_values.argmin()), int(finite_values.argmax()))
+    low, high = (rounded_text(finite_values[i], known_errors[i], max_digits) for i in ends)
     return low if low == high else f"{low} to {high}"
 
 
@@ -74,8 +74,8 @@ def number_with_error(value: float, error: float) -> str:
         return "0"
     if not isfinite(error):
         return f"{value:.6g} (error not known)"
-    text, stated = stated_error(value, error)
-    return f"{text} (+- {error_text(stated)})"
+    text, rounded_error = stated_error(value, error)
+    return f"{text} (+- {error_text(rounded_error)})"
 
 
 def number_and_error(value: float, error: float) -> tuple[str, str]:
@@ -92,11 +92,11 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
     if not isfinite(error):
         return f"{value:.{RANGE_DIGITS}g}", ""
     if error >= abs(value):  # not even the first digit is known
-        digit = floor(log10(error))
-        text = f"{round(value, -digit) + 0.0:.{max(-digit, 0)}f}"
+        exponent = floor(log10(error))
+        text = f"{round(value, -exponent) + 0.0:.{max(-exponent, 0)}f}"
         return text, error_text(error + abs(float(text) - value))
-    text, stated = stated_error(value, error)
-    return text, error_text(stated)
+    text, rounded_error = stated_error(value, error)
+    return text, error_text(rounded_error)
 
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
@@ -129,9 +129,9 @@ def _rounded_to_error(value: float, error: float, max_digits: int) -> str:
     if value == 0:
         return "0"
     size = floor(log10(abs(value)))
-    last = floor(log10(error)) if error > 0 and isfinite(error) else size - max_digits
-    digits = min(max(size - last, 1), max_digits)
+    last_exponent = floor(log10(error)) if error > 0 and isfinite(error) else size - max_digits
+    digits = min(max(size - last_exponent, 1), max_digits)
     if max_digits < MAX_DIGITS and digits == max_digits:
         return f"{value:.{max_digits}g}"
-    short = f"{value:.{digits - 1}e}"
-    return f"{float(short):.{max(digits - 1 - size, 0)}f}" if size in PLAIN_EXPONENTS else short
+    shortest = f"{value:.{digits - 1}e}"
+    return f"{float(shortest):.{max(digits - 1 - size, 0)}f}" if size in PLAIN_EXPONENTS else shortest

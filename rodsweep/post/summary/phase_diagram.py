@@ -10,12 +10,7 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
-from .diagram_curves import (
-    criticality_lines,
-    curve_count_lines,
-    curve_lines,
-    incomplete_curve_lines,
-)
+from .diagram_curves import criticality_lines, curve_count_lines, curve_lines, incomplete_curve_lines
 from .number_texts import axis_values_text, span_text
 from .stable_states import MISSED_CYCLES_LINE, state_lines
 from .summary_lines import SummaryLines
@@ -35,129 +30,139 @@ GRID_RESOLUTION = 1e-8
 """Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 
 
-def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Summary of a phase diagram. done: mask of the computed rows, of the shape of the rows."""
+def phase_diagram_summary(view: View, computed: np.ndarray) -> SummaryLines:
+    """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
-    answer = [*class_share_lines(v["class"][done]), *lines_about_rows(view, done, line, row)]
+    answer = [*class_share_lines(v["class"][computed]), *lines_about_rows(view, computed, line, row)]
     if "stable_states" in v:
-        answer += state_lines(view, done, line, row)
-    reliability = search_lines(view, done, "row")
+        answer += state_lines(view, computed, line, row)
+    reliability = search_lines(view, computed, "row")
     reliability += [MISSED_CYCLES_LINE] if "stable_states" in v else []
-    details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
+    details = [
+        *count_lines(v["class"][computed]),
+        *cost_lines(view, computed),
+        *cost_saving_lines(view, computed, line),
+    ]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
         reliability += [*curve_count_lines(view, line), *incomplete_curve_lines(view, line, row)]
     if "curve_criticality" in v:
         details += criticality_lines(view)
-    return SummaryLines(answer, reliability, details, crossings_of_arms(view, done))
+    return SummaryLines(answer, reliability, details, crossings_of_arms(view, computed))
 
 
-def count_lines(found: np.ndarray) -> list[str]:
-    """List with a line on the number of grid points in each class. found: class of each point, of any
+def count_lines(classes: np.ndarray) -> list[str]:
+    """List with a line on the number of grid points in each class. classes: class of each point, of any
     shape."""
     counts = [
-        f"{int((found == value).sum())} {word}" for value, word in STABILITY_CLASSES if (found == value).any()
+        f"{int((classes == value).sum())} {word}"
+        for value, word in STABILITY_CLASSES
+        if (classes == value).any()
     ]
-    return [f"of {counted(found.size, 'grid point')} on the rows: {', '.join(counts)}"]
+    return [f"of {counted(classes.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
-def cost_saving_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+def cost_saving_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
-    done: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
+    computed: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
     """
     if not has_standard_rods(view.config):
         return []
     v = view.variables
-    rows = int(done.sum())
-    solves = int(v["solves"][done].sum())
-    boxes = int(v["boxes"][done].sum())
+    rows = int(computed.sum())
+    count = int(v["solves"][computed].sum())
+    boxes = int(v["boxes"][computed].sum())
     uniform = float(np.ptp(v[line])) / GRID_RESOLUTION * rows
     return [
-        f"in all {counted(solves, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
+        f"in all {counted(count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
         f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
-        f"{float(f'{uniform / max(solves + boxes, 1):.1g}'):g} times as many"
+        f"{float(f'{uniform / max(count + boxes, 1):.1g}'):g} times as many"
     ]
 
 
-def class_share_lines(found: np.ndarray) -> list[str]:
-    """List with a line on the fraction of the grid points in each class. found: class of each point, of any
+def class_share_lines(classes: np.ndarray) -> list[str]:
+    """List with a line on the fraction of the grid points in each class. classes: class of each point, of any
     shape."""
-    shares = ((100 * float((found == value).mean()), word) for value, word in STABILITY_CLASSES)
-    parts = ", ".join(f"{share:.1f} % {word}" for share, word in shares if share)
-    return [f"behaviour of the straight rod, in % of the grid points: {parts}"]
+    percents = ((100 * float((classes == value).mean()), word) for value, word in STABILITY_CLASSES)
+    texts = ", ".join(f"{percent:.1f} % {word}" for percent, word in percents if percent)
+    return [f"behaviour of the straight rod, in % of the grid points: {texts}"]
 
 
-def row_start_lines(view: View, done: np.ndarray, line: str) -> list[str]:
+def row_start_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
-    done: mask of the computed rows, (...,). line: parameter along a row.
+    computed: mask of the computed rows, (...,). line: parameter along a row.
     """
-    start = view.variables["class"][done][:, 0]
-    words = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
-    if words == [f"monotone on {len(start)}"]:
+    start = view.variables["class"][computed][:, 0]
+    texts = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
+    if texts == [f"monotone on {len(start)}"]:
         return []
     rows = f"of {counted(len(start), 'row')}"
-    return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(words)}"]
+    return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(texts)}"]
 
 
-def lines_about_rows(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
-    """Lines about the rows in the mask `done`, (...,): states at their starts, crossings by kind, undecided
-    ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a row.
+def lines_about_rows(view: View, computed: np.ndarray, line: str, row: str) -> list[str]:
+    """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
+    undecided ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a
+    row.
     """
     v = view.variables
-    of_row = view.point_columns[row].reshape(done.shape)
-    lines = row_start_lines(view, done, line)
+    row_values = view.point_columns[row].reshape(computed.shape)
+    lines = row_start_lines(view, computed, line)
     stored = (v["crossing_kind"] > 0).sum(axis=-1)
-    unknown = done & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
+    unknown = computed & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
     for number, word in enumerate(CROSSING_KINDS):
-        of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
-        on_row = of_kind.any(axis=-1)
-        if number and on_row.any():
-            first = of_kind & (of_kind.cumsum(axis=-1) == 1)
-            again = of_kind & ~first
-            at, later = (span_text(v["crossing_at"][one], v["crossing_error"][one]) for one in (first, again))
-            least = "at least " * bool((unknown & ~on_row).any())
-            on_rows = f"on {least}{count_of_total(on_row.sum(), done.sum(), 'row')}"
-            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {at}"
-            text += f", {row} = {axis_values_text(of_row[on_row])}"
-            if again.any():
-                least = "at least " * bool(unknown.any())
-                rows = f"{least}{int(again.any(axis=-1).sum())} of these rows"
-                text += f"; a second time or more on {rows}, at {line} = {later}"
+        of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
+        has_kind = of_kind.any(axis=-1)
+        if number and has_kind.any():
+            is_first = of_kind & (of_kind.cumsum(axis=-1) == 1)
+            is_later = of_kind & ~is_first
+            spans = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in (is_first, is_later))
+            first_text, later_text = spans
+            bound = "at least " * bool((unknown & ~has_kind).any())
+            on_rows = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
+            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {first_text}"
+            text += f", {row} = {axis_values_text(row_values[has_kind])}"
+            if is_later.any():
+                bound = "at least " * bool(unknown.any())
+                rows = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
+                text += f"; a second time or more on {rows}, at {line} = {later_text}"
             lines.append(text)
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
-    undecided = (v["class"] == unknown_class) & done[..., np.newaxis]
+    undecided = (v["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)
-        places = np.broadcast_to(v[line], undecided.shape)[undecided]
-        on_rows = f"on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(places)}"
-        lines.append(f"behaviour undecided: {on_rows}, {row} = {axis_values_text(of_row[rows])}")
+        values = np.broadcast_to(v[line], undecided.shape)[undecided]
+        on_rows = f"on {count_of_total(rows.sum(), computed.sum(), 'row')}, {line} = {span_text(values)}"
+        lines.append(f"behaviour undecided: {on_rows}, {row} = {axis_values_text(row_values[rows])}")
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
-    never = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
-    if (done & never).any() and (done & flutters).any():
-        with_it, without = (axis_values_text(of_row[done & mask]) for mask in (flutters, never))
-        having = count_of_total((done & flutters).sum(), done.sum(), "row")
-        lines.append(
-            f"flutter: on {having}, {row} = {with_it}; none on {int((done & never).sum())}, {row} = {without}"
+    never_flutters = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
+    if (computed & never_flutters).any() and (computed & flutters).any():
+        with_flutter, without = (
+            axis_values_text(row_values[computed & mask]) for mask in (flutters, never_flutters)
         )
+        count = count_of_total((computed & flutters).sum(), computed.sum(), "row")
+        none = int((computed & never_flutters).sum())
+        lines.append(f"flutter: on {count}, {row} = {with_flutter}; none on {none}, {row} = {without}")
     return lines
 
 
-def crossings_of_arms(view: View, done: np.ndarray) -> list[str]:
+def crossings_of_arms(view: View, computed: np.ndarray) -> list[str]:
     """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
-    a rod, and for rows along another parameter. done: mask of the computed rows, of the shape of the rows."""
+    a rod, and for rows along another parameter. computed: mask of the computed rows, of the shape of the
+    rows."""
     if not view.quantities or "F" in view.parameters:
         return []
     v = view.variables
     lines = []
     for number, word in enumerate(CROSSING_KINDS):
-        of_kind = (v["crossing_kind"] == number) & done[..., np.newaxis]
-        if number and of_kind.any():
-            forces = v["crossing_at"][of_kind]
-            rows = count_of_total(of_kind.any(axis=-1).sum(), done.sum(), "row")
+        is_of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
+        if number and is_of_kind.any():
+            forces = v["crossing_at"][is_of_kind]
+            rows = count_of_total(is_of_kind.any(axis=-1).sum(), computed.sum(), "row")
             lines.append(f"{word}: on {rows}, at {load_range_text(view, forces, np.zeros(len(forces), int))}")
     return lines

@@ -24,42 +24,43 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 """Phrase that says whether the number of unstable modes is proved, for a file with one point."""
 
 
-def spectrum_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Summary of spectra. done: mask of the computed points, of the shape of the points."""
-    if done.size == 1:
+def spectrum_summary(view: View, computed: np.ndarray) -> SummaryLines:
+    """Summary of spectra. computed: mask of the computed points, of the shape of the points."""
+    if computed.size == 1:
         return SummaryLines(
-            [unstable_count_line(view)], [], unknowns_lines(view, done), [], eigenvalue_table(view)
+            [unstable_count_line(view)], [], unknowns_lines(view, computed), [], eigenvalue_table(view)
         )
-    lines, how, arm_sentences = threshold_lines(view)
-    reliability = [*error_lines(view, done), stability_line(view, done), *how]
-    details = [*leading_lines(view, done), *unknowns_lines(view, done)]
-    return SummaryLines([stable_line(view, done), *lines], reliability, details, arm_sentences)
+    lines, location_note, arm_sentences = threshold_lines(view)
+    reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
+    details = [*leading_lines(view, computed), *unknowns_lines(view, computed)]
+    return SummaryLines([stable_line(view, computed), *lines], reliability, details, arm_sentences)
 
 
-def stable_line(view: View, done: np.ndarray) -> str:
+def stable_line(view: View, computed: np.ndarray) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
-    done: mask of the computed points, of the shape of the points.
+    computed: mask of the computed points, of the shape of the points.
     """
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
-    found = {word: done & mask for word, mask in masks.items() if (done & mask).any()}
-    whole = counted(int(done.sum()), "point")
-    if len(found) == 1:
-        return f"straight rod: {next(iter(found))} at all {whole}"
+    masks_by_word = {word: computed & mask for word, mask in masks.items() if (computed & mask).any()}
+    point_count = counted(int(computed.sum()), "point")
+    if len(masks_by_word) == 1:
+        return f"straight rod: {next(iter(masks_by_word))} at all {point_count}"
     counts = (
-        f"{word} at {int(mask.sum())}{in_brackets(region_text(view, mask))}" for word, mask in found.items()
+        f"{word} at {int(mask.sum())}{in_brackets(region_text(view, mask))}"
+        for word, mask in masks_by_word.items()
     )
-    return f"straight rod, of {whole}: {', '.join(counts)}"
+    return f"straight rod, of {point_count}: {', '.join(counts)}"
 
 
-def leading_lines(view: View, done: np.ndarray) -> list[str]:
-    """List with a line on the leading eigenvalues; empty if none is known. done: mask of the computed points,
-    of the shape of the points."""
+def leading_lines(view: View, computed: np.ndarray) -> list[str]:
+    """List with a line on the leading eigenvalues; empty if none is known. computed: mask of the computed
+    points, of the shape of the points."""
     v = view.variables
-    if not np.isfinite(v["growth_rate"][done][:, 0]).any():
+    if not np.isfinite(v["growth_rate"][computed][:, 0]).any():
         return []
     rate, frequency = (
-        span_text(v[name][done][:, 0], v["error_estimate"][done][:, 0])
+        span_text(v[name][computed][:, 0], v["error_estimate"][computed][:, 0])
         for name in ("growth_rate", "frequency")
     )
     return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
@@ -70,8 +71,8 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     empty lists if F does not vary.
     """
     lines, arm_sentences = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
-    how = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
-    return lines, [f"thresholds: {how}"] if lines else [], arm_sentences
+    location_note = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
+    return lines, [f"thresholds: {location_note}"] if lines else [], arm_sentences
 
 
 def eigenvalue_table(view: View) -> TextTable | None:
@@ -96,13 +97,13 @@ def unstable_count_line(view: View) -> str:
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
-def error_lines(view: View, done: np.ndarray) -> list[str]:
-    """List with a line on the errors of the eigenvalues; empty if no error is known. done: mask of the
+def error_lines(view: View, computed: np.ndarray) -> list[str]:
+    """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
     computed points, of the shape of the points.
     """
     v = view.variables
-    size = np.hypot(v["growth_rate"][done], v["frequency"][done])
-    relative = v["error_estimate"][done] / size
+    size = np.hypot(v["growth_rate"][computed], v["frequency"][computed])
+    relative = v["error_estimate"][computed] / size
     if not np.isfinite(relative).any():
         return []
     return [
@@ -111,35 +112,35 @@ def error_lines(view: View, done: np.ndarray) -> list[str]:
     ]
 
 
-def unknowns_lines(view: View, done: np.ndarray) -> list[str]:
-    """List with a line on the number of unknowns per point, and on the number of points without a mesh. done:
-    mask of the computed points, of the shape of the points.
+def unknowns_lines(view: View, computed: np.ndarray) -> list[str]:
+    """List with a line on the number of unknowns per point, and on the number of points without a mesh.
+    computed: mask of the computed points, of the shape of the points.
     """
     v = view.variables
-    unknowns = 3 * v["elements"][done].astype(int) * v["order"][done]
+    unknowns = 3 * v["elements"][computed].astype(int) * v["order"][computed]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"]
-    without = (
+    followed_clause = (
         f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
         if followed
         else ""
     )
-    return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{without}"]
+    return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{followed_clause}"]
 
 
-def stability_line(view: View, done: np.ndarray) -> str:
+def stability_line(view: View, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
-    estimate; the number of points at which it is unknown. done: mask of the computed points, of the
+    estimate; the number of points at which it is unknown. computed: mask of the computed points, of the
     shape of the points.
     """
-    unstable = view.variables["unstable_count"][done]
-    points = int(done.sum())
+    unstable = view.variables["unstable_count"][computed]
+    points = int(computed.sum())
     if (unstable < 0).all():
         return "number of unstable modes: not known at any point"
-    certified = int(view.variables["certified"][done].sum())
-    how = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
-    text = f"largest number of unstable modes: {int(unstable.max())}; the number is {how} at "
+    certified = int(view.variables["certified"][computed].sum())
+    certainty = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
+    text = f"largest number of unstable modes: {int(unstable.max())}; the number is {certainty} at "
     text += count_of_total(certified, points, "point")
     unknown = int((unstable < 0).sum())
     return text + (f", not known at {unknown}" if unknown else "")

@@ -30,13 +30,13 @@ Threshold = LocatedThreshold | BracketedThreshold
 
 
 def stability_lines(
-    view: View, name: str, found_on: Callable[[ParameterLine], Sequence[Threshold]]
+    view: View, name: str, thresholds_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
     """Returns (sentences, sentences in an arm's units), one for each kind of threshold along the parameter
     `name`. The second list is empty unless the parameter is F; both lists are empty if the parameter does not
     vary.
 
-    found_on: function that returns the thresholds on a line of points.
+    thresholds_on: function that returns the thresholds on a line of points.
     """
     column = view.point_columns[name]
     if len(np.unique(column[np.isfinite(column)])) < 2:
@@ -44,49 +44,53 @@ def stability_lines(
     lines = list(lines_along(view.point_columns, name))
     varied = [n for n in lines[0].parameters if len({line.parameters[n] for line in lines}) > 1]
     names = [", ".join(f"{n} = {line.parameters[n]:.6g}" for n in varied) for line in lines]
-    along = [found_on(line) for line in lines]
+    by_line = [thresholds_on(line) for line in lines]
     texts = list[str]()
     arm_sentences = list[str]()
-    for kind, words in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
-        of_kind = [[point for point in points if point.kind == kind] for points in along]
-        if found := {i: points for i, points in enumerate(of_kind) if points}:
-            texts.append(f"{words.format(name=name)}: {_positions_text(found, names, name)}")
-            every = [(point, lines[i].indices) for i, points in found.items() for point in points]
-            located = [(point, at) for point, at in every if isinstance(point, LocatedThreshold)]
+    for kind, phrase in (FORCE_THRESHOLD_WORDS if name == "F" else OTHER_THRESHOLD_WORDS).items():
+        kind_points = [[point for point in points if point.kind == kind] for points in by_line]
+        if points_of_line := {i: points for i, points in enumerate(kind_points) if points}:
+            texts.append(f"{phrase.format(name=name)}: {_positions_text(points_of_line, names, name)}")
+            pairs = [(point, lines[i].indices) for i, points in points_of_line.items() for point in points]
+            located = [(point, indices) for point, indices in pairs if isinstance(point, LocatedThreshold)]
             arm_sentences += thresholds_of_arm(view, kind, located) if name == "F" else []
     return texts, arm_sentences
 
 
-def _positions_text(found: Mapping[int, list[Threshold]], names: list[str], along: str) -> str:
-    """Positions of thresholds as text: one by one for a few lines of points, else as a range. found:
-    thresholds by index of the line. names: description of each line. along: parameter along the lines.
+def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter: str) -> str:
+    """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
+    thresholds by index of the line. names: description of each line. parameter: parameter along the lines.
     """
-    points = [point for line in found.values() for point in line]
+    points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
-    stated = [stated_error(point.position, point.error)[1] for point in located]
-    error = f" (+- {error_text(max(stated))})" if stated else ""
-    some = (
-        f", on {count_of_total(len(found), len(names), 'line')} of points along {along}"
-        if len(found) < len(names)
+    errors = [stated_error(point.position, point.error)[1] for point in located]
+    error = f" (+- {error_text(max(errors))})" if errors else ""
+    lines_text = (
+        f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
+        if len(by_line) < len(names)
         else ""
     )
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
-        beats = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
-        return _position_text(located[0]) + error + some + beats
-    if len(found) <= MAX_LISTED_LINES:
-        each = ((" and ".join(map(_position_text, found[i])), names[i]) for i in found)
-        return f"{', '.join(' for '.join(filter(None, pair)) for pair in each)}{error}"
+        rate_text = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
+        return _position_text(located[0]) + error + lines_text + rate_text
+    if len(by_line) <= MAX_LISTED_LINES:
+        texts = ((" and ".join(map(_position_text, by_line[i])), names[i]) for i in by_line)
+        return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error}"
     if not located:
         ends = [(point.low, point.high) for point in points if isinstance(point, BracketedThreshold)]
         low = min(low for low, _ in ends)
         high = max(high for _, high in ends)
-        return f"between {low:.6g} and {high:.6g}{some}"
-    first = min(located, key=lambda point: point.position)
-    last = max(located, key=lambda point: point.position)
-    rest = len(points) - len(located)
-    more = f"; {counted(rest, 'further threshold')} known only to lie between two points" if rest else ""
-    return f"{_position_text(first)} to {_position_text(last)}{error}{some}{more}"
+        return f"between {low:.6g} and {high:.6g}{lines_text}"
+    lowest = min(located, key=lambda point: point.position)
+    highest = max(located, key=lambda point: point.position)
+    unlocated = len(points) - len(located)
+    further = (
+        f"; {counted(unlocated, 'further threshold')} known only to lie between two points"
+        if unlocated
+        else ""
+    )
+    return f"{_position_text(lowest)} to {_position_text(highest)}{error}{lines_text}{further}"
 
 
 def _position_text(threshold: Threshold) -> str:

@@ -36,44 +36,44 @@ MISSED_CYCLES_LINE = (
 """Line on the completeness of the stable states."""
 
 
-def state_lines(view: View, done: np.ndarray, line: str, row: str) -> list[str]:
+def state_lines(view: View, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
-    points of cycles. done: mask of the computed rows, (...,). line: parameter along a row. row: parameter
+    points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter
     constant on a row.
     """
     v = view.variables
-    of_row = view.point_columns[row].reshape(done.shape)
+    row_values = view.point_columns[row].reshape(computed.shape)
     states = v["stable_states"]
     kinds = v["cycle_special_kind"]
-    at = v[f"cycle_special_{line}"]
-    shares = ((100 * float((states[done] == value).mean()), word) for value, word in STABLE_STATES)
-    parts = ", ".join(
-        f"{share:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for share, word in shares if share
+    positions = v[f"cycle_special_{line}"]
+    percents = ((100 * float((states[computed] == value).mean()), word) for value, word in STABLE_STATES)
+    texts = ", ".join(
+        f"{percent:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for percent, word in percents if percent
     )
-    lines = [f"stable states, in % of the grid points: {parts}"]
-    found_on = {}
-    for words, state in LISTED_STATES.items():
-        there = (states == flag_number(state, STABLE_STATES)) & done[..., np.newaxis]
-        if there.any():
-            at_points = there.any(axis=-1)
+    lines = [f"stable states, in % of the grid points: {texts}"]
+    located = {}
+    for phrase, state in LISTED_STATES.items():
+        in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]
+        if in_state.any():
+            at_points = in_state.any(axis=-1)
             lines.append(
-                f"{words}: at grid points of {count_of_total(at_points.sum(), done.sum(), 'row')}, "
-                f"{line} = {span_text(np.broadcast_to(v[line], there.shape)[there])}, "
-                f"{row} = {axis_values_text(of_row[at_points])}"
+                f"{phrase}: at grid points of {count_of_total(at_points.sum(), computed.sum(), 'row')}, "
+                f"{line} = {span_text(np.broadcast_to(v[line], in_state.shape)[in_state])}, "
+                f"{row} = {axis_values_text(row_values[at_points])}"
             )
-        hidden = done & ~there.any(axis=-1) & _both_between_grid_points(view, line)
-        if state == "both" and hidden.any():
-            rows = counted(int(hidden.sum()), "row")
-            places = axis_values_text(of_row[hidden])
-            lines.append(f"{words}: only between grid points on {rows}, {row} = {places}")
-    for kind, words in CYCLE_CHANGE_WORDS.items():
-        of_kind = (kinds == SPECIAL_KINDS.index(kind)) & done[..., np.newaxis]
-        found_on[words] = of_kind.any(axis=-1), at[of_kind]
-    for words, (rows, where) in found_on.items():
+        is_hidden = computed & ~in_state.any(axis=-1) & _both_between_grid_points(view, line)
+        if state == "both" and is_hidden.any():
+            rows = counted(int(is_hidden.sum()), "row")
+            hidden_values = axis_values_text(row_values[is_hidden])
+            lines.append(f"{phrase}: only between grid points on {rows}, {row} = {hidden_values}")
+    for kind, phrase in CYCLE_CHANGE_WORDS.items():
+        is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
+        located[phrase] = is_of_kind.any(axis=-1), positions[is_of_kind]
+    for phrase, (rows, values) in located.items():
         if rows.any():
             lines.append(
-                f"{words}: on {count_of_total(rows.sum(), done.sum(), 'row')}, {line} = {span_text(where)}, "
-                f"{row} = {axis_values_text(of_row[rows])}"
+                f"{phrase}: on {count_of_total(rows.sum(), computed.sum(), 'row')}, "
+                f"{line} = {span_text(values)}, {row} = {axis_values_text(row_values[rows])}"
             )
     return lines
 
@@ -88,16 +88,18 @@ def _both_between_grid_points(view: View, line: str) -> np.ndarray:
     v = view.variables
     x = v[line]
     straight, cycle = (flag_number(state, STABLE_STATES) for state in ("straight", "cycle"))
-    found = np.zeros(v["stable_states"].shape[:-1], dtype=bool)
-    for row in np.ndindex(found.shape):
+    is_between = np.zeros(v["stable_states"].shape[:-1], dtype=bool)
+    for row in np.ndindex(is_between.shape):
         states = v["stable_states"][row]
         hopfs = v["crossing_at"][row][np.isin(v["crossing_kind"][row], HOPF_CROSSING_CODES)]
         specials = v[f"cycle_special_{line}"][row][~np.isin(v["cycle_special_kind"][row], NO_CYCLE_CHANGE)]
         for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
-            within = [places[(places > x[i]) & (places < x[i + 1])] for places in (hopfs, specials)]
-            if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, within)) != [1, 1]:
+            positions_between = [
+                positions[(positions > x[i]) & (positions < x[i + 1])] for positions in (hopfs, specials)
+            ]
+            if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, positions_between)) != [1, 1]:
                 continue
-            (change_of_straight,), (change_of_cycle,) = within
+            (change_of_straight,), (change_of_cycle,) = positions_between
             # The state of the second point begins before the state of the first point ends.
-            found[row] |= (change_of_straight < change_of_cycle) == (states[i] == cycle)
-    return found
+            is_between[row] |= (change_of_straight < change_of_cycle) == (states[i] == cycle)
+    return is_between

@@ -69,10 +69,10 @@ def region_text(view: View, mask: np.ndarray) -> str:
     """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
     varies.
     """
-    ranges = []
+    range_texts = []
     for name, column in varied_parameters_at_points(view).items():
-        ranges.append(f"{name} = {axis_values_text(column[mask.ravel()])}")
-    return ", ".join(ranges)
+        range_texts.append(f"{name} = {axis_values_text(column[mask.ravel()])}")
+    return ", ".join(range_texts)
 
 
 def point_text(view: View, index: int) -> str:

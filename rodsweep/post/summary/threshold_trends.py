@@ -26,16 +26,16 @@ class Trend(IntEnum):
 def _trend(forces: np.ndarray) -> Trend:
     """Trend of thresholds along a line of rods, (n,), NaN where unknown; steps smaller than TREND_ROUNDING
     times the largest threshold count as 0. The trend is unknown if fewer than two thresholds are known."""
-    known = forces[np.isfinite(forces)]
-    steps = np.diff(known)
+    known_forces = forces[np.isfinite(forces)]
+    steps = np.diff(known_forces)
     if not steps.size:
         return Trend.unknown
-    rounding = TREND_ROUNDING * np.abs(known).max()
-    rises = bool((steps > rounding).any())
-    falls = bool((steps < -rounding).any())
-    if rises and falls:
+    rounding = TREND_ROUNDING * np.abs(known_forces).max()
+    has_rise = bool((steps > rounding).any())
+    has_fall = bool((steps < -rounding).any())
+    if has_rise and has_fall:
         return Trend.rises_and_falls
-    return Trend.rises if rises else Trend.falls if falls else Trend.constant
+    return Trend.rises if has_rise else Trend.falls if has_fall else Trend.constant
 
 
 def monotony_lines(view: View) -> list[str]:
@@ -44,30 +44,30 @@ def monotony_lines(view: View) -> list[str]:
     lines = []
     long = [name for name, values in view.parameter_values.items() if len(values) > 2] if view.is_grid else []
     for name, force in product(long, ("F_onset", "F_hopf")):
-        along = np.moveaxis(view.variables[force], list(view.parameter_values).index(name), -1)
+        forces = np.moveaxis(view.variables[force], list(view.parameter_values).index(name), -1)
         label = name
         if name == "gamma3":
-            along = along[..., ::-1]
+            forces = forces[..., ::-1]
             label = "1/gamma3"
-        trends = np.apply_along_axis(_trend, -1, along)
-        known = trends != Trend.unknown
-        if not known.any():
+        trend_of_lines = np.apply_along_axis(_trend, -1, forces)
+        is_known = trend_of_lines != Trend.unknown
+        if not is_known.any():
             continue
-        rising = int((trends == Trend.rises).sum())
-        text = f"{force} rises with {label} on {count_of_total(rising, known.sum(), 'line')} of rods"
-        for trend, verb in ((Trend.falls, "falls"), (Trend.constant, "is constant")):
-            if number := int((trends == trend).sum()):
-                text += f", {verb} on {number}"
-        mixed = trends == Trend.rises_and_falls
+        rising_count = int((trend_of_lines == Trend.rises).sum())
+        text = f"{force} rises with {label} on {count_of_total(rising_count, is_known.sum(), 'line')} of rods"
+        for trend, phrase in ((Trend.falls, "falls"), (Trend.constant, "is constant")):
+            if number := int((trend_of_lines == trend).sum()):
+                text += f", {phrase} on {number}"
+        is_mixed = trend_of_lines == Trend.rises_and_falls
         others = [n for n in view.parameter_values if n != name]
-        where = []
-        for other, places in zip(others, np.argwhere(mixed).T, strict=True):
-            if len(view.parameter_values[other]) > 1 and places.size:
-                values = view.parameter_values[other][places]
+        positions = []
+        for axis, axis_indices in zip(others, np.argwhere(is_mixed).T, strict=True):
+            if len(view.parameter_values[axis]) > 1 and axis_indices.size:
+                values = view.parameter_values[axis][axis_indices]
                 low = values.min()
                 high = values.max()
-                where.append(f"{other} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
-        if mixed.any():
-            text += f", is not monotone on {int(mixed.sum())}{in_brackets(', '.join(where))}"
+                positions.append(f"{axis} = {low:.6g}" + (f" to {high:.6g}" if high > low else ""))
+        if is_mixed.any():
+            text += f", is not monotone on {int(is_mixed.sum())}{in_brackets(', '.join(positions))}"
         lines.append(text)
     return lines

@@ -38,58 +38,58 @@ def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
     """Places, in a list of crossings, of the starts and ends of all windows of flutter after the first
     window. kinds: kinds of the crossings, in the order of the force.
     """
-    places = []
+    indices = []
     expected = "restabilization"
-    for place, kind in enumerate(kinds):
+    for index, kind in enumerate(kinds):
         if kind == expected:
-            places.append(place)
+            indices.append(index)
             expected = "hopf" if expected == "restabilization" else "restabilization"
-    return places[1:]  # the first is the end of the first window
+    return indices[1:]  # the first is the end of the first window
 
 
-def thresholds_summary(view: View, done: np.ndarray) -> SummaryLines:
-    """Summary of thresholds. done: mask of the computed points, of the shape of the points."""
-    if done.size == 1:
-        details = cost_lines(view, done)
+def thresholds_summary(view: View, computed: np.ndarray) -> SummaryLines:
+    """Summary of thresholds. computed: mask of the computed points, of the shape of the points."""
+    if computed.size == 1:
+        details = cost_lines(view, computed)
         arm_sentences = crossings_of_arm(view)
         return SummaryLines(
             crossing_lines(view), completeness_lines(view), details, arm_sentences, crossing_table(view)
         )
-    answer = [first_threshold_line(view, done, event) for event in FIRST_THRESHOLD_RATES]
-    reliability = search_lines(view, done, "rod")
-    ends = view.variables["F_end"][done]
+    answer = [first_threshold_line(view, computed, event) for event in FIRST_THRESHOLD_RATES]
+    reliability = search_lines(view, computed, "rod")
+    ends = view.variables["F_end"][computed]
     if np.isfinite(ends).any():
         reliability.append(f"searched up to F = {span_text(ends)}")
-    return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, done)])
+    return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, computed)])
 
 
-def first_threshold_line(view: View, done: np.ndarray, event: str) -> str:
+def first_threshold_line(view: View, computed: np.ndarray, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
-    with this threshold and with an unknown result. done: mask of the computed points, of the shape of the
+    with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
     points.
     """
-    words = FORCE_THRESHOLD_WORDS[event]
-    rate, noun, unit = FIRST_THRESHOLD_RATES[event]
+    phrase = FORCE_THRESHOLD_WORDS[event]
+    rate_name, noun, unit = FIRST_THRESHOLD_RATES[event]
     v = view.variables
-    F = np.where(done, v[f"F_{event}"], np.nan).ravel()
-    found = np.isfinite(F)
-    rods = int(done.sum())
+    F = np.where(computed, v[f"F_{event}"], np.nan).ravel()
+    mask = np.isfinite(F)
+    rods = int(computed.sum())
     searched = v["crossing_count"].ravel() >= 0
     decided = searched & ~np.isfinite(v["open_from"].ravel()) & ~view.has_status(ENDED_EARLY).ravel()
-    unknown = unknown_clause(int((done.ravel() & ~found & ~decided).sum()))
-    if not found.any():
-        return f"{words}: at none of {counted(rods, 'rod')}{unknown}"
+    unknown = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
+    if not mask.any():
+        return f"{phrase}: at none of {counted(rods, 'rod')}{unknown}"
     low = int(np.nanargmin(F))
     high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    places = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
-    forces = " to ".join(places if places[0] != places[1] else places[:1])
-    where = (
-        f"all {counted(rods, 'rod')}"
-        if found.sum() == rods
-        else count_of_total(int(found.sum()), rods, "rod")
+    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
+    forces = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
+    rods_text = (
+        f"all {counted(rods, 'rod')}" if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
     )
-    return f"{words}: F = {forces}, at {where}{unknown}; {noun} {span_text(v[rate][done])} {unit}"
+    return (
+        f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {span_text(v[rate_name][computed])} {unit}"
+    )
 
 
 def unknown_beyond_clause(view: View, F: float) -> str:
@@ -100,12 +100,12 @@ def unknown_beyond_clause(view: View, F: float) -> str:
     return clause if view.has_status(ENDED_EARLY).all() else ""
 
 
-def crossing_errors(view: View, F: np.ndarray, at: str) -> np.ndarray:
+def crossing_errors(view: View, F: np.ndarray, force_name: str) -> np.ndarray:
     """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
     not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
-    at: variable with the forces of the list.
+    force_name: variable with the forces of the list.
     """
-    table, errors = map(view.by_point, (at, "crossing_error"))
+    table, errors = map(view.by_point, (force_name, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
@@ -115,13 +115,15 @@ def crossing_lines(view: View) -> list[str]:
     v = view.point_values(0)
     end = f"F = {v['F_end']:.15g}{unknown_beyond_clause(view, float(v['F_end']))}"
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
-        firsts = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
-        changes = [f"{word} F = {F:.6g}" for word, F in firsts.items() if np.isfinite(F)]
-        later = ((LATER_CROSSING_WORDS[kinds[i]], v["crossing_F"][i]) for i in later_flutter_changes(kinds))
-        words = ", ".join([*changes, *(f"{word} F = {F:.6g}" for word, F in later)])
+        first_forces = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
+        changes = [f"{word} F = {F:.6g}" for word, F in first_forces.items() if np.isfinite(F)]
+        later_changes = (
+            (LATER_CROSSING_WORDS[kinds[i]], v["crossing_F"][i]) for i in later_flutter_changes(kinds)
+        )
+        text = ", ".join([*changes, *(f"{word} F = {F:.6g}" for word, F in later_changes)])
         count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
-        return ["; ".join(filter(None, (words, count))), *meanings]
+        return ["; ".join(filter(None, (text, count))), *meanings]
     if v["crossing_count"] < 0:
         return ["the thresholds of this rod are not known"]
     none = "no threshold is located" if np.isfinite(v["open_from"]) else "no threshold"
@@ -135,9 +137,9 @@ def crossing_table(view: View) -> TextTable | None:
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = number_and_error(float(v["crossing_F"][i]), float(v["crossing_error"][i]))
         rates = (f"{v[f'crossing_{name}'][i] + 0.0:.6g}" for name in ("growth_rate", "frequency"))
-        after = int(v["unstable_after"][i])
+        unstable_count = int(v["unstable_after"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
-        rows.append((kind, *F, *rates, str(after) if after >= 0 else "not known"))
+        rows.append((kind, *F, *rates, str(unstable_count) if unstable_count >= 0 else "not known"))
     unit = PARAMETERS["F"].unit
     headings = (
         "kind",
@@ -155,11 +157,11 @@ def completeness_lines(view: View) -> list[str]:
     the only rod in a file.
     """
     v = view.point_values(0)
-    hidden = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
+    unlisted = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
     proof = proof if v["certified"] else f"not {proof}"
-    searched = f"searched up to F = {v['F_end']:.15g}; " if np.isfinite(v["F_end"]) else ""
-    lines = [f"{searched}the list of crossings is {proof}{unstored_clause(max(hidden, 0))}"]
+    search = f"searched up to F = {v['F_end']:.15g}; " if np.isfinite(v["F_end"]) else ""
+    lines = [f"{search}the list of crossings is {proof}{unstored_clause(max(unlisted, 0))}"]
     if np.isfinite(v["open_from"]):
         lines.append(
             f"undecided from F = {v['open_from']:.9g} to {v['open_to']:.9g}: this range may contain a window "
@@ -173,51 +175,51 @@ def unknown_clause(count: int) -> str:
     return f", not known at {counted(count, 'rod')}" if count else ""
 
 
-def unstored_clause(hidden: int) -> str:
-    """Clause on the number `hidden` of crossings that are not stored because the list was full; empty for
+def unstored_clause(count: int) -> str:
+    """Clause on the number `count` of crossings that are not stored because the list was full; empty for
     0.
     """
-    verb = "is" if hidden == 1 else "are"
-    return f"; {hidden} more {verb} not stored, raise the option crossings" if hidden > 0 else ""
+    verb = "is" if count == 1 else "are"
+    return f"; {count} more {verb} not stored, raise the option crossings" if count > 0 else ""
 
 
-def search_lines(view: View, done: np.ndarray, noun: str) -> list[str]:
+def search_lines(view: View, computed: np.ndarray, noun: str) -> list[str]:
     """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
     noun: noun for a point.
 
-    done: mask of the computed points, of the shape of the points.
+    computed: mask of the computed points, of the shape of the points.
     """
     v = view.variables
-    searches = int(done.sum())
-    is_crossing = v["crossing_kind"][done] > 0
+    searches = int(computed.sum())
+    is_crossing = v["crossing_kind"][computed] > 0
     stored = is_crossing.sum(axis=-1)
-    errors = v["crossing_error"][done][is_crossing]
-    known = errors[np.isfinite(errors)]
-    worst = f"; absolute error at most {error_text(float(known.max()))}" if known.size else ""
-    undecided = int(np.isfinite(v["open_from"][done]).sum())
-    proved = count_of_total(int(v["certified"][done].sum()), searches, noun)
+    errors = v["crossing_error"][computed][is_crossing]
+    known_errors = errors[np.isfinite(errors)]
+    bound = f"; absolute error at most {error_text(float(known_errors.max()))}" if known_errors.size else ""
+    undecided = int(np.isfinite(v["open_from"][computed]).sum())
+    proved = count_of_total(int(v["certified"][computed].sum()), searches, noun)
     window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
-    hidden = int((v["crossing_count"][done] - stored).clip(min=0).sum())
+    unlisted = int((v["crossing_count"][computed] - stored).clip(min=0).sum())
     return [
         f"the list of crossings {proof_clause(view)} for {proved}{window}",
-        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{worst}"
-        f"{unstored_clause(hidden)}",
+        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{bound}"
+        f"{unstored_clause(unlisted)}",
     ]
 
 
-def cost_lines(view: View, done: np.ndarray) -> list[str]:
-    """List with a line on the cost of the searches. done: mask of the computed points, of the shape of the
-    points.
+def cost_lines(view: View, computed: np.ndarray) -> list[str]:
+    """List with a line on the cost of the searches. computed: mask of the computed points, of the shape of
+    the points.
 
     The list is empty for searches that count unstable modes, which store no cost.
     """
     if not has_standard_rods(view.config):
         return []
     v = view.variables
-    boxes, solves = (v[name][done] for name in ("boxes", "solves"))
+    boxes, solve_counts = (v[name][computed] for name in ("boxes", "solves"))
     return [
         f"cost of a search: {count_range(boxes, 'evaluation')} of the determinant D over a box, "
-        f"{count_range(solves, 'eigenproblem')}"
+        f"{count_range(solve_counts, 'eigenproblem')}"
     ]
 
 

@@ -35,9 +35,9 @@ def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
     A name and its value stay on one line, as do a number and its error. File names are not broken.
     """
     indent = " " * (len(line) - len(line.lstrip()) + 2)
-    whole = UNBREAKABLE_PATTERN.sub(lambda match: match[0].replace(" ", NO_BREAK), line)
+    unbroken = UNBREAKABLE_PATTERN.sub(lambda group: group[0].replace(" ", NO_BREAK), line)
     lines = textwrap.wrap(
-        whole, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
+        unbroken, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
     )
     return "\n".join(lines).replace(NO_BREAK, " ")
 
@@ -49,23 +49,23 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
     if not all(NUMBER_PATTERN.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]
-    places = [re.search(r"[.e]|$", cell) for cell in cells]
-    before = [0 if place is None else place.start() for place in places]
-    left = max(before, default=0)
-    right = max((len(cell) - place for cell, place in zip(cells, before, strict=True)), default=0)
+    point_matches = [re.search(r"[.e]|$", cell) for cell in cells]
+    lengths_before = [0 if point is None else point.start() for point in point_matches]
+    max_before = max(lengths_before, default=0)
+    max_after = max((len(cell) - point for cell, point in zip(cells, lengths_before, strict=True)), default=0)
     return [
-        f"{' ' * (left - place)}{cell}{' ' * (right - len(cell) + place)}"
-        for cell, place in zip(cells, before, strict=True)
+        f"{' ' * (max_before - point)}{cell}{' ' * (max_after - len(cell) + point)}"
+        for cell, point in zip(cells, lengths_before, strict=True)
     ]
 
 
-def column_cells(heads: Sequence[str], cells: Sequence[str]) -> list[str]:
+def column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`. heads: texts of the heading lines.
+    `point_aligned`. heading_lines: texts of the heading lines.
     """
-    aligned = point_aligned(cells)
-    width = max(map(len, (*heads, *aligned)))
-    return [f"{cell:{width}}" for cell in (*heads, *aligned)]
+    aligned_cells = point_aligned(cells)
+    width = max(map(len, (*heading_lines, *aligned_cells)))
+    return [f"{cell:{width}}" for cell in (*heading_lines, *aligned_cells)]
 
 
 def table_blocks(columns: Sequence[Sequence[str]], width: int = LINE_WIDTH) -> Iterator[list[str]]:
@@ -73,13 +73,13 @@ def table_blocks(columns: Sequence[Sequence[str]], width: int = LINE_WIDTH) -> I
     fit. columns: cells of every column, as from `column_cells`.
 
     """
-    first, *others = columns
-    block = [first]
-    for column in others:
-        taken = sum(len(each[0]) + len(COLUMN_GAP) for each in block)
-        if len(block) > 1 and taken + len(column[0]) > width:
+    first_column, *other_columns = columns
+    block = [first_column]
+    for column in other_columns:
+        used_width = sum(len(block_column[0]) + len(COLUMN_GAP) for block_column in block)
+        if len(block) > 1 and used_width + len(column[0]) > width:
             yield _table_lines(block)
-            block = [first]
+            block = [first_column]
         block.append(column)
     yield _table_lines(block)
 
@@ -96,20 +96,22 @@ def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[s
     """
     if not rows:
         return []
-    *columns, prose = zip(*rows, strict=True)
-    aligned = zip(*(point_aligned(column) if any(column) else column for column in columns), strict=True)
-    before = [COLUMN_GAP.join(cells) for cells in aligned]
-    room = width - max(map(len, before)) - len(COLUMN_GAP)
+    *columns, proses = zip(*rows, strict=True)
+    aligned_columns = zip(
+        *(point_aligned(column) if any(column) else column for column in columns), strict=True
+    )
+    row_starts = [COLUMN_GAP.join(cells) for cells in aligned_columns]
+    prose_width = width - max(map(len, row_starts)) - len(COLUMN_GAP)
     lines = []
-    for begin, text in zip(before, prose, strict=True):
-        if room >= MIN_PROSE_WIDTH:
-            first, *further = textwrap.wrap(text, room) or [""]
-            lines.append(f"{begin}{COLUMN_GAP}{first}".rstrip())
-            lines += [" " * (width - room) + line for line in further]
+    for row_start, text in zip(row_starts, proses, strict=True):
+        if prose_width >= MIN_PROSE_WIDTH:
+            first_line, *other_lines = textwrap.wrap(text, prose_width) or [""]
+            lines.append(f"{row_start}{COLUMN_GAP}{first_line}".rstrip())
+            lines += [" " * (width - prose_width) + line for line in other_lines]
         else:
             lines += (
-                [begin.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
+                [row_start.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
                 if text
-                else [begin.rstrip()]
+                else [row_start.rstrip()]
             )
     return lines

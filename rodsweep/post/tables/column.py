@@ -56,15 +56,15 @@ class Column:
         """Whether the values are estimates: errors, or computing times."""
         return "error" in self.name or self.name == SECONDS.name
 
-    def rows(self, which: NDArray[np.int64] | slice) -> "Column":
-        """Column with the rows `which`: indices, in the order of the new column, or a slice. The index -1
+    def rows(self, indices: NDArray[np.int64] | slice) -> "Column":
+        """Column with the rows `indices`: indices, in the order of the new column, or a slice. The index -1
         gives a missing value.
         """
-        if isinstance(which, slice):
-            return replace(self, values=self.values[which], absent=self.absent[which])
+        if isinstance(indices, slice):
+            return replace(self, values=self.values[indices], absent=self.absent[indices])
         # An appended row makes index -1 a missing value.
-        values = np.append(self.values, np.zeros(1, self.values.dtype))[which]
-        return replace(self, values=values, absent=np.append(self.absent, True)[which])
+        values = np.append(self.values, np.zeros(1, self.values.dtype))[indices]
+        return replace(self, values=values, absent=np.append(self.absent, True)[indices])
 
     def texts(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number from which the value can be
@@ -93,15 +93,15 @@ class Column:
         return [_without_rounding_error(value, text) for value, text in zip(self.values, texts, strict=True)]
 
 
-def column_of(variable: Variable, values: NDArray, words: Mapping[int, str] | None = None) -> Column:
-    """Column of a variable. values: (rows,). words: words by value, used instead of the flags of the variable
-    if given.
+def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, str] | None = None) -> Column:
+    """Column of a variable. values: (rows,). flag_meanings: words by value, used instead of the flags of the
+    variable if given.
     """
-    known = dict(variable.flags) if words is None else words
+    meanings = dict(variable.flags) if flag_meanings is None else flag_meanings
     meaning = variable.long_name.removesuffix(NOT_KNOWN_SUFFIX)
-    absent = missing_values_mask(variable, values)
+    is_absent = missing_values_mask(variable, values)
     boolean = variable.is_boolean
-    return Column(variable.name, variable.units, meaning, values, absent, known, is_boolean=boolean)
+    return Column(variable.name, variable.units, meaning, values, is_absent, meanings, is_boolean=boolean)
 
 
 def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Column:
@@ -117,9 +117,9 @@ def _without_rounding_error(value: float, text: str) -> str:
     """
     if not np.isfinite(value):
         return text
-    short = f"{value:.15g}"
-    is_close = abs(float(short) - value) <= COORDINATE_ROUNDING * abs(value)
-    return short if is_close and len(short) + 2 < len(text) else text
+    rounded = f"{value:.15g}"
+    is_close = abs(float(rounded) - value) <= COORDINATE_ROUNDING * abs(value)
+    return rounded if is_close and len(rounded) + 2 < len(text) else text
 
 
 def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_]:

@@ -25,26 +25,26 @@ def item_rows(view: View, variables: Sequence[Variable], is_sweep_wide: bool) ->
     """Indices of all items of a list that are not missing. variables: variables of the list. is_sweep_wide:
     whether the list belongs to the whole file, not to single points."""
     points = 1 if is_sweep_wide else view.variables["status"].size
-    exists: NDArray[np.bool_] = np.zeros((), bool)
+    is_present: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
         if marks_missing_items(variable) and (_is_of_points(view, variable) or is_sweep_wide):
             values = view.variables[variable.name]
-            inner = len(variable.extra)
-            values = values.reshape(points, *values.shape[values.ndim - inner :])
-            exists = exists | ~missing_values_mask(variable, values)
-    return np.nonzero(exists)
+            inner_dimensions = len(variable.extra)
+            values = values.reshape(points, *values.shape[values.ndim - inner_dimensions :])
+            is_present = is_present | ~missing_values_mask(variable, values)
+    return np.nonzero(is_present)
 
 
-def point_columns(view: View, own: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
-    """Yields the columns of points: parameters, quantities of an arm, then the variables `own`. points: index
-    of the point of each row, (rows,).
+def point_columns(view: View, variables: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
+    """Yields the columns of points: parameters, quantities of an arm, then the variables `variables`. points:
+    index of the point of each row, (rows,).
     """
     for name, values in view.point_columns.items():
         yield coordinate_column(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
         yield quantity_column(name, values[points])
     missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
-    for variable in own:
+    for variable in variables:
         values = view.variables[variable.name].reshape(-1)[points]
         if variable.name == STATUS.name:
             yield replace(column_of(variable, values, view.flags), absent=np.zeros(len(points), bool))
@@ -60,19 +60,21 @@ def list_columns(
     is_sweep_wide: as in `item_rows`.
     """
     names = variables[0].extra
-    for name, items in zip(names, rows[1:], strict=True):
-        yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][items])
+    for name, item_indices in zip(names, rows[1:], strict=True):
+        yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][item_indices])
     for variable in variables:
         values = view.variables[variable.name]
         if is_sweep_wide:
             yield column_of(variable, values[rows[1:]])
         elif _is_of_points(view, variable):
-            inner = values.shape[values.ndim - len(names) :]
-            yield column_of(variable, values.reshape(-1, *inner)[rows])
+            inner_shape = values.shape[values.ndim - len(names) :]
+            yield column_of(variable, values.reshape(-1, *inner_shape)[rows])
         else:  # the variable is stored with dimensions for some parameters, or for the point
-            along = variable.extra[: -len(names)]
-            places = [rows[0] if name == "point" else _axis_indices(view, name)[rows[0]] for name in along]
-            yield column_of(variable, values[(*places, *rows[1:])])
+            dimensions = variable.extra[: -len(names)]
+            indices = [
+                rows[0] if name == "point" else _axis_indices(view, name)[rows[0]] for name in dimensions
+            ]
+            yield column_of(variable, values[(*indices, *rows[1:])])
 
 
 def si_columns(
@@ -86,23 +88,23 @@ def si_columns(
     """
     if not view.quantities:
         return
-    at = quantities_at_points(view)
+    quantities = quantities_at_points(view)
     if points is not None:
-        at = {name: values[points] for name, values in at.items()}
+        quantities = {name: values[points] for name, values in quantities.items()}
     else:
-        at = {name: values[0] for name, values in at.items() if np.ptp(values) == 0}
+        quantities = {name: values[0] for name, values in quantities.items() if np.ptp(values) == 0}
     by_name = {column.name: column for column in columns}
-    as_force = view.load_kind == "force"
-    for declared in variables:
-        column = by_name[declared.name]
+    is_force_load = view.load_kind == "force"
+    for entry in variables:
+        column = by_name[entry.name]
         # The position of a crossing along a row over F is a force.
-        is_force = declared.name == "crossing_at" and "F" not in view.parameters
-        variable = replace(declared, name="crossing_F") if is_force else declared
-        si = si_unit_of(variable, as_force)
-        known = {*si.factors, *si.divisors} <= at.keys()
-        if si.unit and known and si_name_of(variable.name, si.unit) not in view.variables:
-            in_si, values = si_variable(variable, column.values, at, as_force)
-            yield replace(column_of(in_si, values), absent=column.absent)
+        is_force = entry.name == "crossing_at" and "F" not in view.parameters
+        variable = replace(entry, name="crossing_F") if is_force else entry
+        si = si_unit_of(variable, is_force_load)
+        is_convertible = {*si.factors, *si.divisors} <= quantities.keys()
+        if si.unit and is_convertible and si_name_of(variable.name, si.unit) not in view.variables:
+            si_values, values = si_variable(variable, column.values, quantities, is_force_load)
+            yield replace(column_of(si_values, values), absent=column.absent)
 
 
 def line_columns(view: View, rows: Rows) -> Iterator[Column]:
@@ -137,11 +139,11 @@ def quantities_at_points(view: View) -> dict[str, NDArray]:
     a diagram.
     """
     count = view.variables["status"].size
-    found = {}
+    columns = {}
     for name, values in view.quantities.items():
-        along = PARAMETER_STORED_ALONG.get(name, "")
+        dimension = PARAMETER_STORED_ALONG.get(name, "")
         if values.size == 1 or not view.is_grid:
-            found[name] = np.broadcast_to(values, count)
-        elif along in view.parameters:
-            found[name] = values[_axis_indices(view, along)]
-    return found
+            columns[name] = np.broadcast_to(values, count)
+        elif dimension in view.parameters:
+            columns[name] = values[_axis_indices(view, dimension)]
+    return columns

@@ -83,13 +83,13 @@ class TableContents:
 def table_contents_of(view: View) -> TableContents:
     """Names and variables of the tables of a result."""
     config = view.config
-    own: list[Variable] = []
+    point_variables: list[Variable] = []
     lists: dict[str, list[Variable]] = {}
     for variable in layout_of(config).variables:
         if variable.extra:
             lists.setdefault(table_name_of(variable.extra), []).append(variable)
         else:
-            own.append(variable)
+            point_variables.append(variable)
     with_points = set(lists)
     for variable in sweep_wide_variables(config, view.is_grid):
         if variable.name not in view.variables:
@@ -99,9 +99,11 @@ def table_contents_of(view: View) -> TableContents:
             lists[table_name_of(of_items)].append(variable)
         elif variable.extra:
             lists.setdefault(table_name_of(variable.extra), []).append(variable)
-    own.sort(key=lambda variable: variable.name != "status")
-    found = {name: tuple(variables) for name, variables in lists.items()}
-    return TableContents(tuple(own), found, frozenset(found.keys() - with_points))
+    point_variables.sort(key=lambda variable: variable.name != "status")
+    list_variables = {name: tuple(variables) for name, variables in lists.items()}
+    return TableContents(
+        tuple(point_variables), list_variables, frozenset(list_variables.keys() - with_points)
+    )
 
 
 def table_name_of(dimensions: tuple[str, ...]) -> str:
@@ -120,33 +122,33 @@ def chosen_table(view: View, contents: TableContents, table: str | None, columns
             )
         return table
     holding = {v.name: name for name, variables in contents.lists.items() for v in variables}
-    holding |= {name: each for each in contents.lists for name in contents.dimensions(each)}
+    holding |= {name: list_name for list_name in contents.lists for name in contents.dimensions(list_name)}
     lists = list(dict.fromkeys(holding[name] for name in columns if name in holding))
     if set(lists) == BRANCHES_TABLE_PARTS:
         return BRANCHES
     if len(lists) > 1:
-        pair = [next(name for name in columns if holding.get(name) == each) for each in lists[:2]]
+        pair = [next(name for name in columns if holding.get(name) == list_name) for list_name in lists[:2]]
         raise InputError(
             f"{pair[0]} and {pair[1]} are in two tables, {lists[0]} and {lists[1]}; name columns of one table"
         )
-    every = (*(v.name for v in contents.point_variables), *holding, *view.point_columns, *view.quantities)
-    refuse_unknown_columns(view.path, columns, every, "")
+    all_names = (*(v.name for v in contents.point_variables), *holding, *view.point_columns, *view.quantities)
+    refuse_unknown_columns(view.path, columns, all_names, "")
     if lists:
         return lists[0]
     return POINTS if columns else DEFAULT_TABLE[view.task]
 
 
 def refuse_unknown_columns(
-    path: object, columns: tuple[str, ...], known: tuple[str, ...], table: str
+    path: object, columns: tuple[str, ...], allowed: tuple[str, ...], table: str
 ) -> None:
-    """Raises InputError for the first name in `columns` that is not in `known` or occurs twice. table: name
+    """Raises InputError for the first name in `columns` that is not in `allowed` or occurs twice. table: name
     of the table, for the message; empty for all tables.
     """
     for index, name in enumerate(columns):
-        if name not in known:
-            what = f"the table {table} has" if table else "its tables have"
+        if name not in allowed:
+            subject = f"the table {table} has" if table else "its tables have"
             raise InputError(
-                f"{path}: {what} no column {name!r}; {unknown_key_hint(name, known, LIST_INTRO)}"
+                f"{path}: {subject} no column {name!r}; {unknown_key_hint(name, allowed, LIST_INTRO)}"
             )
         if name in columns[:index]:
             raise InputError(f"{path}: the column {name} is named twice")

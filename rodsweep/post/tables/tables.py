@@ -57,22 +57,22 @@ class Tables:
         name.
         """
         name = table_names.chosen_table(self.view, self.contents, name, tuple(columns))
-        points, found = self._rows(name)
-        beside = (
+        points, listed = self._rows(name)
+        columns_beside = (
             [] if points is None else list(point_columns(self.view, self.contents.point_variables, points))
         )
         if (
             name == table_names.GRID
         ):  # move the first column, a parameter, to its place among the other parameters
-            before = list(PARAMETERS)[: list(PARAMETERS).index(found[0].name)]
-            beside.insert(sum(column.name in before for column in beside), found.pop(0))
-        by_name = {column.name: column for column in (*beside, *found)}
+            earlier = list(PARAMETERS)[: list(PARAMETERS).index(listed[0].name)]
+            columns_beside.insert(sum(column.name in earlier for column in columns_beside), listed.pop(0))
+        by_name = {column.name: column for column in (*columns_beside, *listed)}
         table_names.refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
             hidden = {v.name for v in self.contents.point_variables if v.name != "status"}
             columns = [each for each in by_name if name == table_names.POINTS or each not in hidden]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
-        others = tuple(other for other in self.contents.tables if other != name)
+        others = tuple(choice for choice in self.contents.tables if choice != name)
         return Table(name, tuple(by_name[each] for each in columns), empty, others)
 
     def list_columns(self, name: str) -> tuple[Column, ...]:
@@ -107,63 +107,67 @@ class Tables:
         cycles. point_indices: index of the point of each row, (rows,).
         """
         cycles, of_cycles = self._list("cycles")
-        special, of_special = self._list("special_points")
-        points, of_cycle, at_special = merged_rows(self.view, cycles, special)
-        along = followed_parameter(self.view)
-        return points, merged_columns(of_cycles, of_special, of_cycle, at_special, along)
+        special_rows, special_columns = self._list("special_points")
+        points, cycle_indices, at_special = merged_rows(self.view, cycles, special_rows)
+        parameter = followed_parameter(self.view)
+        return points, merged_columns(of_cycles, special_columns, cycle_indices, at_special, parameter)
 
 
-def merged_rows(view: View, cycles: Rows, special: Rows) -> tuple[NDArray, NDArray, NDArray]:
+def merged_rows(view: View, cycles: Rows, special_points: Rows) -> tuple[NDArray, NDArray, NDArray]:
     """Returns (points, of_cycle, of_special), (rows,) each, for the rows of the table `branches` in order.
 
-    points: index of the point. of_cycle, of_special: row in `cycles` and in `special`; -1 if the row is not a
-    cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
+    points: index of the point. of_cycle, of_special: row in `cycles` and in `special_points`; -1 if the row
+    is not a cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
     """
     shape = view.variables["status"].size
     branch = np.concatenate(
         [
             _values_at_items(view, "branch", shape, cycles),
-            _values_at_items(view, "special_branch", shape, special),
+            _values_at_items(view, "special_branch", shape, special_points),
         ]
     )
-    place = np.concatenate([cycles[1] + 1, _values_at_items(view, "special_point", shape, special)])
-    point = np.concatenate([cycles[0], special[0]])
-    kind = np.repeat([0, 1], [len(cycles[0]), len(special[0])])
-    order = np.lexsort((np.concatenate([cycles[1], special[1]]), kind, place, branch, point))
-    row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special[0]))])
-    of_cycle = np.where(kind == 0, row, -1)
-    of_special = np.where(kind == 1, row, -1)
-    return point[order], of_cycle[order], of_special[order]
+    position = np.concatenate([cycles[1] + 1, _values_at_items(view, "special_point", shape, special_points)])
+    point = np.concatenate([cycles[0], special_points[0]])
+    kind = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
+    order = np.lexsort((np.concatenate([cycles[1], special_points[1]]), kind, position, branch, point))
+    row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special_points[0]))])
+    cycle_indices = np.where(kind == 0, row, -1)
+    special_indices = np.where(kind == 1, row, -1)
+    return point[order], cycle_indices[order], special_indices[order]
 
 
 def merged_columns(
-    cycles: list[Column], special: list[Column], of_cycle: NDArray, of_special: NDArray, along: str
+    cycles: list[Column],
+    special_columns: list[Column],
+    cycle_rows: NDArray,
+    special_rows: NDArray,
+    parameter: str,
 ) -> list[Column]:
     """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
     special points, and the kind of special point.
 
-    of_cycle, of_special: as from `merged_rows`, (rows,). along: followed parameter.
+    cycle_rows, special_rows: as from `merged_rows`, (rows,). parameter: followed parameter.
     """
-    named = {column.name: column for column in special}
-    merged = []
+    by_name = {column.name: column for column in special_columns}
+    result = []
     for column in cycles:
-        values = column.rows(of_cycle)
-        counterpart = named.get(_special_variable_name(column.name, along))
+        values = column.rows(cycle_rows)
+        counterpart = by_name.get(_special_variable_name(column.name, parameter))
         if counterpart is not None:
-            others = counterpart.rows(of_special)
-            both = np.where(values.absent, others.values, values.values)
-            values = replace(values, values=both, absent=values.absent & others.absent)
-        merged.append(values)
-    return [*merged, named["special_kind"].rows(of_special)]
+            others = counterpart.rows(special_rows)
+            joined = np.where(values.absent, others.values, values.values)
+            values = replace(values, values=joined, absent=values.absent & others.absent)
+        result.append(values)
+    return [*result, by_name["special_kind"].rows(special_rows)]
 
 
-def _special_variable_name(name: str, along: str) -> str:
-    """Name of the variable of special points that corresponds to the variable `name` of cycles. along:
+def _special_variable_name(name: str, parameter: str) -> str:
+    """Name of the variable of special points that corresponds to the variable `name` of cycles. parameter:
     followed parameter.
     """
-    if name == f"branch_{along}":
+    if name == f"branch_{parameter}":
         return "special_at"
-    if along == "F" and name in {f"branch_{load}" for load in LOADS}:
+    if parameter == "F" and name in {f"branch_{load}" for load in LOADS}:
         return "special_at_si"
     return f"special_{name}"
 

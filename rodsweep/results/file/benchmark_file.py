@@ -23,13 +23,13 @@ def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapp
     try:
         with h5py.File(path, "w") as file:
             file.attrs.update(attributes)
-            for study, table in tables.items():
-                group = file.create_group(study)
+            for study_name, table in tables.items():
+                group = file.create_group(study_name)
                 rows = group.create_dataset("measurement", data=np.arange(len(table["case"])))
                 rows.make_scale("measurement")
                 for name, values in table.items():
-                    words = bool(values) and isinstance(values[0], str)
-                    column = np.array(values, dtype=h5py.string_dtype() if words else float)
+                    is_text = bool(values) and isinstance(values[0], str)
+                    column = np.array(values, dtype=h5py.string_dtype() if is_text else float)
                     dataset = group.create_dataset(name, data=column)
                     dataset.dims[0].attach_scale(rows)
                     if name in UNITS:

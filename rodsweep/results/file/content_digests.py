@@ -64,9 +64,9 @@ def variable_digest(
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Digest of every attribute of a file by name, except attributes of HDF5, netCDF and the user."""
-    plain = _plain_attributes(attributes)
+    values = _plain_attributes(attributes)
     return {
-        name: sha256(json.dumps(value).encode()).hexdigest()[:DIGEST_DIGITS] for name, value in plain.items()
+        name: sha256(json.dumps(value).encode()).hexdigest()[:DIGEST_DIGITS] for name, value in values.items()
     }
 
 
@@ -90,16 +90,16 @@ def refuse_changed(file: h5py.File) -> None:
     if SEAL_ATTRIBUTE not in file.attrs:
         raise ValueError("its checksums are missing")
     sealed = json.loads(file.attrs[SEAL_ATTRIBUTE])
-    found = digests_of(file)
+    digests = digests_of(file)
     for noun in ("attribute", "variable"):
-        before = sealed[f"{noun}s"]
-        now = found[f"{noun}s"]
-        for name, digest in before.items():
-            if name not in now:
+        sealed_digests = sealed[f"{noun}s"]
+        current_digests = digests[f"{noun}s"]
+        for name, digest in sealed_digests.items():
+            if name not in current_digests:
                 raise ValueError(f"its {noun} {name} was removed")
-            if now[name] != digest:
+            if current_digests[name] != digest:
                 raise ValueError(f"its {noun} {name} was changed after rodsweep wrote it")
-        for name in now.keys() - before.keys():
+        for name in current_digests.keys() - sealed_digests.keys():
             raise ValueError(
                 f"its {noun} {printable_name(name, 40)} was not written by rodsweep; names of your own "
                 f"begin with {USER_PREFIX}"
@@ -111,22 +111,22 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
     Raises ValueError for links and for data stored in another file.
     """
-    places = set()
+    offsets = set()
     for name in file:
-        shown = printable_name(name, 40)
+        name_text = printable_name(name, 40)
         if not isinstance(file.get(name, getlink=True), h5py.HardLink):
-            raise ValueError(f"{shown} is a link, and a result has no links")
+            raise ValueError(f"{name_text} is a link, and a result has no links")
         data = file[name]
         if not isinstance(data, h5py.Dataset):
             if is_user_added(name) and isinstance(data, h5py.Group):
                 continue
-            raise ValueError(f"{shown} is not a variable")
+            raise ValueError(f"{name_text} is not a variable")
         if data.is_virtual or data.external:
-            raise ValueError(f"{shown} lies in another file")
+            raise ValueError(f"{name_text} lies in another file")
         address = h5py.h5o.get_info(data.id).addr
-        if address in places:
-            raise ValueError(f"{shown} is a second hard link to another variable")
-        places.add(address)
+        if address in offsets:
+            raise ValueError(f"{name_text} is a second hard link to another variable")
+        offsets.add(address)
         if not is_user_added(name):
             yield name, data
 
@@ -158,7 +158,9 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
         raise changed
     file = data.file.id
     try:  # by low-level handles, because `data.file[place]` takes half the time of opening a file
-        scales = [h5py.h5r.dereference(r, file) for places in attributes["DIMENSION_LIST"] for r in places]
+        scales = [
+            h5py.h5r.dereference(r, file) for references in attributes["DIMENSION_LIST"] for r in references
+        ]
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):
         raise changed from None
@@ -178,15 +180,15 @@ def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
         yield np.ascontiguousarray(data[...], data.dtype.newbyteorder("<"))
         return
     handle = data.file.id.get_vfd_handle()
-    for at in range(start, start + size, BYTES_PER_READ):
-        yield os.pread(handle, min(BYTES_PER_READ, start + size - at), at)
+    for offset in range(start, start + size, BYTES_PER_READ):
+        yield os.pread(handle, min(BYTES_PER_READ, start + size - offset), offset)
 
 
 def _plain_attributes(attributes: Mapping[str, Any]) -> dict[str, Any]:
     """Attributes as lists of numbers or texts by name, without attributes of HDF5, netCDF and the user."""
     names = (name for name in attributes if name not in UNDIGESTED_ATTRIBUTES and not is_user_added(name))
-    plain = {name: _attribute_as_list(attributes[name]) for name in names}
-    return {name: value for name, value in plain.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
+    values = {name: _attribute_as_list(attributes[name]) for name in names}
+    return {name: value for name, value in values.items() if (name, str(value)) != XARRAY_FILL_ATTRIBUTE}
 
 
 def _attribute_as_list(value: Any) -> Any:

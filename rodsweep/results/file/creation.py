@@ -87,13 +87,13 @@ def create_file(path: Path, plan: Plan) -> None:
     constants = plan.variables_from_config()
     with h5py.File(path, "w") as file:
         _write_parameters(file, plan)
-        for name, extent in plan.layout.extents.items():
-            _write_scale(file, name, plan.coordinates.get(name, np.arange(1, extent + 1)))
+        for name, length in plan.layout.extents.items():
+            _write_scale(file, name, plan.coordinates.get(name, np.arange(1, length + 1)))
         for variable in plan.layout.variables:
             data = _new_dataset(file, variable, plan.points.shape + plan.layout.point_shape(variable))
             _write_attributes(file, data, variable, (*plan.dimensions, *variable.extra))
         add_variables(file, constants)
-        add_variables(file, [filled for filled in plan.quantities if not is_axis(filled[0])])
+        add_variables(file, [entry for entry in plan.quantities if not is_axis(entry[0])])
         file["status"].attrs.update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
         file.attrs["program"] = PROGRAM
         file.attrs["format"] = FORMAT
@@ -102,14 +102,14 @@ def create_file(path: Path, plan: Plan) -> None:
         file.attrs.update(plan.attributes)
 
 
-def add_variables(file: h5py.File, filled: Sequence[FilledVariable]) -> None:
-    """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions. filled:
-    (variable, values) pairs.
+def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
+    """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions.
+    variables: (variable, values) pairs.
     """
-    for variable, values in filled:
-        for name, extent in zip(variable.extra, values.shape, strict=True):
+    for variable, values in variables:
+        for name, length in zip(variable.extra, values.shape, strict=True):
             if name not in file:
-                _write_scale(file, name, np.arange(1, extent + 1))
+                _write_scale(file, name, np.arange(1, length + 1))
         data = file.create_dataset(variable.name, data=values.astype(variable.dtype))
         _write_attributes(file, data, variable, variable.extra)
 
@@ -121,9 +121,9 @@ def _write_parameters(file: h5py.File, plan: Plan) -> None:
     for variable, values in plan.quantities:
         if is_axis(variable):
             _write_scale(file, variable.name, values, variable)
-    beside = [variable.name for variable, _ in plan.quantities if not is_axis(variable)]
-    if beside or not points.axes:
-        file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *beside])
+    dependent_names = [variable.name for variable, _ in plan.quantities if not is_axis(variable)]
+    if dependent_names or not points.axes:
+        file.attrs["coordinates"] = " ".join([*(() if points.axes else names), *dependent_names])
     if points.arm_axes:
         return
     if not points.is_grid:

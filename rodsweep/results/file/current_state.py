@@ -28,9 +28,9 @@ SNAPSHOT_ATTRIBUTE = "snapshot"
 ReadResult = TypeVar("ReadResult")
 
 
-def read_file_and_journals(path: Path, read: Callable[[], ReadResult]) -> ReadResult:
-    """Result of the function `read`, which reads a file and its journals, and is called again if the file was
-    replaced meanwhile.
+def read_file_and_journals(path: Path, read_result: Callable[[], ReadResult]) -> ReadResult:
+    """Result of the function `read_result`, which reads a file and its journals, and is called again if the
+    file was replaced meanwhile.
 
     A run that moves journalled points into the file replaces the file before the journals are deleted. If the
     file is unchanged after the reading, no journal was deleted meanwhile. Raises EnvironmentIncomplete if the
@@ -38,10 +38,10 @@ def read_file_and_journals(path: Path, read: Callable[[], ReadResult]) -> ReadRe
     """
     for _ in range(MAX_REREADS):
         has_journals = journal_directory(path).is_dir()
-        before = file_identity(path)
-        found = read()
-        if not has_journals or file_identity(path) == before:
-            return found
+        identity = file_identity(path)
+        result = read_result()
+        if not has_journals or file_identity(path) == identity:
+            return result
     raise EnvironmentIncomplete(f"{path} cannot be read, because a run keeps replacing it; try again")
 
 
@@ -50,15 +50,15 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
     status: statuses in the file, (points,).
     """
-    found = np.empty(0, header.layout.record_dtype)
+    records = np.empty(0, header.layout.record_dtype)
     directory = journal_directory(header.path)
     if not directory.is_dir():
-        return found
+        return records
     missing = status == MISSING_STATUS
     blocks = read_journals(directory, header.layout, header.fingerprint, len(status))
-    found = np.concatenate([found, *(block[missing[block["index"]]] for block in blocks)])
-    _, last = np.unique(found["index"][::-1], return_index=True)  # the last record of a point wins
-    return found[::-1][last]
+    records = np.concatenate([records, *(block[missing[block["index"]]] for block in blocks)])
+    _, last_indices = np.unique(records["index"][::-1], return_index=True)  # the last record of a point wins
+    return records[::-1][last_indices]
 
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:

@@ -25,22 +25,22 @@ MAX_BLOCK_BYTES = 1 << 26
 large."""
 
 
-def iterate_statuses(path: Path, at_once: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
+def iterate_statuses(path: Path, block_size: int | None = None) -> Iterator[tuple[int, np.ndarray]]:
     """Yields (flat index of the first point, statuses of n consecutive points, (n,)) until all points are
     read.
 
-    at_once: number of points per step; MAX_BLOCK_POINTS by default.
+    block_size: number of points per step; MAX_BLOCK_POINTS by default.
     """
     with h5py.File(path, "r") as file:
         data = file["status"]
         offset = data.id.get_offset()
         kind = data.dtype
         count = data.size
-    at_once = at_once or MAX_BLOCK_POINTS
+    block_size = block_size or MAX_BLOCK_POINTS
     with path.open("rb") as stream:
-        for first in range(0, count, at_once):
-            stream.seek(offset + first * kind.itemsize)
-            yield first, np.fromfile(stream, kind, min(at_once, count - first))
+        for start in range(0, count, block_size):
+            stream.seek(offset + start * kind.itemsize)
+            yield start, np.fromfile(stream, kind, min(block_size, count - start))
 
 
 def missing_ranges(path: Path) -> list[IndexRange]:
@@ -52,16 +52,16 @@ def missing_ranges(path: Path) -> list[IndexRange]:
     return merged_ranges(ranges)
 
 
-def records_to_add(path: Path, other: Path, layout: Layout) -> Iterator[np.ndarray]:
-    """Yields records, (n,), of points that the file `other` has and the file `path` lacks."""
-    at_once = _block_points(layout)
-    pairs = zip(iterate_statuses(path, at_once), iterate_statuses(other, at_once), strict=True)
+def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.ndarray]:
+    """Yields records, (n,), of points that the file `other_path` has and the file `path` lacks."""
+    block_size = _block_points(layout)
+    pairs = zip(iterate_statuses(path, block_size), iterate_statuses(other_path, block_size), strict=True)
     yield from _selected_records(
-        other,
+        other_path,
         layout,
         (
-            (first, (ours == MISSING_STATUS) & (theirs != MISSING_STATUS))
-            for (first, ours), (_, theirs) in pairs
+            (start, (own_status == MISSING_STATUS) & (other_status != MISSING_STATUS))
+            for (start, own_status), (_, other_status) in pairs
         ),
     )
 
@@ -70,7 +70,7 @@ def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
     blocks = iterate_statuses(path, _block_points(layout))
     yield from _selected_records(
-        path, layout, ((first, status != MISSING_STATUS) for first, status in blocks)
+        path, layout, ((start, status != MISSING_STATUS) for start, status in blocks)
     )
 
 
@@ -87,16 +87,16 @@ def _selected_records(
     changed = _changed_points(path, layout)
     offsets = _variable_offsets(path, layout)
     with path.open("rb") as stream:
-        for first, chosen in blocks:
-            selected = chosen & ~np.isin(first + np.arange(len(chosen)), changed)
-            if selected.any():
-                records = np.empty(selected.sum(), layout.record_dtype)
-                records["index"] = first + np.flatnonzero(selected)
+        for start, mask in blocks:
+            is_selected = mask & ~np.isin(start + np.arange(len(mask)), changed)
+            if is_selected.any():
+                records = np.empty(is_selected.sum(), layout.record_dtype)
+                records["index"] = start + np.flatnonzero(is_selected)
                 for name, offset in offsets.items():
                     kind = layout.record_dtype[name]
-                    stream.seek(offset + first * kind.itemsize)
-                    values = np.fromfile(stream, kind.base, len(selected) * prod(kind.shape))
-                    records[name] = values.reshape(len(selected), *kind.shape)[selected]
+                    stream.seek(offset + start * kind.itemsize)
+                    values = np.fromfile(stream, kind.base, len(is_selected) * prod(kind.shape))
+                    records[name] = values.reshape(len(is_selected), *kind.shape)[is_selected]
                 yield records
 
 
@@ -108,8 +108,8 @@ def records_at(path: Path, index: np.ndarray, layout: Layout) -> np.ndarray:
     with path.open("rb") as stream:
         for name, offset in offsets.items():
             kind = layout.record_dtype[name]
-            for i, place in enumerate(index):
-                stream.seek(offset + int(place) * kind.itemsize)
+            for i, position in enumerate(index):
+                stream.seek(offset + int(position) * kind.itemsize)
                 records[name][i] = np.fromfile(stream, kind.base, prod(kind.shape)).reshape(kind.shape)
     return records
 
@@ -133,13 +133,13 @@ def points_of_file(path: Path, layout: Layout) -> Points:
 def points_of_open_file(file: h5py.File, layout: Layout) -> Points:
     """All points of the sweep of an open result file, computed or missing."""
     names = layout.parameters
-    over = {name: file[name][...] for name in layout.arm_axes}
-    if not over:
+    axes = {name: file[name][...] for name in layout.arm_axes}
+    if not axes:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
     columns = tuple(
         np.broadcast_to(table, file["status"].shape).ravel() for table in grid_parameter_values(file, layout)
     )
-    return Points(names, columns, is_grid=False, arm_axes=over)
+    return Points(names, columns, is_grid=False, arm_axes=axes)
 
 
 def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
@@ -150,9 +150,9 @@ def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Itera
     varies along this axis only.
     """
     for name in layout.parameters:
-        along = [-1 if axis == name else 1 for axis in layout.arm_axes]
+        shape = [-1 if axis == name else 1 for axis in layout.arm_axes]
         table = variables[name][...]
-        yield table.reshape(along) if name in layout.arm_axes else table
+        yield table.reshape(shape) if name in layout.arm_axes else table
 
 
 def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
@@ -166,17 +166,17 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
     with path.open("r+b") as stream:
         for records in filter(len, blocks):
             any_written = True
-            ordered = records[
+            sorted_records = records[
                 np.argsort(records["index"], kind="stable")
             ]  # stable: the last record of a point wins
-            index = ordered["index"]
+            index = sorted_records["index"]
             edges = [0, *map(int, np.flatnonzero(np.diff(index) != 1) + 1), len(index)]
-            runs = [(a, b, int(index[a])) for a, b in pairwise(edges)]
+            runs = [(run_start, run_end, int(index[run_start])) for run_start, run_end in pairwise(edges)]
             for name, offset in offsets.items():
-                values = np.ascontiguousarray(ordered[name])
-                for a, b, first in runs:
+                values = np.ascontiguousarray(sorted_records[name])
+                for run_start, run_end, first in runs:
                     stream.seek(offset + first * values[0].nbytes)
-                    stream.write(values[a:b].data)
+                    stream.write(values[run_start:run_end].data)
     return any_written
 
 

@@ -63,18 +63,19 @@ def blas_kernels_in(attributes: Mapping[str, Any]) -> list[str]:
     return str(attributes.get(KERNELS_ATTRIBUTE, KERNEL_NOT_RECORDED)).splitlines()
 
 
-def merged_blas_kernels(*several: Iterable[str]) -> str:
-    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists `several`."""
-    return "\n".join(sorted({kernel for kernels in several for kernel in kernels}))
+def merged_blas_kernels(*kernel_texts: Iterable[str]) -> str:
+    """Value of KERNELS_ATTRIBUTE for a file with points computed by the kernels in the lists
+    `kernel_texts`."""
+    return "\n".join(sorted({kernel for kernels in kernel_texts for kernel in kernels}))
 
 
 def failure_sentence(failure: str) -> str:
     """Sentence about a failed point, whose parameters have at most nine significant digits: "failed, for
     example at F = 0.3, k1 = 200: no mesh ...". failure: stored text, "F=0.3, k1=200.0: failed no mesh ...".
     """
-    where, _, outcome = failure.partition(": ")
+    points_text, _, outcome = failure.partition(": ")
     status, _, message = outcome.partition(" ")
-    pairs = (pair.partition("=") for pair in where.split(", "))
+    pairs = (pair.partition("=") for pair in points_text.split(", "))
     point = ", ".join(f"{name} = {float(value):.9g}" for name, _, value in pairs)
     return f"{status}, for example at {point}" + f": {message}" * bool(message)
 
@@ -84,7 +85,7 @@ def failure_kind(line: str) -> str:
     return NUMBER_PATTERN.sub("#", line.partition(": ")[2])
 
 
-def joined_failure_reasons(*several: str) -> dict[str, str]:
+def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, joined from several values of this attribute; empty
     if there are no reasons.
 
@@ -92,19 +93,19 @@ def joined_failure_reasons(*several: str) -> dict[str, str]:
     MAX_ATTRIBUTE_LENGTH characters.
     """
     lines: dict[str, str] = {}
-    for line in "\n".join(several).splitlines():
+    for line in "\n".join(reason_texts).splitlines():
         lines.setdefault(failure_kind(line), line)
-    kept = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:MAX_ATTRIBUTE_LENGTH]
-    return {FAILURE_REASONS_ATTRIBUTE: kept} if kept else {}
+    text = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:MAX_ATTRIBUTE_LENGTH]
+    return {FAILURE_REASONS_ATTRIBUTE: text} if text else {}
 
 
-def with_failure_reasons(lines: Iterable[str], before: Mapping[str, Any]) -> dict[str, str]:
+def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
 
-    lines: lines of the new failures. before: attributes of the file, with the reasons of earlier runs.
+    lines: lines of the new failures. attributes: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
-    return joined_failure_reasons(*lines, str(before.get(FAILURE_REASONS_ATTRIBUTE, "")))
+    return joined_failure_reasons(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
 
 
 def kernels_sentence(attribute: str) -> str:
@@ -120,16 +121,18 @@ def kernels_sentence(attribute: str) -> str:
     )
 
 
-def merged_history(several: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file that describe the runs that computed its points. several: attributes of
-    each source.
+def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """Attributes of a merged file that describe the runs that computed its points. attribute_sets: attributes
+    of each source.
     """
     history: dict[str, Any] = {
         "shard": "",
-        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, several))[:MAX_ATTRIBUTE_LENGTH],
+        KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
     }
-    history |= joined_failure_reasons(*(str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in several))
-    runs = [attributes for attributes in several if "ranks" in attributes]
+    history |= joined_failure_reasons(
+        *(str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
+    )
+    runs = [attributes for attributes in attribute_sets if "ranks" in attributes]
     if not runs:
         return history
     hosts = {host for run in runs for host in str(run.get("hosts", "")).split()}

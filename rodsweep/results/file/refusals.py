@@ -38,10 +38,10 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
     try:
         return read_header(path)
     except InvalidResultFile as error:
-        ways = _remedies_clause(plan, journals)
+        remedies = _remedies_clause(plan, journals)
         if not is_rodsweep_file(path) and not journals_with_fingerprint(journals, plan.fingerprint):
-            ways = "choose another file with -o, or move this file away"
-        raise InputError(f"{error}; the file is left unchanged: {ways}") from None
+            remedies = "choose another file with -o, or move this file away"
+        raise InputError(f"{error}; the file is left unchanged: {remedies}") from None
 
 
 def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> None:
@@ -49,13 +49,13 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     the plan. journals: journal directory of the file.
     """
     change = config_change_text(header.config, plan.config)
-    ways = _remedies_clause(plan, journals)
+    remedies = _remedies_clause(plan, journals)
     try:
         extension_of(header, points_of_file(header.path, header.layout), plan)
-        ways += "; --extend computes only the missing points"
+        remedies += "; --extend computes only the missing points"
     except InputError:  # the plan lacks points or results of the file
         pass
-    raise InputError(f"{header.path} was made from another config ({change}); {ways}")
+    raise InputError(f"{header.path} was made from another config ({change}); {remedies}")
 
 
 def _remedies_clause(plan: Plan, journals: Path) -> str:

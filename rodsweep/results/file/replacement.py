@@ -34,17 +34,17 @@ def file_identity(path: Path) -> FileIdentity:
 
 
 @contextmanager
-def disk_refusals(path: Path, kept: Callable[[], str] = str) -> Iterator[None]:
+def disk_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[None]:
     """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete.
 
-    path: file that is written. kept: function that returns a clause, for the message, on the data that are
-    saved.
+    path: file that is written. kept_clause: function that returns a clause, for the message, on the data that
+    are saved.
     """
     try:
         yield
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or str(error).splitlines()[0]
-        raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept()}") from error
+        raise EnvironmentIncomplete(f"{path} cannot be written: {reason}{kept_clause()}") from error
 
 
 class FileReplacement:
@@ -125,10 +125,10 @@ class ResultFileLock:
 
     def release(self) -> None:
         """Releases the lock and removes the directory if it is empty."""
-        own = self.directory / "lock"
+        lock_path = self.directory / "lock"
         with suppress(OSError):  # the lock file was moved or deleted
-            if os.path.samestat(os.stat(own), os.fstat(self.handle)):
-                own.unlink()
+            if os.path.samestat(os.stat(lock_path), os.fstat(self.handle)):
+                lock_path.unlink()
         with suppress(OSError):  # the directory is not empty, or is a link made by the user
             self.directory.rmdir()
         os.close(self.handle)

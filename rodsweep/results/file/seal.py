@@ -46,13 +46,13 @@ def seal(path: Path) -> None:
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:
-        pieces = _large_pieces(file)
+        ranges = _large_pieces(file)
     with path.open("r+b") as stream:
         end = _hdf5_end(stream)
         stream.truncate(end)
-        frame = {"end": end, "pieces": pieces, "frame": _checksum(stream, _left_out_pieces(pieces, end))}
+        checksum = {"end": end, "pieces": ranges, "frame": _checksum(stream, _left_out_pieces(ranges, end))}
         stream.seek(end)
-        stream.write(CHECKSUM_HEAD + json.dumps(frame).encode() + b"\n")
+        stream.write(CHECKSUM_HEAD + json.dumps(checksum).encode() + b"\n")
 
 
 def has_valid_structure_checksum(path: Path) -> bool:
@@ -73,12 +73,14 @@ def has_valid_structure_checksum(path: Path) -> bool:
         if not data.startswith(CHECKSUM_HEAD) or not data.endswith(b"\n"):
             raise BrokenSeal("its checksum cannot be read")
         try:
-            given = json.loads(data[len(CHECKSUM_HEAD) :])
-            pieces = [(int(start), int(length)) for start, length in given["pieces"]]
-            whole = given["end"] == end and given["frame"] == _checksum(stream, _left_out_pieces(pieces, end))
+            stored = json.loads(data[len(CHECKSUM_HEAD) :])
+            ranges = [(int(start), int(length)) for start, length in stored["pieces"]]
+            is_valid = stored["end"] == end and stored["frame"] == _checksum(
+                stream, _left_out_pieces(ranges, end)
+            )
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
             raise BrokenSeal("its checksum cannot be read") from None
-    if not whole:
+    if not is_valid:
         raise BrokenSeal("its content differs from its checksum")
     return True
 
@@ -86,37 +88,37 @@ def has_valid_structure_checksum(path: Path) -> bool:
 def _hdf5_end(stream: BinaryIO) -> int:
     """Offset of HDF5's own end of the file, in bytes, from the superblock."""
     stream.seek(0)
-    head = stream.read(64)
-    if not head.startswith(HDF5_SIGNATURE) or len(head) < 64 or head[8] not in END_OFFSETS:
+    header = stream.read(64)
+    if not header.startswith(HDF5_SIGNATURE) or len(header) < 64 or header[8] not in END_OFFSETS:
         raise BrokenSeal("it is not HDF5")
-    at = END_OFFSETS[head[8]]
-    return int.from_bytes(head[at : at + 8], "little")
+    offset = END_OFFSETS[header[8]]
+    return int.from_bytes(header[offset : offset + 8], "little")
 
 
 def _large_pieces(file: h5py.File) -> list[ByteRange]:
     """Byte ranges of the numbers of contiguous variables larger than MAX_INCLUDED_BYTES, in order."""
     variables = [data for data in map(file.get, file) if isinstance(data, h5py.Dataset)]
-    places = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
-    return sorted((start, size) for start, size in places if start is not None and size > MAX_INCLUDED_BYTES)
+    ranges = {(data.id.get_offset(), data.id.get_storage_size()) for data in variables}
+    return sorted((start, size) for start, size in ranges if start is not None and size > MAX_INCLUDED_BYTES)
 
 
-def _left_out_pieces(pieces: list[ByteRange], end: int) -> Iterator[ByteRange]:
-    """Yields the byte ranges from 0 to `end` that the sorted byte ranges `pieces` leave out."""
-    at = 0
-    for start, size in [*pieces, (end, 0)]:
-        if not 0 <= at <= start <= end:
+def _left_out_pieces(ranges: list[ByteRange], end: int) -> Iterator[ByteRange]:
+    """Yields the byte ranges from 0 to `end` that the sorted byte ranges `ranges` leave out."""
+    position = 0
+    for start, size in [*ranges, (end, 0)]:
+        if not 0 <= position <= start <= end:
             raise BrokenSeal("its checksum cannot be read")
-        yield at, start - at
-        at = start + size
+        yield position, start - position
+        position = start + size
 
 
-def _checksum(stream: BinaryIO, pieces: Iterator[ByteRange]) -> int:
+def _checksum(stream: BinaryIO, ranges: Iterator[ByteRange]) -> int:
     """CRC-32 of consecutive byte ranges of a file."""
     checksum = 0
-    for start, size in pieces:
+    for start, size in ranges:
         stream.seek(start)
-        left = size
-        while left and (block := stream.read(min(left, BYTES_PER_READ))):
+        remaining = size
+        while remaining and (block := stream.read(min(remaining, BYTES_PER_READ))):
             checksum = zlib.crc32(block, checksum)
-            left -= len(block)
+            remaining -= len(block)
     return checksum

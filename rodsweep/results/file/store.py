@@ -47,11 +47,11 @@ BACKUP_GLOB = "before-*.h5"
 class Store:
     """Result file of one run. Only the first rank has a store, and only one run at a time can open a file."""
 
-    def __init__(self, path: Path, plan: Plan, fresh: bool = False, extend: bool = False):
+    def __init__(self, path: Path, plan: Plan, replaces: bool = False, extends: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
 
-        fresh: whether to replace an existing result file of any plan. extend: whether to extend the file of a
-        smaller config to the plan, reusing its points where possible.
+        replaces: whether to replace an existing result file of any plan. extends: whether to extend the file
+        of a smaller config to the plan, reusing its points where possible.
         """
         self.path = path
         self.plan = plan
@@ -61,41 +61,41 @@ class Store:
             self.replacement = FileReplacement(path)
             self.journal_directory = self.replacement.journal_directory
             try:
-                self._open(fresh, extend)
+                self._open(replaces, extends)
             except BaseException:
                 self.close()
                 raise
 
-    def _open(self, fresh: bool, extend: bool) -> None:
+    def _open(self, replaces: bool, extends: bool) -> None:
         """Creates, replaces, continues or extends the file, or refuses it; moves other journals away."""
-        if fresh or not self.path.exists():
-            self._create(fresh)
+        if replaces or not self.path.exists():
+            self._create(replaces)
         else:
             header = self._header()
             if header.fingerprint == self.plan.fingerprint:
                 snapshot = {SNAPSHOT_ATTRIBUTE: ""} if self.attributes().get(SNAPSHOT_ATTRIBUTE) else {}
                 self.add_journals(self._changed_text_attributes() | snapshot)
-            elif extend:
+            elif extends:
                 self._extend(header)
             else:
                 require_same_config(header, self.plan, self.journal_directory)
-        other = journals_without_fingerprint(self.journal_directory, self.plan.fingerprint)
-        self._set_aside(other, "journals that do not match the config and its points")
+        foreign_journals = journals_without_fingerprint(self.journal_directory, self.plan.fingerprint)
+        self._set_aside(foreign_journals, "journals that do not match the config and its points")
         delete_matching_files(self.journal_directory, JOURNAL_GLOB)  # the remaining journals have no points
 
-    def _create(self, fresh: bool) -> None:
-        """Creates the file of the plan, with the points of its journals unless `fresh`; raises InputError."""
+    def _create(self, replaces: bool) -> None:
+        """Creates the file of the plan, with its journals' points unless `replaces`; raises InputError."""
         if self.path.exists() and not is_rodsweep_file(self.path):
             raise InputError(f"{self.path} is not a result file, so --fresh does not replace it")
         require_room(self.path, self.plan)
-        own = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
-        if fresh:
+        own_journals = journals_with_fingerprint(self.journal_directory, self.plan.fingerprint)
+        if replaces:
             delete_matching_files(self.journal_directory, CHECKPOINT_GLOB)
-            self._set_aside(own, "journals that --fresh does not use")
+            self._set_aside(own_journals, "journals that --fresh does not use")
         self._set_aside(sorted(self.journal_directory.glob(BACKUP_GLOB)), "points from before an extension")
         with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
-        if own and not fresh:
+        if own_journals and not replaces:
             self.add_journals({})
             self.notes.append("the file was missing; a new file holds the points of its journal")
 
@@ -105,19 +105,20 @@ class Store:
         require_room(self.path, self.plan)
         blocks = read_journals(self.journal_directory, header.layout, header.fingerprint, header.points)
         self._add_blocks(blocks, header.layout, header.fingerprint, {})
-        done = header.points - index_count(self.missing())
+        stored_count = header.points - index_count(self.missing())
         history = merged_history([header.attributes])
         with self.replacement.replacing(None) as copy:
             create_file(copy, self.plan)
-            any_kept = write_records(copy, extension.reused_records(), self.plan.layout)
-            anew = done - (self.plan.points.count - index_count(missing_ranges(copy)))
-            if any_kept:
+            has_reused = write_records(copy, extension.reused_records(), self.plan.layout)
+            lost_count = stored_count - (self.plan.points.count - index_count(missing_ranges(copy)))
+            if has_reused:
                 with h5py.File(copy, "r+") as file:
                     file.attrs.update(history)
-            if anew:
-                before = self._back_up_file()
+            if lost_count:
+                backup = self._back_up_file()
                 self.notes.append(
-                    f"{anew} of {done} stored points are computed again; until then {before} has their values"
+                    f"{lost_count} of {stored_count} stored points are computed again; until then {backup} "
+                    "has their values"
                 )
         delete_matching_files(self.journal_directory, CHECKPOINT_GLOB)
         self.add_journals({})
@@ -130,10 +131,10 @@ class Store:
         shutil.copyfile(self.path, copy)
         return copy
 
-    def _set_aside(self, paths: Sequence[Path], what: str) -> None:
-        """Moves `paths` out of the journal directory, and notes the new place. what: noun for the files."""
+    def _set_aside(self, paths: Sequence[Path], noun: str) -> None:
+        """Moves `paths` out of the journal directory, and notes the new place. noun: noun for the files."""
         if paths:
-            self.notes.append(f"{what} are kept in {move_journals_aside(self.journal_directory, paths)}")
+            self.notes.append(f"{noun} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
     def _changed_text_attributes(self) -> dict[str, Any]:
         """Attributes to change if config and file differ in title or config text; empty otherwise."""
@@ -204,20 +205,20 @@ class Store:
         """
         with disk_refusals(self.path, self._journalled_points_clause):
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
-            first = next(blocks, None)
+            first_block = next(blocks, None)
             reasons = read_reasons(self.journal_directory, layout, fingerprint)
             reasons += additions.reasons if additions else ()
-            if first is not None or attributes:
+            if first_block is not None or attributes:
                 with self.replacement.replacing(self.path) as copy:
-                    if first is not None:
-                        write_records(copy, chain([first], blocks), layout)
+                    if first_block is not None:
+                        write_records(copy, chain([first_block], blocks), layout)
                     if additions:
                         write_records(copy, [records_of_points(additions.changed_points, layout)], layout)
                     if attributes or reasons:
                         with h5py.File(copy, "r+") as file:
                             if additions:
-                                own = self.plan.variables_from_points(file)
-                                add_variables(file, (*additions.variables, *own))
+                                point_variables = self.plan.variables_from_points(file)
+                                add_variables(file, (*additions.variables, *point_variables))
                             file.attrs.update(attributes | with_failure_reasons(reasons, file.attrs))
             for journal in journals:
                 journal.unlink(missing_ok=True)
@@ -243,7 +244,7 @@ class Store:
 
     def _header(self) -> ResultHeader:
         """Header of the existing file; raises InputError if the file is not a complete result."""
-        left = file_identity(self.path)
+        identity = file_identity(self.path)
         header = header_of_existing_file(self.path, self.plan, self.journal_directory)
-        self.replacement.last_identity = left
+        self.replacement.last_identity = identity
         return header

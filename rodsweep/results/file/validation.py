@@ -140,19 +140,19 @@ def escape_control_characters(value: Any) -> Any:
 
 def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
     """Raises InputError for a file whose format differs from FORMAT. attributes: attributes of the file."""
-    found = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF stores a list of one number
+    format_number = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF stores a list of one number
     version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
     writer = f"{version}, commit {commit[:12]}"
-    if found > FORMAT:
+    if format_number > FORMAT:
         raise InputError(
-            f"{path} has format {found}, written by rodsweep {writer}; rodsweep {__version__} "
+            f"{path} has format {format_number}, written by rodsweep {writer}; rodsweep {__version__} "
             f"reads format {FORMAT}: update rodsweep"
         )
-    if found < FORMAT:
+    if format_number < FORMAT:
         raise InputError(
-            f"{path} was written by an earlier rodsweep ({writer}) in format {found}, and this rodsweep "
-            f"reads format {FORMAT}: read the file with that version, or compute it again, with --fresh or "
-            "into another file"
+            f"{path} was written by an earlier rodsweep ({writer}) in format {format_number}, and this "
+            f"rodsweep reads format {FORMAT}: read the file with that version, or compute it again, with "
+            "--fresh or into another file"
         )
 
 
@@ -163,7 +163,7 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
     """
     shape = tuple(len(file[name]) for name in layout.dimensions(is_list="point" in file))
     expected = {v.name: (shape + layout.point_shape(v), np.dtype(v.dtype)) for v in layout.variables}
-    expected |= {name: ((extent,), file[name].dtype) for name, extent in layout.extents.items()}
+    expected |= {name: ((length,), file[name].dtype) for name, length in layout.extents.items()}
     for name, (extents, kind) in expected.items():
         data = file[name]
         if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:

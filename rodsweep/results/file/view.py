@@ -83,8 +83,8 @@ class View:
     @property
     def config(self) -> dict[str, Any]:
         """The resolved config; empty if the file has none."""
-        resolved: dict[str, Any] = json.loads(self.attributes.get("config_resolved", "{}"))
-        return resolved
+        tree: dict[str, Any] = json.loads(self.attributes.get("config_resolved", "{}"))
+        return tree
 
     @property
     def is_grid(self) -> bool:
@@ -118,9 +118,9 @@ class View:
         if not self.arm_axes:
             return self
         shape = self.variables["status"].shape
-        found = {name: self._listed(name, shape) for name in self.variables}
-        found["point"] = np.arange(1, self.variables["status"].size + 1)
-        return replace(self, variables=found, arm_axes=())
+        variables = {name: self._listed(name, shape) for name in self.variables}
+        variables["point"] = np.arange(1, self.variables["status"].size + 1)
+        return replace(self, variables=variables, arm_axes=())
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
         """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
@@ -129,8 +129,8 @@ class View:
         """
         values = self.variables[name]
         if name in self.arm_axes:
-            along = [-1 if axis == name else 1 for axis in self.arm_axes]
-            return np.broadcast_to(values.reshape(along), shape).ravel()
+            axes_shape = [-1 if axis == name else 1 for axis in self.arm_axes]
+            return np.broadcast_to(values.reshape(axes_shape), shape).ravel()
         n = len(shape)
         return values.reshape(-1, *values.shape[n:]) if values.shape[:n] == shape else values
 
@@ -139,9 +139,9 @@ class View:
         """Name of the status of every point, (points,)."""
         return np.array([self.flags.get(int(s), "missing") for s in self.variables["status"].ravel()])
 
-    def has_status(self, *words: str) -> NDArray[np.bool_]:
-        """Mask of the points whose status has one of the names `words`, with the shape of `status`."""
-        values = [value for value, word in self.flags.items() if word in words]
+    def has_status(self, *statuses: str) -> NDArray[np.bool_]:
+        """Mask of the points whose status has one of the names `statuses`, with the shape of `status`."""
+        values = [value for value, word in self.flags.items() if word in statuses]
         return np.isin(self.variables["status"], values)
 
     @property
@@ -199,7 +199,7 @@ def _view(path: Path) -> View:
         recent = journalled_points(header, status[...].ravel())
         variables = FileVariables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)
-        typed = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
+        units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout
     attributes = header.attributes | journalled_reasons(header)
-    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, typed)
+    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units)

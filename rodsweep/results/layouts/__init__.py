@@ -54,8 +54,8 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
 
     is_grid: whether the points are a grid. `extra` of these variables has all their dimensions.
     """
-    found = SWEEP_WIDE_VARIABLE_MAKERS.get(config["task"])
-    return found(config, is_grid) if found else ()
+    make_variables = SWEEP_WIDE_VARIABLE_MAKERS.get(config["task"])
+    return make_variables(config, is_grid) if make_variables else ()
 
 
 def lacks_sweep_wide_variables(attributes: Mapping[str, Any]) -> bool:

@@ -82,8 +82,8 @@ def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Vari
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
     variable.
     """
-    as_force = load_kind_of(config["parameters"]["arm"]) == "force"
-    units = ((variable, _stored_si_unit(variable, as_force).unit) for variable in layout.variables)
+    is_force = load_kind_of(config["parameters"]["arm"]) == "force"
+    units = ((variable, _stored_si_unit(variable, is_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
 
 
@@ -91,9 +91,9 @@ def si_name_of(name: str, unit: str) -> str:
     """Name of the variable in the SI unit `unit` for the variable `name`; F becomes "pressure" or "force"."""
     if name in EVENT_FREQUENCIES:
         return EVENT_FREQUENCIES[name]
-    words = name.split("_")
-    if unit in LOAD_OF_UNIT and "F" in words:
-        return "_".join(LOAD_OF_UNIT[unit] if word == "F" else word for word in words)
+    parts = name.split("_")
+    if unit in LOAD_OF_UNIT and "F" in parts:
+        return "_".join(LOAD_OF_UNIT[unit] if word == "F" else word for word in parts)
     return name + (HERTZ_SUFFIX if unit == HERTZ else SI_SUFFIX)
 
 
@@ -104,42 +104,42 @@ def _si_meaning(variable: Variable, unit: str) -> str:
     if unit != HERTZ:
         return f"{variable.long_name}; in SI units"
     # The clause after the comma defines the angular frequency.
-    words = variable.long_name.removeprefix("angular ").partition(",")[0]
-    return f"{words}; in cycles per second"
+    noun = variable.long_name.removeprefix("angular ").partition(",")[0]
+    return f"{noun}; in cycles per second"
 
 
-def _stored_si_unit(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit in which a variable is also stored, or NO_UNIT. as_force: whether the load is a force."""
-    return si_unit_of(variable, as_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
+def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
+    """SI unit in which a variable is also stored, or NO_UNIT. is_force: whether the load is a force."""
+    return si_unit_of(variable, is_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
-def si_unit_of(variable: Variable, as_force: bool) -> SIUnit:
-    """SI unit of a dimensionless variable, or NO_UNIT; as_force: whether the arm's load is a force."""
+def si_unit_of(variable: Variable, is_force: bool) -> SIUnit:
+    """SI unit of a dimensionless variable, or NO_UNIT; is_force: whether the arm's load is a force."""
     if variable.dtype != "<f8":
         return NO_UNIT
     if variable.units == PARAMETERS["F"].unit and (
         "F" in variable.name.split("_") or variable.name in FORCE_VARIABLES_OF_BRANCHES
     ):
-        return FORCE_UNITS["force" if as_force else "pressure"]
+        return FORCE_UNITS["force" if is_force else "pressure"]
     return SI_UNIT_BY_DIMENSIONLESS_UNIT.get(variable.units, NO_UNIT)
 
 
 def si_variable(
-    variable: Variable, values: Array, quantities: Mapping[str, Array], as_force: bool
+    variable: Variable, values: Array, quantities: Mapping[str, Array], is_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the arm's quantities by name, () or (n,) each. as_force: whether the load is a force."""
-    si = si_unit_of(variable, as_force)
-    made = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
-    return made, values * si.scale(quantities)
+    quantities: the arm's quantities by name, () or (n,) each. is_force: whether the load is a force."""
+    si = si_unit_of(variable, is_force)
+    converted = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
+    return converted, values * si.scale(quantities)
 
 
 def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the axes of a grid over an arm's quantities in a resolved config; else empty."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
-    ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
-    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
+    multi_valued = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
+    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in multi_valued.items()}
     return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
@@ -158,11 +158,12 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...
         )
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
-    own = points.units | {name: column for name, column in points.columns_by_name.items() if name not in axes}
+    columns = points.units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
+    shape = points.shape
     return (
         *(_si_variable(arm, name, values, (name,)) for name, values in axes.items()),
         *(_si_variable(arm, name, value, ()) for name, value in numbers.items()),
-        *(_si_variable(arm, name, column.reshape(points.shape), tuple(axes)) for name, column in own.items()),
+        *(_si_variable(arm, n, column.reshape(shape), tuple(axes)) for n, column in columns.items()),
     )
 
 
@@ -182,12 +183,14 @@ def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -
     if not points.arm_axes:
         return {variable.name: values for variable, values in quantities}
     dimensions = tuple(points.arm_axes)
-    found = {}
+    result = {}
     for variable, values in quantities:
-        place = [slice(None) if name in variable.extra else None for name in dimensions]
-        whole = np.broadcast_to(values[tuple(place)], points.shape).ravel() if variable.extra else values
-        found[variable.name] = whole
-    return found
+        index = [slice(None) if name in variable.extra else None for name in dimensions]
+        values_at_points = (
+            np.broadcast_to(values[tuple(index)], points.shape).ravel() if variable.extra else values
+        )
+        result[variable.name] = values_at_points
+    return result
 
 
 def si_values(
@@ -195,22 +198,22 @@ def si_values(
     index: int | NDArray[np.int64],
     layout: Layout,
     quantities: Mapping[str, NDArray[Any]],
-    as_force: bool,
+    is_force: bool,
 ) -> dict[str, Any]:
     """Values of the SI variables, by name, of one point or of n points.
 
     record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
-    (n,). quantities: the arm's quantities by name, () or (points,) each. as_force: whether the load is a
+    (n,). quantities: the arm's quantities by name, () or (points,) each. is_force: whether the load is a
     force.
     """
-    found = {}
+    values = {}
     for variable in layout.variables:
-        si = _stored_si_unit(variable, as_force)
+        si = _stored_si_unit(variable, is_force)
         if si.unit:
-            used = {name: quantities[name] for name in (*si.factors, *si.divisors)}
-            at_index = {name: array[index] if np.ndim(array) else array for name, array in used.items()}
+            needed = {name: quantities[name] for name in (*si.factors, *si.divisors)}
+            at_index = {name: array[index] if np.ndim(array) else array for name, array in needed.items()}
             value = np.asarray(record[variable.name])
             scale = si.scale(at_index)
             shape = scale.shape + (1,) * (value.ndim - scale.ndim)
-            found[si_name_of(variable.name, si.unit)] = value * scale.reshape(shape)
-    return found
+            values[si_name_of(variable.name, si.unit)] = value * scale.reshape(shape)
+    return values

@@ -122,7 +122,7 @@ def _list_length_rule(name: str) -> ExtensionRule:
 
     A stored list that is not full already has all items.
     """
-    return ExtensionRule(lambda records, before: records[name] < before)
+    return ExtensionRule(lambda records, old: records[name] < old)
 
 
 OPTION_EXTENSION_RULES = {

@@ -67,9 +67,9 @@ OPTION_EXTENSION_RULES = {"crossings": CROSSING_LIST_EXTENSION_RULE, "certify": 
 def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task criticality, for a resolved config."""
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
-    after = [v.name for v in search].index("unstable_after") + 1
+    position = [v.name for v in search].index("unstable_after") + 1
     variables = with_certified_meaning(
-        (*search[:after], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[after:]),
+        (*search[:position], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[position:]),
         config,
         "Hopf points",
     )

@@ -114,7 +114,7 @@ HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
     """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
-    at = "at the Hopf point"
+    place_clause = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
     return (
         *along_dimension(
@@ -124,13 +124,17 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
                 "parameter along which the Hopf point was found, between points of a line",
                 TRANSVERSE_PARAMETERS,
             ),
-            word("hopf_kind", f"change of stability {at} as the parameter hopf_along grows", kinds),
+            word("hopf_kind", f"change of stability {place_clause} as the parameter hopf_along grows", kinds),
             *(
-                real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {at}")
+                real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {place_clause}")
                 for p in TRANSVERSE_PARAMETERS
                 if p in names
             ),
-            real("hopf_error", "1", f"estimate of the relative error of the parameter hopf_along {at}"),
+            real(
+                "hopf_error",
+                "1",
+                f"estimate of the relative error of the parameter hopf_along {place_clause}",
+            ),
             real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
             real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
             integer(
@@ -160,11 +164,11 @@ OPTION_EXTENSION_RULES = dict.fromkeys(
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of the Hopf points on the lines of points in the file of a resolved config. is_grid: not
     used."""
-    found = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))
+    variables = hopf_point_variables((*LINEAR_PARAMETERS, *optional_parameters_in(config)))
     if has_standard_rods(config):
-        return found
+        return variables
     meaning = "number of searched lines whose list of Hopf points is confirmed by counts of unstable modes"
-    return with_meaning(found, "hopf_lines_proved", meaning)
+    return with_meaning(variables, "hopf_lines_proved", meaning)
 
 
 def layout(config: dict[str, Any]) -> Layout:

@@ -113,7 +113,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
     line: parameter along the row.
     """
     unit = PARAMETERS[line].unit
-    at = "at the special point"
+    place_clause = "at the special point"
     error = "estimate of the relative error of cycle_special_"
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
@@ -121,10 +121,10 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
         *along_dimension(
             CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
-            real(f"cycle_special_{line}", unit, f"{line} {at}"),
+            real(f"cycle_special_{line}", unit, f"{line} {place_clause}"),
             real("cycle_special_error", unit, f"estimate of the absolute error of cycle_special_{line}"),
-            real("cycle_special_period", "tau2", f"period of the cycle {at}"),
-            real("cycle_special_tip_y_max", "L", f"largest y of the tip {at}; 0 at a Hopf point"),
+            real("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
+            real("cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"),
             real("cycle_special_period_error", "1", f"{error}period"),
             real("cycle_special_tip_y_max_error", "1", f"{error}tip_y_max"),
         ),
@@ -134,19 +134,19 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
     line, row: as in `curve_variables`."""
-    at = "cycle_curve_point"
+    dimension = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
     error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
     variables = (
-        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", at),
-        word("cycle_curve_kind", kind, SPECIAL_KINDS, at),
-        real(f"cycle_curve_{line}", force, f"{line} on the curve", at),
-        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", at),
-        real("cycle_curve_error", force, error, at),
-        real("cycle_curve_period", "tau2", "period of the cycle on the curve", at),
-        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", at),
-        *end_variables("cycle_curve", CYCLE_CURVE_ENDS, at),
+        integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", dimension),
+        word("cycle_curve_kind", kind, SPECIAL_KINDS, dimension),
+        real(f"cycle_curve_{line}", force, f"{line} on the curve", dimension),
+        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", dimension),
+        real("cycle_curve_error", force, error, dimension),
+        real("cycle_curve_period", "tau2", "period of the cycle on the curve", dimension),
+        real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", dimension),
+        *end_variables("cycle_curve", CYCLE_CURVE_ENDS, dimension),
         real("cycle_curve_agreement", "1", "largest distance of a fold or torus point of a row from its "
              f"curve along {line}, as a fraction of the range of {line}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
@@ -154,15 +154,15 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     return {variable.name: variable for variable in variables}
 
 
-def end_variables(curve: str, reasons: Iterable[str], along_dimension: str) -> tuple[Variable, Variable]:
+def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[Variable, Variable]:
     """Variables with the reasons why curves begin and end, along the points of the curves.
 
-    curve: prefix of the names. along_dimension: dimension of the points.
+    curve: prefix of the names. dimension: dimension of the points.
     """
     reasons = tuple(reasons)
     return (
-        word(f"{curve}_start", "why the curve begins at the point", reasons, along_dimension),
-        word(f"{curve}_end", "why the curve ends at the point", reasons, along_dimension),
+        word(f"{curve}_start", "why the curve begins at the point", reasons, dimension),
+        word(f"{curve}_end", "why the curve ends at the point", reasons, dimension),
     )
 
 
@@ -236,15 +236,15 @@ def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variabl
     the curves.
     """
     names = (line, row, third)
-    at = "bautin_step"
+    step = "bautin_step"
     unit = {name: PARAMETERS[name].unit for name in names}
     error = "estimate of the error of bautin_along_"
     variables = (
-        integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", at),
-        *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", at) for name in names),
-        *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", at) for name in names),
-        real("bautin_along_frequency", ANGULAR_UNIT, "angular frequency of the pair", at),
-        real("bautin_along_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c", at),
-        *end_variables("bautin_along", BAUTIN_ENDS, at),
+        integer("bautin_along_curve", "number of the curve of generalised Hopf points, from 1", step),
+        *(real(f"bautin_along_{name}", unit[name], f"{name} where Re c = 0", step) for name in names),
+        *(real(f"bautin_along_{name}_error", unit[name], f"{error}{name}", step) for name in names),
+        real("bautin_along_frequency", ANGULAR_UNIT, "angular frequency of the pair", step),
+        real("bautin_along_landau_imag", LANDAU_UNIT, "imaginary part of the Landau coefficient c", step),
+        *end_variables("bautin_along", BAUTIN_ENDS, step),
     )
     return {variable.name: variable for variable in variables}

@@ -11,8 +11,8 @@ from .variables import Variable
 def optional_parameters_in(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the optional parameters that have an axis or a column in a resolved config."""
     parameters = config["parameters"]
-    given = (*parameters, *parameters.get("columns", ()))
-    return tuple(name for name in OPTIONAL_PARAMETERS if name in given)
+    names = (*parameters, *parameters.get("columns", ()))
+    return tuple(name for name in OPTIONAL_PARAMETERS if name in names)
 
 
 def estimates_counts(config: Mapping[str, Any]) -> bool:
@@ -35,8 +35,8 @@ def has_standard_rods(config: Mapping[str, Any]) -> bool:
 
 def has_linear_law(config: Mapping[str, Any]) -> bool:
     """Whether all rods of a resolved config have the linear constitutive law."""
-    stated = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
-    return all(each.get("law", "linear") == "linear" for each in stated)
+    sections = (config.get("material", {}), config.get("parameters", {}).get("arm", {}))
+    return all(section.get("law", "linear") == "linear" for section in sections)
 
 
 def with_certified_meaning(

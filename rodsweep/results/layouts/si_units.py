@@ -30,8 +30,10 @@ class SIUnit(NamedTuple):
         """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
         or (n,) each.
         """
-        up, down = (prod(quantities[name] for name in names) for names in (self.factors, self.divisors))
-        return np.asarray(up / (2 * np.pi * down if self.unit == HERTZ else down))
+        numerator, denominator = (
+            prod(quantities[name] for name in names) for names in (self.factors, self.divisors)
+        )
+        return np.asarray(numerator / (2 * np.pi * denominator if self.unit == HERTZ else denominator))
 
 
 NO_UNIT = SIUnit()
@@ -52,5 +54,5 @@ FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOA
 def load_kind_of(arm: Mapping[str, Any]) -> str:
     """Kind of the loads in the results of an arm: "force" or "pressure". arm: section `parameters.arm` of a
     resolved config."""
-    given = next((LOAD_OF_RATIO.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
-    return str(arm.get("load_kind") or given)
+    load = next((LOAD_OF_RATIO.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
+    return str(arm.get("load_kind") or load)

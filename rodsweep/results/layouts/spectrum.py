@@ -73,27 +73,29 @@ EIGENVECTOR_VARIABLES = (
 )
 
 
-def longitudinal_variables(gamma1: float, *along: str, in_closed_form: bool = True) -> tuple[Variable, ...]:
-    """Variables of the longitudinal eigenvalues, with an error estimate unless `in_closed_form`: the
-    eigenvalues then have a closed form. gamma1: axial drag of all rods. along: dimensions of the parameters
-    on which the rates depend, or the dimension of all points.
+def longitudinal_variables(
+    gamma1: float, *dimensions: str, is_closed_form: bool = True
+) -> tuple[Variable, ...]:
+    """Variables of the longitudinal eigenvalues, with an error estimate unless `is_closed_form`: the
+    eigenvalues then have a closed form. gamma1: axial drag of all rods. dimensions: dimensions of the
+    parameters on which the rates depend, or the dimension of all points.
     """
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
-    rate = real("longitudinal_rate", "1/tau2", meaning, *along, "mode")
+    rate = real("longitudinal_rate", "1/tau2", meaning, *dimensions, "mode")
     error = "estimate of the relative error of longitudinal_rate"
-    return (rate,) if in_closed_form else (rate, real("longitudinal_error", "1", error, *along, "mode"))
+    return (rate,) if is_closed_form else (rate, real("longitudinal_error", "1", error, *dimensions, "mode"))
 
 
-def longitudinal_parameters(in_closed_form: bool, linear: bool) -> tuple[str, ...]:
+def longitudinal_parameters(is_closed_form: bool, linear: bool) -> tuple[str, ...]:
     """Names of the parameters, besides gamma1, on which the longitudinal eigenvalues depend.
 
-    in_closed_form: whether every arm is uniform and of linear material. linear: whether the material is
+    is_closed_form: whether every arm is uniform and of linear material. linear: whether the material is
     linear, so that the rates do not depend on F.
     """
-    if in_closed_form:
+    if is_closed_form:
         return ("k1",)
-    of_the_arm = ("k1", "taper")
-    return of_the_arm if linear else ("F", *of_the_arm)
+    arm_parameters = ("k1", "taper")
+    return arm_parameters if linear else ("F", *arm_parameters)
 
 
 CHANGE_DIMENSION = "change"
@@ -128,11 +130,11 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGE_VARIABLES
-    in_closed_form = has_standard_rods(config)
-    names = longitudinal_parameters(in_closed_form, has_linear_law(config))
-    along = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
+    is_closed_form = has_standard_rods(config)
+    names = longitudinal_parameters(is_closed_form, has_linear_law(config))
+    dimensions = [name for name in names if name in config["parameters"]] if is_grid else ["point"]
     return (
-        *longitudinal_variables(float(gamma1), *along, in_closed_form=in_closed_form),
+        *longitudinal_variables(float(gamma1), *dimensions, is_closed_form=is_closed_form),
         *FORCE_CHANGE_VARIABLES,
     )
 

@@ -51,30 +51,31 @@ HOPF_CROSSING_CODES = tuple(map(CROSSING_KINDS.index, ("hopf", "hopf_reverse", "
 may change."""
 
 
-def crossing_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of the crossings along the parameter `line`. at: name of the variable with the value of this
-    parameter at a crossing.
+def crossing_variables(line: str, position_name: str) -> tuple[Variable, ...]:
+    """Variables of the crossings along the parameter `line`. position_name: name of the variable with the
+    value of this parameter at a crossing.
     """
     units = PARAMETERS[line].unit
     return (
-        real(at, units, f"{line} at the crossing", "crossing"),
+        real(position_name, units, f"{line} at the crossing", "crossing"),
         word("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
         real("crossing_frequency", ANGULAR_UNIT, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
-        real("crossing_error", units, f"estimate of the absolute error of {at}", "crossing"),
+        real("crossing_error", units, f"estimate of the absolute error of {position_name}", "crossing"),
         integer(
             "unstable_after", "number of modes with positive growth rate beyond the crossing", "crossing"
         ),
     )
 
 
-def search_variables(line: str, at: str) -> tuple[Variable, ...]:
-    """Variables of a search for crossings along the parameter `line`; at: as in `crossing_variables`."""
+def search_variables(line: str, position_name: str) -> tuple[Variable, ...]:
+    """Variables of a search for crossings along the parameter `line`; position_name: as in
+    `crossing_variables`."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
     return (
         integer("crossing_count", "number of crossings found, stored or not"),
-        *crossing_variables(line, at),
+        *crossing_variables(line, position_name),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
         boolean("certified", "whether the list of crossings is proved complete in the searched range"),

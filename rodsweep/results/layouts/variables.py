@@ -76,9 +76,9 @@ class Variable:
     @property
     def attributes(self) -> dict[str, Any]:
         """Attributes of the variable in a result file, by name."""
-        typed = {TYPED_UNIT: self.typed_unit} if self.typed_unit else {}
+        typed_unit = {TYPED_UNIT: self.typed_unit} if self.typed_unit else {}
         flags = flag_attributes(self.flags, self.dtype) if self.flags else {}
-        return {"units": self.units, "long_name": self.long_name} | typed | flags
+        return {"units": self.units, "long_name": self.long_name} | typed_unit | flags
 
 
 def dimension_attributes(name: str) -> dict[str, Any]:
@@ -93,35 +93,35 @@ def flag_attributes(flags: Iterable[tuple[int, str]], dtype: str = "|i1") -> dic
     return {"flag_values": np.array(values, dtype=dtype), "flag_meanings": " ".join(meanings)}
 
 
-def real(name: str, units: str, long_name: str, *extra: str) -> Variable:
-    """Description of a variable of floating-point numbers; nan stands for a missing number. extra: as in
+def real(name: str, units: str, long_name: str, *dimensions: str) -> Variable:
+    """Description of a variable of floating-point numbers; nan stands for a missing number. dimensions: as in
     `Variable`.
     """
-    return Variable(name, "<f8", np.nan, units, long_name, extra)
+    return Variable(name, "<f8", np.nan, units, long_name, dimensions)
 
 
 NOT_KNOWN_SUFFIX = "; -1: not known"
 """End of the long name of a count that may be unknown; tables show an unknown count as an empty cell."""
 
 
-def integer(name: str, long_name: str, *extra: str) -> Variable:
-    """Description of a variable of counts; -1 stands for an unknown count. extra: as in `Variable`."""
-    return Variable(name, "<i4", -1, "1", long_name, extra)
+def integer(name: str, long_name: str, *dimensions: str) -> Variable:
+    """Description of a variable of counts; -1 stands for an unknown count. dimensions: as in `Variable`."""
+    return Variable(name, "<i4", -1, "1", long_name, dimensions)
 
 
-def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *extra: str) -> Variable:
+def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *dimensions: str) -> Variable:
     """Description of a variable whose numbers stand for words. words: words, numbered from 0, or pairs
-    (stored number, word). extra: as in `Variable`. The fill value is -1 if a word has the number -1, which
-    means a missing value; otherwise 0.
+    (stored number, word). dimensions: as in `Variable`. The fill value is -1 if a word has the number -1,
+    which means a missing value; otherwise 0.
     """
-    flags = tuple(each if isinstance(each, tuple) else (index, each) for index, each in enumerate(words))
-    fill = -1 if any(value == -1 for value, _ in flags) else 0
-    return Variable(name, "|i1", fill, "1", long_name, extra, flags)
+    flags = tuple(entry if isinstance(entry, tuple) else (index, entry) for index, entry in enumerate(words))
+    fill_value = -1 if any(value == -1 for value, _ in flags) else 0
+    return Variable(name, "|i1", fill_value, "1", long_name, dimensions, flags)
 
 
 def flag_number(word: str, words: Iterable[tuple[int, str]]) -> int:
     """Stored number of `word`, from the (stored number, word) pairs `words`."""
-    return next(number for number, known in words if known == word)
+    return next(number for number, known_word in words if known_word == word)
 
 
 def boolean(name: str, long_name: str) -> Variable:
@@ -159,22 +159,22 @@ def _field(name: str, outcomes: Sequence[Any]) -> Any:
     for outcome in outcomes:
         if hasattr(outcome, name):
             return getattr(outcome, name)
-    whole, _, part = name.rpartition("_")
-    if part not in ("real", "imag"):
+    stem, _, part_name = name.rpartition("_")
+    if part_name not in ("real", "imag"):
         raise AttributeError(f"no outcome has the field {name}")
-    return getattr(_field(whole, outcomes), part)
+    return getattr(_field(stem, outcomes), part_name)
 
 
 def value_lists(
-    variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], room: int | None = None
+    variables: Iterable[Variable], rows: Sequence[Mapping[str, Any]], length: int | None = None
 ) -> dict[str, list[Any]]:
     """List of the values of each variable, by name. rows: for each item, the values of all variables by name.
 
-    room: length of the lists, which are cut or padded with fill values; None for the number of rows.
+    length: length of the lists, which are cut or padded with fill values; None for the number of rows.
     """
-    kept = rows[:room]
-    empty = max(0, (room or 0) - len(rows))
-    return {v.name: [row[v.name] for row in kept] + [v.fill] * empty for v in variables}
+    rows_to_store = rows[:length]
+    empty = max(0, (length or 0) - len(rows))
+    return {v.name: [row[v.name] for row in rows_to_store] + [v.fill] * empty for v in variables}
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,11 +190,11 @@ class ExtensionRule:
     option_values: tuple[Any, ...] = ()
     """Values of the option, in increasing order; empty for numbers and booleans."""
 
-    def requests_more_data(self, before: Any, now: Any) -> bool:
-        """Whether the value `now` of the option requests more data than the value `before`."""
+    def requests_more_data(self, old: Any, new: Any) -> bool:
+        """Whether the value `new` of the option requests more data than the value `old`."""
         if self.option_values:
-            return self.option_values.index(now) > self.option_values.index(before)
-        return bool(now > before)
+            return self.option_values.index(new) > self.option_values.index(old)
+        return bool(new > old)
 
 
 NEEDS_NEW_SOLVE = ExtensionRule(lambda records, before: np.zeros(len(records), bool))
@@ -246,4 +246,4 @@ class Layout:
 
     def point_shape(self, variable: Variable) -> tuple[int, ...]:
         """Shape of a variable at a single point: lengths of its extra dimensions."""
-        return tuple(self.extents[d] for d in variable.extra)
+        return tuple(self.extents[dimension] for dimension in variable.extra)

@@ -46,11 +46,11 @@ class ArrayStore:
 
     pattern: ClassVar[str]
 
-    def __init__(self, directory: Path, fingerprint: str, head: bytes):
-        """directory: journal directory. fingerprint: digest of config and points. head: first line of each
-        file."""
+    def __init__(self, directory: Path, fingerprint: str, first_line: bytes):
+        """directory: journal directory. fingerprint: digest of config and points. first_line: first line of
+        each file."""
         self.directory = directory
-        self.header = head + fingerprint.encode() + b"\n"
+        self.header = first_line + fingerprint.encode() + b"\n"
 
     def put(self, number: int, arrays: Arrays) -> None:
         """Stores arrays by name under `number`; replaces earlier arrays of this number."""
@@ -94,9 +94,9 @@ class Checkpoints(ArrayStore):
 
     def write(self, chain: int, index: int, state: StateWithArrays | None) -> None:
         """Stores the solver state after the point at the flat index `index` of a chain; None for no state."""
-        parts = state.arrays() if state is not None else {}
+        arrays = state.arrays() if state is not None else {}
         self.put(
-            chain, {"index": np.array(index)} | {STATE_PREFIX + name: part for name, part in parts.items()}
+            chain, {"index": np.array(index)} | {STATE_PREFIX + name: array for name, array in arrays.items()}
         )
 
     def read(self, chain: int) -> tuple[int, StateWithArrays | None] | None:
@@ -105,8 +105,8 @@ class Checkpoints(ArrayStore):
         if arrays is None:
             return None
         index = int(arrays.pop("index"))
-        parts = {name.removeprefix(STATE_PREFIX): part for name, part in arrays.items()}
-        return index, self._state_of(parts) if parts else None
+        state_arrays = {name.removeprefix(STATE_PREFIX): array for name, array in arrays.items()}
+        return index, self._state_of(state_arrays) if state_arrays else None
 
     def remove(self, chain: int) -> None:
         """Deletes the checkpoint of a finished chain."""
@@ -131,8 +131,8 @@ class ItemResults(ArrayStore):
     def read(self) -> dict[int, Arrays]:
         """Results of all work items with an intact file, by number of the work item."""
         names = (path.name.removeprefix("unit-") for path in self.directory.glob(ITEM_RESULT_GLOB))
-        found = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
-        return {item: arrays for item, arrays in found.items() if arrays is not None}
+        results = {int(name): self.get(int(name)) for name in names if name.isdecimal()}
+        return {item: arrays for item, arrays in results.items() if arrays is not None}
 
     def remove_all(self) -> None:
         """Deletes the results of all items."""

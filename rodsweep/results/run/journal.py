@@ -73,18 +73,18 @@ class Journal:
             records[name] = values[name]
         data = records.tobytes()
         size = records.itemsize
-        parts = (data[at : at + size] for at in range(0, len(data), size))
-        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), *parts))))
+        chunks = (data[offset : offset + size] for offset in range(0, len(data), size))
+        self._write(b"".join(map(_with_checksum, (*self._text_records(reasons), *chunks))))
 
     def _text_records(self, lines: Sequence[str]) -> Iterator[bytes]:
         """Yields records that hold lines of text instead of the values of a point."""
-        room = self.record.itemsize - INDEX_BYTES
+        chunk_bytes = self.record.itemsize - INDEX_BYTES
         for line in lines:
             text = line.encode()
-            pieces = [text[at : at + room] for at in range(0, len(text), room)]
-            for number, piece in enumerate(pieces, 1):
-                index = TEXT_ENDS if number == len(pieces) else TEXT_CONTINUES
-                yield index.to_bytes(INDEX_BYTES, "little", signed=True) + piece.ljust(room, b"\0")
+            chunks = [text[offset : offset + chunk_bytes] for offset in range(0, len(text), chunk_bytes)]
+            for number, chunk in enumerate(chunks, 1):
+                index = TEXT_ENDS if number == len(chunks) else TEXT_CONTINUES
+                yield index.to_bytes(INDEX_BYTES, "little", signed=True) + chunk.ljust(chunk_bytes, b"\0")
 
     def close(self) -> None:
         """Syncs the journal to disk and closes the file; deletes the file if the journal has no points.
@@ -114,13 +114,13 @@ class Journal:
 
     def _write_anew(self) -> None:
         """Copies the open journal, which may have lost its name, to a new file in the journal directory."""
-        former = self.handle
-        at = 0
+        old_handle = self.handle
+        position = 0
         self._create()
-        while block := os.pread(former, BYTES_PER_READ, at):
+        while block := os.pread(old_handle, BYTES_PER_READ, position):
             self._write(block)
-            at += len(block)
-        os.close(former)
+            position += len(block)
+        os.close(old_handle)
 
     def _write(self, data: bytes) -> None:
         """Writes all bytes of `data`; a single system call may write fewer."""
@@ -137,14 +137,14 @@ def delete_matching_files(directory: Path, pattern: str) -> None:
 
 def journals_with_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and this fingerprint."""
-    known = _journal_header(fingerprint)
-    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) == known]
+    header = _journal_header(fingerprint)
+    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) == header]
 
 
 def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path]:
     """Paths of the journals in a directory that have points and another fingerprint or a damaged head."""
-    known = (b"", _journal_header(fingerprint))
-    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) not in known]
+    headers = (b"", _journal_header(fingerprint))
+    return [path for path in sorted(directory.glob(JOURNAL_GLOB)) if _header_if_points(path) not in headers]
 
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
@@ -152,12 +152,12 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
     returns the new directory.
     """
     number = 1
-    while os.path.lexists(kept := directory.with_name(f"{directory.name}-{number}")):
+    while os.path.lexists(new_directory := directory.with_name(f"{directory.name}-{number}")):
         number += 1
-    kept.mkdir()
+    new_directory.mkdir()
     for path in paths:
-        shutil.move(path, kept / path.name)
-    return kept
+        shutil.move(path, new_directory / path.name)
+    return new_directory
 
 
 def journalled_points_clause(directory: Path, fingerprint: str) -> str:
@@ -178,8 +178,8 @@ def _header_if_points(path: Path) -> bytes:
     if not path.is_file():
         return b""
     with path.open("rb") as file:
-        head = b"".join(file.readline(LONGEST_HEAD) for _ in range(2))
-        return head if file.read(1) else b""
+        header = b"".join(file.readline(LONGEST_HEAD) for _ in range(2))
+        return header if file.read(1) else b""
 
 
 def _with_checksum(record: bytes) -> bytes:
@@ -196,8 +196,8 @@ def read_journals(
     """
     for path in journals_with_fingerprint(directory, fingerprint):
         for rows in _record_rows(path, layout, fingerprint):
-            whole = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
-            records = np.ascontiguousarray(whole).view(layout.record_dtype).ravel()
+            valid_rows = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
+            records = np.ascontiguousarray(valid_rows).view(layout.record_dtype).ravel()
             yield records[(records["index"] >= 0) & (records["index"] < points)]
 
 
@@ -219,10 +219,12 @@ def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
     line = b""
     for rows in blocks:
         index = np.ascontiguousarray(rows[:, :INDEX_BYTES]).view("<i8").ravel()
-        some = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
-        for row, at, whole in zip(rows[some], index[some], _has_valid_checksum(rows[some]), strict=True):
-            line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if whole else b""
-            if at == TEXT_ENDS:
+        is_text = (index == TEXT_CONTINUES) | (index == TEXT_ENDS)
+        for row, number, is_valid in zip(
+            rows[is_text], index[is_text], _has_valid_checksum(rows[is_text]), strict=True
+        ):
+            line = line + row[INDEX_BYTES:-CHECKSUM_BYTES].tobytes().rstrip(b"\0") if is_valid else b""
+            if number == TEXT_ENDS:
                 lines.append(line)
                 line = b""
     return b"\n".join(lines)
@@ -234,8 +236,8 @@ def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.nd
     with path.open("rb") as file:
         file.seek(len(_journal_header(fingerprint)))
         while block := file.read(max(1, BYTES_PER_READ // size) * size):
-            raw = np.frombuffer(block, np.uint8)
-            yield raw[: len(raw) // size * size].reshape(-1, size)
+            byte_array = np.frombuffer(block, np.uint8)
+            yield byte_array[: len(byte_array) // size * size].reshape(-1, size)
 
 
 def _has_valid_checksum(rows: np.ndarray) -> np.ndarray:
@@ -243,6 +245,6 @@ def _has_valid_checksum(rows: np.ndarray) -> np.ndarray:
     (records, bytes).
     """
     sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
-    own = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
-    whole: np.ndarray = own == sums
-    return whole
+    checksums = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
+    is_valid: np.ndarray = checksums == sums
+    return is_valid

@@ -46,8 +46,8 @@ def grid_of_arms(
     loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
     crossed = dict(zip(given_parameters, np.meshgrid(*given_parameters.values(), indexing="ij"), strict=True))
     shape = (len(arms), len(loads), next(iter(crossed.values())).size if crossed else 1)
-    own = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
-    table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in own}
+    parameter_names = (*parameter_names_except("F", NONLINEAR_PARAMETERS), *section.cone_parameters)
+    table = {name: _quantity_of_arms(arms, methodcaller("parameter", name)) for name in parameter_names}
     units = {name: _quantity_of_arms(arms, attrgetter(name)) for name in ARM_SCALES}
     forces = _unit_load_forces(section, arms, crossed.get("taper"), flutter)
     scale = np.vectorize(attrgetter("F"), otypes=[float])(forces)
@@ -61,20 +61,20 @@ def grid_of_arms(
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
     builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
     if "F" in table:
-        shares = build.relative_crushing_forces(table.get("taper", np.ones(1)))
+        ratios = build.relative_crushing_forces(table.get("taper", np.ones(1)))
         if builds:
-            shares = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
-        crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * shares, shape)
-        codes[(codes == SLENDER) & crushed] = CRUSHED
+            ratios = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
+        is_crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * ratios, shape)
+        codes[(codes == SLENDER) & is_crushed] = CRUSHED
     if (codes != SLENDER).all():
         _refuse_grid_without_rods(section, given_parameters, bool((codes == NO_FLUTTER).any()), forces)
     axes = {name: section.quantity_axes[name].array() for name in section.varying_quantities}
-    over = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
+    values = axes | {name: column for name, column in given_parameters.items() if len(column) > 1}
     columns = tuple(np.broadcast_to(table[name], shape).ravel() for name in names)
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     failures = _search_failures(codes, forces)
     stored = codes.astype(np.int8).ravel()
-    return Points(names, columns, False, over, units, builds=builds, arm_statuses=stored, failures=failures)
+    return Points(names, columns, False, values, units, builds=builds, arm_statuses=stored, failures=failures)
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
@@ -132,8 +132,8 @@ def _with_flutter_codes(codes: Array, flutter: Array) -> Array:
     flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
     loads, n).
     """
-    found = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
-    result: Array = np.where(codes == SLENDER, found, codes)
+    rod_codes = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
+    result: Array = np.where(codes == SLENDER, rod_codes, codes)
     return result
 
 
@@ -142,8 +142,8 @@ def _search_failures(codes: Array, forces: ForceArray) -> dict[int, str]:
 
     codes: status codes, (arms, loads, combinations of replaced parameters).
     """
-    each = np.broadcast_to(forces, codes.shape).ravel()
-    return {int(index): each[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
+    force_of_points = np.broadcast_to(forces, codes.shape).ravel()
+    return {int(index): force_of_points[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
 
 
 def _refuse_grid_without_rods(
@@ -151,7 +151,7 @@ def _refuse_grid_without_rods(
 ) -> None:
     """Raises ValueError with the reason why the rod model applies to no point. given_parameters: as in
     `grid_of_arms`. no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`."""
-    section.arm_of(section.first_values, loaded=True)
+    section.arm_of(section.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:
             raise ValueError(f"parameters.arm.{section.load}: {force.failure}")

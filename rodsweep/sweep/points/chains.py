@@ -68,8 +68,8 @@ class Chains:
 
     def indices(self, chain: int) -> NDArray[np.int64]:
         """Flat indices of the points of a chain in the order of solution, shape (length,)."""
-        along = np.arange(self.length)
-        return indices_along(self.shape, self.axis, chain, along if self.is_upward else along[::-1])
+        positions = np.arange(self.length)
+        return indices_along(self.shape, self.axis, chain, positions if self.is_upward else positions[::-1])
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
@@ -113,8 +113,8 @@ class ChainSolver:
         between costs a second solve of the point; in the reverse order the point could be lost.
         """
         order = list(map(int, self.work.chains.indices(chain)))
-        first, state = self._resume(chain, order)
-        for index in order[first:]:
+        first_position, state = self._resume(chain, order)
+        for index in order[first_position:]:
             if self.stop:
                 return
             outcome, state = self.work.solve_from(index, state)
@@ -131,10 +131,10 @@ class ChainSolver:
         The checkpoint is used if no point up to the checkpoint is missing; otherwise the chain starts again
         without an initial state.
         """
-        found = self.checkpoints.read(chain)
-        if found is None or found[0] not in order:
+        checkpoint = self.checkpoints.read(chain)
+        if checkpoint is None or checkpoint[0] not in order:
             return 0, None
-        solved = order.index(found[0]) + 1
-        if self.missing[order[:solved]].any():
+        position = order.index(checkpoint[0]) + 1
+        if self.missing[order[:position]].any():
             return 0, None
-        return solved, found[1]
+        return position, checkpoint[1]

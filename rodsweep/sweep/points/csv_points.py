@@ -75,21 +75,21 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
         yield line
 
 
-def _row_numbers(row: list[str], header: list[str], where: str, build: Build) -> list[float]:
+def _row_numbers(row: list[str], header: list[str], row_text: str, build: Build) -> list[float]:
     """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
-    model. header: names of the columns. where: file and line, for the message.
+    model. header: names of the columns. row_text: file and line, for the message.
     """
     if len(row) != len(header):
-        raise InputError(f"{where} has {len(row)} values, but the header names {len(header)}")
+        raise InputError(f"{row_text} has {len(row)} values, but the header names {len(header)}")
     numbers = []
     for cell, name in zip(row, header, strict=True):
         try:
             numbers.append(cell_number(cell))
         except ValueError:
-            raise InputError(f"{where}: {name} = {cell.strip()[:40]!r} is not a number") from None
+            raise InputError(f"{row_text}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL_VALUES, **dict(zip(header, numbers, strict=True))}
     try:
         Rod(**parameters, build=build)
     except ValueError as error:
-        raise InputError(f"{where}: {error}") from None
+        raise InputError(f"{row_text}: {error}") from None
     return numbers

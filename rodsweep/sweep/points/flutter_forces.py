@@ -82,19 +82,20 @@ def flutter_force_of_rod(rod: Rod) -> FlutterForce:
 
 
 def flutter_force_of_arm(
-    arm: SlenderArm, taper: float | None, known: FlutterForces, build: Build | None = None
+    arm: SlenderArm, taper: float | None, flutter_forces: FlutterForces, build: Build | None = None
 ) -> FlutterForce:
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
-    known: forces of all rods of `rods_needing_flutter_force`. build: as in `rods_needing_flutter_force`.
+    flutter_forces: forces of all rods of `rods_needing_flutter_force`. build: as in
+    `rods_needing_flutter_force`.
     """
     from ...verdict.relative_load import rods_by_plane
 
-    first = inf
+    flutter_force = inf
     for rod, scale in rods_by_plane(arm, build, taper):
-        found = known[rod]
-        if found.failure:
-            return found
-        first = min(first, found.F * scale)
-    return FlutterForce(first)
+        rod_force = flutter_forces[rod]
+        if rod_force.failure:
+            return rod_force
+        flutter_force = min(flutter_force, rod_force.F * scale)
+    return FlutterForce(flutter_force)

@@ -55,15 +55,15 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
         for name, column in axes.items():
             require_in_range(PARAMETERS[name].allowed, name, column)
         try:
-            known = flutter or {rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)}
-            of_arm = partial(flutter_force_of_arm, known=known, build=config.stated_build)
+            forces = flutter or {rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)}
+            of_arm = partial(flutter_force_of_arm, flutter_forces=forces, build=config.stated_build)
             return grid_of_arms(parameters.arm, axes, config.parameter_names, of_arm, config.build)
         except ValueError as error:
             raise InputError(str(error)) from None
-    named = {name: axes[name] for name in config.parameter_names}
-    arm_statuses = None if parameters.arm is None else _crushing_codes(named, config.build)
+    by_name = {name: axes[name] for name in config.parameter_names}
+    arm_statuses = None if parameters.arm is None else _crushing_codes(by_name, config.build)
     refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.build)
-    return Points(config.parameter_names, tuple(named.values()), is_grid=True, arm_statuses=arm_statuses)
+    return Points(config.parameter_names, tuple(by_name.values()), is_grid=True, arm_statuses=arm_statuses)
 
 
 def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
@@ -76,35 +76,39 @@ def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MAX_ARM_GRID_POINTS:
         return None
-    along = {name: axes[name].reshape([-1 if each == name else 1 for each in axes]) for name in axes}
-    shares = build.relative_crushing_forces(along.get("taper", np.ones(1)))
-    if axes["F"].max() < axes["k1"].min() * shares.min():
+    columns = {
+        name: axes[name].reshape([-1 if axis_name == name else 1 for axis_name in axes]) for name in axes
+    }
+    ratios = build.relative_crushing_forces(columns.get("taper", np.ones(1)))
+    if axes["F"].max() < axes["k1"].min() * ratios.min():
         return None
     shape = tuple(map(len, axes.values()))
-    crushed = np.broadcast_to(CRUSHED_FORCE_RATIO * along["k1"] * shares <= along["F"], shape).ravel()
-    return None if crushed.all() else np.where(crushed, CRUSHED, SLENDER).astype(np.int8)
+    is_crushed = np.broadcast_to(CRUSHED_FORCE_RATIO * columns["k1"] * ratios <= columns["F"], shape).ravel()
+    return None if is_crushed.all() else np.where(is_crushed, CRUSHED, SLENDER).astype(np.int8)
 
 
 def rods_for_flutter_forces(config: Config) -> list[Rod]:
     """The distinct rods whose flutter forces the points of a config need; InputError for an invalid arm."""
-    given = config.parameters.given_axes.get("taper")
-    if given is None:
+    taper_axis = config.parameters.given_axes.get("taper")
+    if taper_axis is None:
         return rods_needing_flutter_force(config.parameters.arm, config.stated_build)
-    require_in_range(PARAMETERS["taper"].allowed, "taper", given.array())
-    return rods_needing_flutter_force(config.parameters.arm, config.stated_build, given.array().tolist())
+    require_in_range(PARAMETERS["taper"].allowed, "taper", taper_axis.array())
+    return rods_needing_flutter_force(config.parameters.arm, config.stated_build, taper_axis.array().tolist())
 
 
 def require_in_range(
-    allowed: Range, name: str, values: Iterable[float], where: str = "", why: str = ""
+    allowed: Range, name: str, values: Iterable[float], place: str = "", reason: str = ""
 ) -> None:
     """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
 
-    where, why: phrases inserted into the message after the value and at the end.
+    place, reason: phrases inserted into the message after the value and at the end.
     """
-    bad = allowed.first_outside(values)
-    if bad is not None:
-        described = allowed.description_for(bad)
-        raise InputError(f"parameters.{name} = {bad:g} is not allowed{where}; it must be {described}{why}")
+    invalid = allowed.first_outside(values)
+    if invalid is not None:
+        described = allowed.description_for(invalid)
+        raise InputError(
+            f"parameters.{name} = {invalid:g} is not allowed{place}; it must be {described}{reason}"
+        )
 
 
 def refuse_invalid_axes(
@@ -119,32 +123,32 @@ def refuse_invalid_axes(
         require_in_range(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING_PARAMETERS) <= axes.keys():
         return
-    shares = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
-    if (shares == 1).all():
+    crushing_forces = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
+    if (crushing_forces == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], allows_crushed_rods)
-    elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * shares.max():
+    elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * crushing_forces.max():
         raise InputError(
             f"parameters.F starts at {axes['F'].min():.15g}, but the weakest section of all arms is crushed "
-            f"at {axes['k1'].max() * shares.max():.15g}; F must start below"
+            f"at {axes['k1'].max() * crushing_forces.max():.15g}; F must start below"
         )
-    elif not allows_crushed_rods and axes["F"].max() >= axes["k1"].min() * shares.min():
+    elif not allows_crushed_rods and axes["F"].max() >= axes["k1"].min() * crushing_forces.min():
         raise InputError(
             f"parameters.F reaches {axes['F'].max():.15g}, but the weakest section of the arms is crushed at "
-            f"{axes['k1'].min() * shares.min():.15g}; F must stay below"
+            f"{axes['k1'].min() * crushing_forces.min():.15g}; F must stay below"
         )
 
 
-def _refuse_crushed(F: Array, k1: Array, some: bool) -> None:
-    """Raises InputError if any rod of a grid is crushed or, with `some`, if all rods are crushed.
+def _refuse_crushed(F: Array, k1: Array, is_partial: bool) -> None:
+    """Raises InputError if any rod of a grid is crushed or, with `is_partial`, if all rods are crushed.
 
-    F, k1: values on the axes, (n,). some: whether some rods may be crushed.
+    F, k1: values on the axes, (n,). is_partial: whether some rods may be crushed.
     """
-    if some and F.min() >= k1.max():
+    if is_partial and F.min() >= k1.max():
         raise InputError(
             f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "
             "crushed where F >= k1, which is everywhere here"
         )
-    if not some and F.max() >= k1.min():
+    if not is_partial and F.max() >= k1.min():
         raise InputError(
             f"parameters.F reaches {F.max():.15g} and parameters.k1 starts at {k1.min():.15g}; F must stay "
             "below every k1, because the rod is crushed at F = k1"

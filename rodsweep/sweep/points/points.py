@@ -111,17 +111,19 @@ class Points:
 
     def values_of(self, indices: NDArray[np.int64]) -> dict[str, Array]:
         """Parameter values, (n,) each, of the points at flat indices, (n,), by name."""
-        places = np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
-        each = zip(self.names, self.columns, places, strict=True)
-        return {name: column[index_on_axis] for name, column, index_on_axis in each}
+        indices_by_axis = (
+            np.unravel_index(indices, self.shape) if self.is_grid else [indices] * len(self.names)
+        )
+        columns_and_indices = zip(self.names, self.columns, indices_by_axis, strict=True)
+        return {name: column[index_on_axis] for name, column, index_on_axis in columns_and_indices}
 
-    def rod(self, index: int, **given: float) -> Rod:
+    def rod(self, index: int, **F: float) -> Rod:
         """Rod of the point at a flat index; raises Crushed.
 
-        The values in `given` replace the values of the point. A parameter with neither value has the value in
+        The values in `F` replace the values of the point. A parameter with neither value has the value in
         NEUTRAL_VALUES.
         """
-        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **given}
+        parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **F}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
@@ -129,10 +131,12 @@ class Points:
         """Returns (distinct builds, indices). indices: for each point of `rod_values`, the index of its
         build, (rods,).
         """
-        different = list(dict.fromkeys(self.builds)) or [self.build]
-        of_arms = np.array([different.index(build) for build in self.builds] or [0])
-        numbers = of_arms[np.arange(self.count) * len(of_arms) // self.count]
-        return different, numbers if self.arm_statuses is None else numbers[self.arm_statuses == SLENDER]
+        distinct_builds = list(dict.fromkeys(self.builds)) or [self.build]
+        build_of_arm = np.array([distinct_builds.index(build) for build in self.builds] or [0])
+        numbers = build_of_arm[np.arange(self.count) * len(build_of_arm) // self.count]
+        return distinct_builds, numbers if self.arm_statuses is None else numbers[
+            self.arm_statuses == SLENDER
+        ]
 
     def build_of(self, index: int) -> Build:
         """Constitutive law and profile of the rod of the point at a flat index."""
@@ -162,11 +166,11 @@ def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLi
     x = columns[name]
     others = [other for other in columns if other != name]
     table = np.stack([columns[other] for other in others], axis=-1)
-    _, first, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
-    by_line = np.argsort(line.ravel(), kind="stable")
+    _, first_rows, line = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    sorted_points = np.argsort(line.ravel(), kind="stable")
     ends = np.cumsum(np.bincount(line.ravel()))
-    for number in np.argsort(first):
-        at = by_line[ends[number - 1] if number else 0 : ends[number]]
-        at = at[np.isfinite(x[at])]
-        fixed = dict(zip(others, table[first[number]].tolist(), strict=True))
-        yield ParameterLine(name, fixed, x[at], at)
+    for number in np.argsort(first_rows):
+        line_points = sorted_points[ends[number - 1] if number else 0 : ends[number]]
+        line_points = line_points[np.isfinite(x[line_points])]
+        fixed = dict(zip(others, table[first_rows[number]].tolist(), strict=True))
+        yield ParameterLine(name, fixed, x[line_points], line_points)

@@ -20,15 +20,15 @@ IndexRange = tuple[int, int]
 
 def index_count(ranges: Iterable[IndexRange]) -> int:
     """Total number of indices in disjoint ranges."""
-    return sum(end - first for first, end in ranges)
+    return sum(end - start for start, end in ranges)
 
 
 def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
     """The sorted disjoint ranges `ranges`, with adjacent ranges merged."""
     result: list[IndexRange] = []
-    for first, end in ranges:
-        touches = bool(result) and result[-1][1] == first
-        result.append((result.pop()[0] if touches else first, end))
+    for start, end in ranges:
+        is_adjacent = bool(result) and result[-1][1] == start
+        result.append((result.pop()[0] if is_adjacent else start, end))
     return result
 
 
@@ -39,9 +39,9 @@ def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> A
     Lines along the axis are numbered in row-major order of the remaining axes. line, along: integers or
     arrays, which broadcast to the shape of the result, (...,).
     """
-    inner = math.prod(shape[axis + 1 :])
-    outer, within = np.divmod(line, inner)
-    return (outer * shape[axis] + along) * inner + within
+    stride = math.prod(shape[axis + 1 :])
+    block, offset = np.divmod(line, stride)
+    return (block * shape[axis] + along) * stride + offset
 
 
 class IndexSet:
@@ -69,27 +69,27 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.number}/{self.shard_count}"
 
-    def ranges_of_shard(self, todo: Sequence[IndexRange], items: int) -> list[IndexRange]:
-        """Ranges of the items in `todo` that belong to this shard.
+    def ranges_of_shard(self, ranges: Sequence[IndexRange], items: int) -> list[IndexRange]:
+        """Ranges of the items in `ranges` that belong to this shard.
 
         Blocks of the sweep's `items` items are assigned to the shards in turn.
         """
         if self.shard_count == 1:
-            return list(todo)
+            return list(ranges)
         block = max(1, items // (self.shard_count * BLOCKS_PER_SHARD))
-        mine: list[IndexRange] = []
-        for start, stop in todo:
-            turn = start // block
-            turn += (self.number - 1 - turn) % self.shard_count
-            while turn * block < stop:
-                mine.append((max(start, turn * block), min(stop, (turn + 1) * block)))
-                turn += self.shard_count
-        return mine
+        own_ranges: list[IndexRange] = []
+        for start, end in ranges:
+            block_number = start // block
+            block_number += (self.number - 1 - block_number) % self.shard_count
+            while block_number * block < end:
+                own_ranges.append((max(start, block_number * block), min(end, (block_number + 1) * block)))
+                block_number += self.shard_count
+        return own_ranges
 
 
 def parsed_shard(text: str) -> Shard:
     """The `Shard` from a text like "2/8"; raises InputError for any other text."""
-    number, _, of = text.partition("/")
-    if number.isdecimal() and of.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(of):
-        return Shard(int(number), int(of))
+    number, _, count = text.partition("/")
+    if number.isdecimal() and count.isdecimal() and len(text) < 20 and 1 <= int(number) <= int(count):
+        return Shard(int(number), int(count))
     raise InputError(f"--shard {text[:40]} is not of the form I/N with 1 <= I <= N, such as 2/8")

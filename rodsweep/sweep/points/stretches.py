@@ -36,10 +36,10 @@ class StretchResult:
     values: dict[str, NDArray]
     is_solved: NDArray[np.bool_]
 
-    def part_at(self, places: NDArray[np.int64]) -> "StretchResult":
-        """The part of the result at the positions `places` in the stretch, (m,)."""
-        values = {name: column[places] for name, column in self.values.items()}
-        return StretchResult(values, self.is_solved[places])
+    def part_at(self, indices: NDArray[np.int64]) -> "StretchResult":
+        """The part of the result at the positions `indices` in the stretch, (m,)."""
+        values = {name: column[indices] for name, column in self.values.items()}
+        return StretchResult(values, self.is_solved[indices])
 
 
 SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
@@ -69,16 +69,18 @@ class Stretches:
 
     def indices(self, stretch: int) -> NDArray[np.int64]:
         """Flat indices of the points of the stretch number `stretch`, (n,)."""
-        part, line = divmod(stretch, self.line_count)
-        along = np.arange(part * STRETCH_POINTS, min((part + 1) * STRETCH_POINTS, self.shape[self.axis]))
-        return indices_along(self.shape, self.axis, line, along)
+        segment, line = divmod(stretch, self.line_count)
+        positions = np.arange(
+            segment * STRETCH_POINTS, min((segment + 1) * STRETCH_POINTS, self.shape[self.axis])
+        )
+        return indices_along(self.shape, self.axis, line, positions)
 
     def missing_counts(self, stretches: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
         """Number of points in `missing` of each stretch in a range of stretch numbers, (stretches,)."""
-        part, line = np.divmod(np.arange(*stretches)[:, None], self.line_count)
-        along = part * STRETCH_POINTS + np.arange(STRETCH_POINTS)
-        index = indices_along(self.shape, self.axis, line, along)
-        return (missing[index] & (along < self.shape[self.axis])).sum(axis=1)
+        segment, line = np.divmod(np.arange(*stretches)[:, None], self.line_count)
+        positions = segment * STRETCH_POINTS + np.arange(STRETCH_POINTS)
+        index = indices_along(self.shape, self.axis, line, positions)
+        return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)
 
     def unsolved_ranges(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
         """Ranges of the numbers of stretches with missing points; missing: ranges of flat indices."""
@@ -86,10 +88,10 @@ class Stretches:
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
-        for first in range(0, self.count, STRETCHES_PER_BLOCK):
-            last = min(first + STRETCHES_PER_BLOCK, self.count)
-            incomplete = self.missing_counts((first, last), missing_points) > 0
-            edges = first + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
+        for start in range(0, self.count, STRETCHES_PER_BLOCK):
+            end = min(start + STRETCHES_PER_BLOCK, self.count)
+            incomplete = self.missing_counts((start, end), missing_points) > 0
+            edges = start + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return merged_ranges(ranges)
 
@@ -99,22 +101,22 @@ class Stretches:
         """
         missing_points = IndexSet(missing)
         number = 0
-        for first, end in stretches:
-            for at in range(first, end, STRETCHES_PER_BLOCK):
-                block = (at, min(at + STRETCHES_PER_BLOCK, end))
+        for start, end in stretches:
+            for block_start in range(start, end, STRETCHES_PER_BLOCK):
+                block = (block_start, min(block_start + STRETCHES_PER_BLOCK, end))
                 number += int(self.missing_counts(block, missing_points).sum())
         return number
 
 
-def stretches_along_longest_axis(shape: tuple[int, ...], moved: Sequence[str]) -> Stretches | None:
+def stretches_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) -> Stretches | None:
     """Stretches of a grid along the first of its longest usable axes; None if no usable axis has
     MIN_STRETCH_AXIS_VALUES values.
 
-    shape: shape of the grid. moved: the only parameter that varies along each axis; "" for an axis of several
-    parameters, which is not usable.
+    shape: shape of the grid. varied: the only parameter that varies along each axis; "" for an axis of
+    several parameters, which is not usable.
     """
-    able = [axis for axis, name in enumerate(moved) if name]
-    axis = max(able, key=lambda i: shape[i], default=None)
+    followable_axes = [axis for axis, name in enumerate(varied) if name]
+    axis = max(followable_axes, key=lambda i: shape[i], default=None)
     return Stretches(shape, axis) if axis is not None and shape[axis] >= MIN_STRETCH_AXIS_VALUES else None
 
 
@@ -141,8 +143,8 @@ class StretchSolver:
         indices = self.stretches.indices(stretch)
         result = self.solve_stretch(indices)
         missing = self.missing[indices]
-        together = np.flatnonzero(missing & result.is_solved)
-        if len(together):
-            yield indices[together], result.part_at(together)
+        solved_indices = np.flatnonzero(missing & result.is_solved)
+        if len(solved_indices):
+            yield indices[solved_indices], result.part_at(solved_indices)
         for index in indices[missing & ~result.is_solved].tolist():
             yield index, self.solve(index)

@@ -94,8 +94,8 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     columns = list(points.columns)
     if points.builds:
         number = {build: float(i) for i, build in enumerate(points.builds)}
-        each = points.count // len(points.builds)
-        columns.append(np.repeat([number[build] for build in points.builds], each))
+        points_per_rod = points.count // len(points.builds)
+        columns.append(np.repeat([number[build] for build in points.builds], points_per_rod))
     table = np.stack(columns, axis=-1)
     rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
     return None if rods.max() + 1 == len(rods) else rods
@@ -114,8 +114,8 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
     memory = _OutcomeCache(max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES))))
 
     def once(index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
-        (outcome, state), again = memory.get_or_solve((int(rods[index]), start), solve)
-        return RepeatedOutcome(outcome) if again else outcome, state
+        (outcome, state), is_repeated = memory.get_or_solve((int(rods[index]), start), solve)
+        return RepeatedOutcome(outcome) if is_repeated else outcome, state
 
     def record(index: int, outcome: Any) -> dict[str, Any]:
         if isinstance(outcome, RepeatedOutcome):
@@ -141,10 +141,10 @@ class _OutcomeCache:
         if key in self.outcomes:
             self.outcomes.move_to_end(key)
             return self.outcomes[key], True
-        found = self.outcomes[key] = solve()
+        solved = self.outcomes[key] = solve()
         if len(self.outcomes) > self.max_outcomes:
             self.outcomes.popitem(last=False)
-        return found, False
+        return solved, False
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,13 +193,13 @@ class SkippingSolver:
         """Results for the points of a stretch at flat indices, (n,); only points with a rod are solved."""
         assert self.rod_solver.stretched is not None
         arm_statuses = self.arm_statuses[indices]
-        places = np.flatnonzero(arm_statuses == SLENDER)
+        rod_indices = np.flatnonzero(arm_statuses == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
         values[STATUS.name][...] = arm_statuses
-        found = self.rod_solver.stretched[1](indices[places]) if len(places) else None
-        for name, column in found.values.items() if found else ():
-            values[name][places] = column
-        solved = arm_statuses != FLUTTER_UNKNOWN
-        if found:
-            solved[places] = found.is_solved
-        return StretchResult(values, solved)
+        result = self.rod_solver.stretched[1](indices[rod_indices]) if len(rod_indices) else None
+        for name, column in result.values.items() if result else ():
+            values[name][rod_indices] = column
+        is_solved = arm_statuses != FLUTTER_UNKNOWN
+        if result:
+            is_solved[rod_indices] = result.is_solved
+        return StretchResult(values, is_solved)

@@ -68,33 +68,33 @@ def _motion_of_modes(record: Record) -> ArmMotion:
     oscillates.
     """
     frequency = np.abs(record["frequency"])
-    first = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
-    leading = np.take_along_axis(frequency, first, axis=-1)[..., 0]
+    first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
+    leading = np.take_along_axis(frequency, first_oscillating, axis=-1)[..., 0]
     return ArmMotion(np.where(leading > 0, leading, np.nan))
 
 
-def _motion_at_hopf_point(at: str) -> Callable[[Record], ArmMotion]:
+def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
-    point. at: name of the variable with the force at crossings.
+    point. F_name: name of the variable with the force at crossings.
     """
 
-    def found(record: Record) -> ArmMotion:
-        hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
-        first = np.argmax(hopf, axis=-1, keepdims=True)
-        there = hopf.any(axis=-1)
-        pair = (np.asarray(record[name], float) for name in ("crossing_frequency", at))
-        frequency, F = (np.where(there, np.take_along_axis(v, first, axis=-1)[..., 0], np.nan) for v in pair)
+    def motion(record: Record) -> ArmMotion:
+        is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
+        first = np.argmax(is_hopf, axis=-1, keepdims=True)
+        exists = is_hopf.any(axis=-1)
+        pair = (np.asarray(record[name], float) for name in ("crossing_frequency", F_name))
+        frequency, F = (np.where(exists, np.take_along_axis(v, first, axis=-1)[..., 0], np.nan) for v in pair)
         return ArmMotion(np.abs(frequency), F)
 
-    return found
+    return motion
 
 
 def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
     flutter.
     """
-    beats = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
-    return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=beats)
+    has_flutter = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
+    return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
 
 def _motion_at_flutter(record: Record) -> ArmMotion:
@@ -141,7 +141,7 @@ class ArmValidity:
         self.points = points
         self.task = config.task
         at_rest = AT_REST_STATUSES.get(self.task, ())
-        self.searched_statuses = [int(each) for each in statuses if each.succeeded or each.name in at_rest]
+        self.searched_statuses = [int(s) for s in statuses if s.succeeded or s.name in at_rest]
         """Values of the statuses at which the solver missed no motion."""
         sections = [axis.size for name, axis in self.section.quantity_axes.items() if name in NON_LOAD_KEYS]
         self.points_per_arm = points.count // int(np.prod(sections)) if points.arm_axes else points.count
@@ -155,21 +155,21 @@ class ArmValidity:
         record: variables of the points, (n, ...). index: index of the point, or indices, (n,).
         """
         motion = MOTION_OF_TASK[self.task](record)
-        missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched_statuses)
+        may_be_missed = motion.may_be_missed | ~np.isin(record[STATUS.name], self.searched_statuses)
         arm = self._arm_of(int(np.ravel(index)[0]))
-        return self._validity_variables(arm, replace(motion, may_be_missed=missed), index)
+        return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
         """The VALIDITY_VARIABLES at the n points with a rod, (n,), as if all arms were at rest."""
-        found = []
-        for first in range(0, self.points.count, self.points_per_arm):
-            indices = np.arange(first, first + self.points_per_arm)
+        parts = []
+        for start in range(0, self.points.count, self.points_per_arm):
+            indices = np.arange(start, start + self.points_per_arm)
             if self.points.arm_statuses is not None:
                 indices = indices[self.points.arm_statuses[indices] == SLENDER]
             if len(indices):
-                nothing = ArmMotion(np.full(len(indices), np.nan))
-                found.append(self._validity_variables(self._arm_of(first), nothing, indices))
-        return {name: np.concatenate([each[name] for each in found]) for name in found[0]}
+                no_motion = ArmMotion(np.full(len(indices), np.nan))
+                parts.append(self._validity_variables(self._arm_of(start), no_motion, indices))
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def _arm_of(self, index: int) -> SlenderArm:
         return self.arm_by_number(index // self.points_per_arm if self.points.arm_axes else 0)
@@ -183,35 +183,36 @@ class ArmValidity:
         effects = neglected_effects(
             arm, rate, self._equivalent_base_force(F, index), drag=drag, amplitude=motion.amplitude
         )
-        counted = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
-        excess = np.array([effect.value_over_limit for effect in counted])  # (effects, n, ...)
+        relevant = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
+        excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
-        points = excess.reshape(len(counted), *np.shape(index), -1)  # the last axis: all motions of a point
+        # The last axis holds all motions of a point.
+        points = excesses.reshape(len(relevant), *np.shape(index), -1)
         largest = np.nanmax(np.where(np.isnan(points), -1.0, points), axis=-1)
-        worst = np.argmax(largest, axis=0)
-        numbers = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in counted]
-        number = np.array(numbers)[worst]
+        effect_index = np.argmax(largest, axis=0)
+        numbers = [NEGLECTED_EFFECTS.index(effect.name.replace(" ", "_")) for effect in relevant]
+        number = np.array(numbers)[effect_index]
         at_worst = np.max(largest, axis=0)
-        applies = validity.reshape(*np.shape(index), -1).max(axis=-1)
-        moves = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
+        validities = validity.reshape(*np.shape(index), -1).max(axis=-1)
+        has_motion = np.isfinite(rate).reshape(*np.shape(index), -1).any(axis=-1)
         # Compression or weight beyond its limit ends the model whatever the motion.
-        known = moves | ~np.asarray(motion.may_be_missed) | (applies == Validity.does_not_apply)
+        is_known = has_motion | ~np.asarray(motion.may_be_missed) | (validities == Validity.does_not_apply)
         return {
-            "model_applies": np.where(known, applies, VALIDITY_NOT_KNOWN),
-            "neglected_effect": np.where(known & (at_worst > 0), number, -1),
-            "neglected_excess": np.where(known & (at_worst >= 0), at_worst, np.nan),
+            "model_applies": np.where(is_known, validities, VALIDITY_NOT_KNOWN),
+            "neglected_effect": np.where(is_known & (at_worst > 0), number, -1),
+            "neglected_excess": np.where(is_known & (at_worst >= 0), at_worst, np.nan),
         }
 
     def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
         if the arm has no load. index: as in `variables_of_points`.
         """
-        own = self._parameter_values("k1", index)
+        k1 = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
-        if F is None or own is None:
+        if F is None or k1 is None:
             return np.asarray(np.nan if F is None else F)
-        own = own.reshape(own.shape + (1,) * (np.ndim(F) - own.ndim))
-        return np.asarray(F) * (arm.k1 / own)
+        k1 = k1.reshape(k1.shape + (1,) * (np.ndim(F) - k1.ndim))
+        return np.asarray(F) * (arm.k1 / k1)
 
     def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
@@ -222,8 +223,8 @@ class ArmValidity:
         if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
         tapers = self._parameter_values("taper", index)
-        shares = build.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
-        return np.asarray(F) / shares.reshape(shares.shape + (1,) * max(np.ndim(F) - shares.ndim, 0))
+        ratios = build.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
+        return np.asarray(F) / ratios.reshape(ratios.shape + (1,) * max(np.ndim(F) - ratios.ndim, 0))
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
@@ -243,7 +244,7 @@ def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
     axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in NON_LOAD_KEYS}
 
     def arm(number: int) -> SlenderArm:
-        places = np.unravel_index(number, [len(column) for column in axes.values()])
-        return section.arm_of({name: float(axes[name][i]) for name, i in zip(axes, places, strict=True)})
+        position = np.unravel_index(number, [len(column) for column in axes.values()])
+        return section.arm_of({name: float(axes[name][i]) for name, i in zip(axes, position, strict=True)})
 
     return arm

@@ -25,20 +25,22 @@ def boundary_curves(plane: "Plane", view: View, rows: np.ndarray) -> "TracedCurv
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
     names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
-    at, kind, frequency, rate = map(view.by_point, names)
+    x, kind, frequency, rate = map(view.by_point, names)
     seeds = [
-        seed_of((float(at[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j]))
+        seed_of((float(x[i, j]), float(rows[i])), int(kind[i, j]), float(frequency[i, j]), float(rate[i, j]))
         for i in np.flatnonzero(np.isfinite(rows))
         for j in np.flatnonzero(kind[i])
     ]
-    found = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
+    traced = boundary_curves_through(plane, [seed for seed in seeds if seed is not None])
     # If a list is full, its last crossings are not stored, and no curve starts from them.
-    cut = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
-    return replace(found, untraced_count=found.untraced_count + int(cut[np.isfinite(rows)].clip(min=0).sum()))
+    unlisted = view.variables["crossing_count"].ravel() - np.count_nonzero(kind, axis=1)
+    return replace(
+        traced, untraced_count=traced.untraced_count + int(unlisted[np.isfinite(rows)].clip(min=0).sum())
+    )
 
 
 def criticality_along(
-    plane: "Plane", found: "TracedCurves[BoundaryCurve]", accuracy: float
+    plane: "Plane", traced: "TracedCurves[BoundaryCurve]", accuracy: float
 ) -> "list[CurveCriticality]":
     """Criticality along each curve; NaN along curves that are not Hopf curves. accuracy: relative accuracy of
     the linear results."""
@@ -48,18 +50,15 @@ def criticality_along(
         curve_criticality(plane, curve, accuracy)
         if curve.consists_of_hopf_points
         else CurveCriticality(np.full(len(curve.values), np.nan), (), 0)
-        for curve in found.curves
+        for curve in traced.curves
     ]
 
 
 def generalised_hopf_curves(
-    plane: "Plane",
-    criticalities: Sequence["CurveCriticality"],
-    third: tuple[str, Axis],
-    accuracy: float,
+    plane: "Plane", criticalities: Sequence["CurveCriticality"], third_axis: tuple[str, Axis], accuracy: float
 ) -> list[FilledVariable]:
     """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities,
-    accuracy: as in `criticality_along`. third: name and values of the third parameter.
+    accuracy: as in `criticality_along`. third_axis: name and values of the third parameter.
     """
     from ...determinant.parameter_plane import PlaneAxis
     from ...solve.hopf.bautin_curves import (
@@ -70,14 +69,14 @@ def generalised_hopf_curves(
         lies_on_curve,
     )
 
-    name, axis = third
+    name, axis = third_axis
     values = axis.array()
     value_in_plane = float(getattr(plane.rod, name))
-    along = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
+    plane_axis = PlaneAxis(name, float(values[0]), float(values[-1]), axis.is_logarithmic)
     all_values = np.append(values, value_in_plane)
-    space = BautinProblem(plane.rod, (*plane.axes, along), all_values, accuracy)
+    space = BautinProblem(plane.rod, (*plane.axes, plane_axis), all_values, accuracy)
     curves: list[BautinCurve] = []
-    for start in [as_curve_point(found, value_in_plane) for curve in criticalities for found in curve.points]:
+    for start in [as_curve_point(point, value_in_plane) for curve in criticalities for point in curve.points]:
         # A curve may return to the plane: its further points need no curve of their own.
         if not any(lies_on_curve(space, start, curve) for curve in curves):
             curves.append(bautin_curve(space, start))

@@ -36,18 +36,22 @@ if TYPE_CHECKING:
 
 
 def boundary_curve_values(
-    found: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **more: Any
+    traced: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **limit_values: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
-    differs between rows). more: values of the variables on the partial beam limit, by name.
+    differs between rows). limit_values: values of the variables on the partial beam limit, by name.
     """
     points = []
     folds = []
-    for number, curve in enumerate(found.curves, 1):
-        each = np.broadcast_arrays(curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1])
-        for *numbers, reasons in zip(*each, _end_reasons(curve.end_reasons, len(curve.values)), strict=True):
-            named = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
-            points.append((SimpleNamespace(number=number, kind=curve.consists_of_hopf_points, **named),))
+    for number, curve in enumerate(traced.curves, 1):
+        arrays = np.broadcast_arrays(
+            curve.frequency, curve.growth_rate, curve.values[:, 0], curve.values[:, 1]
+        )
+        for *numbers, reasons in zip(
+            *arrays, _end_reasons(curve.end_reasons, len(curve.values)), strict=True
+        ):
+            columns = dict(zip(("frequency", "growth_rate", *plane), numbers, strict=True)) | reasons
+            points.append((SimpleNamespace(number=number, kind=curve.consists_of_hopf_points, **columns),))
         folds += [
             _object_and_point(fold, plane, curve=number, kind=curve.consists_of_hopf_points, of=fold.axis)
             for fold in curve.folds
@@ -56,8 +60,8 @@ def boundary_curve_values(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": found.largest_seed_distance, "curves_untraced": found.untraced_count}
-    return _filled_variables(declared, values | more)
+    values |= {"curve_agreement": traced.largest_seed_distance, "curves_untraced": traced.untraced_count}
+    return _filled_variables(declared, values | limit_values)
 
 
 def criticality_record(
@@ -75,77 +79,77 @@ def criticality_record(
                 _object_and_point(point, plane, curve=number, curve_point=start + point.preceding_index + 1)
             )
         start += len(curve.criticality)
-    declared = criticality_variables(*plane)
-    values = _values_along_dimension(declared, "bautin", "bautin_", rows) | {
+    variables = criticality_variables(*plane)
+    values = _values_along_dimension(variables, "bautin", "bautin_", rows) | {
         "curve_criticality": np.concatenate([np.empty(0), *(curve.criticality for curve in criticalities)]),
         "bautin_unlocated": sum(curve.unlocated_count for curve in criticalities),
         "curve_gamma1": gamma1,
     }
-    return _filled_variables(declared, values)
+    return _filled_variables(variables, values)
 
 
 def bautin_curve_values(
-    curves: Sequence["BautinCurve"], plane: tuple[str, str], third: str
+    curves: Sequence["BautinCurve"], plane: tuple[str, str], third_parameter: str
 ) -> list[FilledVariable]:
-    """Variables of the curves of generalised Hopf points along the third parameter `third`. plane: (parameter
-    along a row, parameter that differs between rows).
+    """Variables of the curves of generalised Hopf points along the third parameter `third_parameter`. plane:
+    (parameter along a row, parameter that differs between rows).
     """
     rows = [
-        _object_and_point(point, (*plane, third), curve=number, **reasons)
+        _object_and_point(point, (*plane, third_parameter), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
         for point, reasons in zip(
             curve.points, _end_reasons(curve.end_reasons, len(curve.points)), strict=True
         )
     ]
-    declared = bautin_curve_variables(*plane, third)
+    variables = bautin_curve_variables(*plane, third_parameter)
     return _filled_variables(
-        declared, _values_along_dimension(declared, "bautin_step", "bautin_along_", rows)
+        variables, _values_along_dimension(variables, "bautin_step", "bautin_along_", rows)
     )
 
 
 def cycle_curve_values(
-    found: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
+    traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
     (parameter along a row, parameter that differs between rows).
     """
     rows: list[tuple[Any, ...]] = []
-    for number, curve in enumerate(found.curves, 1):
-        first, last = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
-        own: list[tuple[dict[str, float], Any]] = [*first, *(({}, point) for point in curve.points), *last]
-        for (further, point), reasons in zip(own, _end_reasons(curve.ends, len(own)), strict=True):
-            named = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
-            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **named), point))
-    declared = cycle_curve_variables(*plane)
-    values = _values_along_dimension(declared, "cycle_curve_point", "cycle_curve_", rows)
+    for number, curve in enumerate(traced.curves, 1):
+        start, end = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
+        points: list[tuple[dict[str, float], Any]] = [*start, *(({}, point) for point in curve.points), *end]
+        for (further, point), reasons in zip(points, _end_reasons(curve.ends, len(points)), strict=True):
+            columns = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
+            rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **columns), point))
+    variables = cycle_curve_variables(*plane)
+    values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": found.largest_seed_distance,
-        "cycle_curves_untraced": found.untraced_count,
+        "cycle_curve_agreement": traced.largest_seed_distance,
+        "cycle_curves_untraced": traced.untraced_count,
     }
-    return _filled_variables(declared, values)
+    return _filled_variables(variables, values)
 
 
-def _object_and_point(point: Any, names: Sequence[str], **further: Any) -> tuple[Any, ...]:
+def _object_and_point(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
     """Returns (object, point). The attributes of the object are the point's parameter values and errors,
-    under `names`, and the values in `further`."""
+    under `names`, and the values in `extra_values`."""
     errors = {f"{name}_error": error for name, error in zip(names, point.errors, strict=True)}
-    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **further), point
+    return SimpleNamespace(**dict(zip(names, point.values, strict=True)), **errors, **extra_values), point
 
 
 def _values_along_dimension(
-    declared: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
+    variables: Mapping[str, Variable], dimension: str, prefix: str, rows: Iterable[tuple[Any, ...]]
 ) -> dict[str, Any]:
-    """Values of the variables in `declared` that have the dimension `dimension` and whose names begin with
+    """Values of the variables in `variables` that have the dimension `dimension` and whose names begin with
     `prefix`.
 
     rows: one row for each item along the dimension, with the objects whose attributes are the values.
     """
-    along = [v for v in declared.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
-    return value_lists(along, [outcome_values(along, *row, prefix=prefix) for row in rows])
+    chosen = [v for v in variables.values() if v.extra == (dimension,) and v.name.startswith(prefix)]
+    return value_lists(chosen, [outcome_values(chosen, *row, prefix=prefix) for row in rows])
 
 
-def _filled_variables(declared: Mapping[str, Variable], values: Mapping[str, Any]) -> list[FilledVariable]:
-    return [(declared[name], np.asarray(value)) for name, value in values.items()]
+def _filled_variables(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> list[FilledVariable]:
+    return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
 
 def _end_reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
@@ -165,9 +169,9 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     line: parameter that varies along the row.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
-    own = {f"cycle_special_{line}": "at"}
+    attribute_names = {f"cycle_special_{line}": "at"}
     rows = [
-        outcome_values(variables, point, prefix="cycle_special_", names=own)
+        outcome_values(variables, point, prefix="cycle_special_", names=attribute_names)
         for point in result.special_points
     ]
     values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL_POINTS)
@@ -184,7 +188,9 @@ def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[Row
     return [
         point
         for i in np.flatnonzero(np.isfinite(rows))
-        for point in followed_special_points(kinds[i], [c[i] for c in columns], int(i), float(rows[i]))
+        for point in followed_special_points(
+            kinds[i], [column[i] for column in columns], int(i), float(rows[i])
+        )
     ]
 
 
@@ -210,17 +216,17 @@ def unstored_special_count(view: View, finite: np.ndarray) -> int:
 
 
 def with_hopf_ends(
-    found: "TracedCurves[SpecialPointCurve]",
+    traced: "TracedCurves[SpecialPointCurve]",
     plane: "Plane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "TracedCurves[SpecialPointCurve]":
-    """The curves in `found`, with ends at generalised Hopf points replaced by the points located on Hopf
+    """The curves in `traced`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced_count`.
     """
     from ...solve.branch.special.special_curves import with_generalised_hopf_ends
 
-    known = [point for curve in criticalities for point in curve.points]
-    curves = tuple(with_generalised_hopf_ends(curve, plane, known) for curve in found.curves)
-    return replace(found, curves=curves, untraced_count=found.untraced_count + unstored)
+    bautin_points = [point for curve in criticalities for point in curve.points]
+    curves = tuple(with_generalised_hopf_ends(curve, plane, bautin_points) for curve in traced.curves)
+    return replace(traced, curves=curves, untraced_count=traced.untraced_count + unstored)

@@ -69,15 +69,15 @@ class DiagramCurves:
             self.special_points_by_row[number, 0] = row.special_points
         return row
 
-    def initial_data(self, items: "Stage", chosen: Sequence[int]) -> "dict[RowKey, Any]":
-        """Special points cached on this rank, for the rows on which the half curves numbered `chosen` start.
-        items: all half curves, or rows that are solved again, which need no special points.
+    def initial_data(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
+        """Special points cached on this rank, for the rows on which the half curves numbered `item_numbers`
+        start. items: all half curves, or rows that are solved again, which need no special points.
         """
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
         if not isinstance(items, SpecialCurveTracer):
             return {}
-        keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, chosen)}
+        keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, item_numbers)}
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
     def add_initial_data(self, starts: "Mapping[RowKey, Any]") -> None:
@@ -149,7 +149,7 @@ class DiagramCurves:
         line, row = self.task.config.plane_parameters
         names = (line, row)
         options = self.task.config.phase_diagram
-        found = boundary_curves(plane, view, self.task.points.columns_by_name[row])
+        traced = boundary_curves(plane, view, self.task.points.columns_by_name[row])
         limit = {}
         if names == CRUSHING_PARAMETERS and self.task.config.is_uniform_and_linear:
             # The fold of the Hopf curve in the partial beam limit (Sec. VIII).
@@ -157,10 +157,10 @@ class DiagramCurves:
 
             Fc = filament_flutter_force()
             limit = {"filament_F_hopf": Fc, "partial_beam_k1": 4 * Fc, "partial_beam_F": 2 * Fc}
-        variables = boundary_curve_values(found, names, **limit)
+        variables = boundary_curve_values(traced, names, **limit)
         accuracy = self.task.config.accuracy
-        is_needed = options.criticality or options.cycles
-        criticalities = criticality_along(plane, found, accuracy) if is_needed else []
+        needs_criticality = options.criticality or options.cycles
+        criticalities = criticality_along(plane, traced, accuracy) if needs_criticality else []
         if options.criticality:
             variables += criticality_record(criticalities, names, self.task.config.gamma1)
         if options.bautin_parameter is not None:

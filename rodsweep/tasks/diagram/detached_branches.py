@@ -41,17 +41,17 @@ def followed_special_points(
     from ...solve.branch.special.special_curve_tracer import FOLLOWED_KINDS
     from ...solve.branch.special.special_point import RowSpecialPoint, SpecialKind
 
-    at, period, height = columns
+    positions, period, height = columns
     return [
         RowSpecialPoint(
             row_index=row_index,
             row_value=row_value,
-            kind=SpecialKind(int(kinds[j])),
-            at=float(at[j]),
-            period=float(period[j]),
-            tip_y_max=float(height[j]),
+            kind=SpecialKind(int(kinds[item])),
+            at=float(positions[item]),
+            period=float(period[item]),
+            tip_y_max=float(height[item]),
         )
-        for j in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KINDS)))
+        for item in np.flatnonzero(np.isin(kinds, tuple(FOLLOWED_KINDS)))
     ]
 
 
@@ -72,10 +72,10 @@ def detached_branch_values(view: View, changed: Mapping[int, NamedArrays]) -> li
     `rows_with_further_branches`."""
     if not changed:
         return []
-    before = view.by_point("cycle_special_count")
+    stored_counts = view.by_point("cycle_special_count")
     values = (
         [row + 1 for row in changed],
-        [int(result["cycle_special_count"]) - int(before[row]) for row, result in changed.items()],
+        [int(result["cycle_special_count"]) - int(stored_counts[row]) for row, result in changed.items()],
     )
     return [
         (variable, np.array(column))

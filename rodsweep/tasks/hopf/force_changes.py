@@ -57,8 +57,8 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
     kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGE_VARIABLES])
     rows = (
         tuple(row[v.name] for v in FORCE_CHANGE_VARIABLES)
-        for some in lines
-        for row in _thresholds_on_lines(some)
+        for lines_with_changes in lines
+        for row in _thresholds_on_lines(lines_with_changes)
     )
     table = np.fromiter(rows, kind)
     return tuple((v, table[v.name]) for v in FORCE_CHANGE_VARIABLES)
@@ -68,38 +68,38 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
     as in `force_change_variables`.
     """
-    along = points.names.index("F")
-    others = [axis for axis in range(len(points.names)) if axis != along]
-    widest = max(others, key=lambda axis: points.shape[axis])
-    step = max(1, MAX_POINTS_IN_MEMORY * points.shape[widest] // prod(points.shape))
-    for first in range(0, points.shape[widest], step):
+    F_axis = points.names.index("F")
+    others = [axis for axis in range(len(points.names)) if axis != F_axis]
+    longest_axis = max(others, key=lambda axis: points.shape[axis])
+    step = max(1, MAX_POINTS_IN_MEMORY * points.shape[longest_axis] // prod(points.shape))
+    for start in range(0, points.shape[longest_axis], step):
         index: list[slice] = [slice(None)] * len(points.shape)
-        index[widest] = slice(first, first + step)
+        index[longest_axis] = slice(start, start + step)
         columns = [points.columns[axis][index[axis]] for axis in others]
         fixed = np.stack([table.ravel() for table in np.meshgrid(*columns, indexing="ij")], axis=-1)
         growth, frequency, unstable = (
-            np.moveaxis(values[name][tuple(index)], along, len(others))
+            np.moveaxis(values[name][tuple(index)], F_axis, len(others))
             for name in ("growth_rate", "frequency", "unstable_count")
         )
-        shape = (len(fixed), points.shape[along])
-        w = (growth + 1j * frequency).reshape(*shape, -1)
+        shape = (len(fixed), points.shape[F_axis])
+        eigenvalues = (growth + 1j * frequency).reshape(*shape, -1)
         names = tuple(points.names[axis] for axis in others)
-        yield ForceLines(names, fixed, points.columns[along], w, unstable.reshape(shape))
+        yield ForceLines(names, fixed, points.columns[F_axis], eigenvalues, unstable.reshape(shape))
 
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a list of points, one line at a time. values: as in
     `force_change_variables`.
     """
-    w = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
+    eigenvalues = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_along(points.columns_by_name, "F"):
         if len(line.x) > 1:
             order = np.argsort(line.x, kind="stable")
-            at = line.indices[order]
+            indices = line.indices[order]
             fixed = np.array([[*line.parameters.values()]])
             names = tuple(line.parameters)
-            yield ForceLines(names, fixed, line.x[order], w[None, at], unstable[None, at])
+            yield ForceLines(names, fixed, line.x[order], eigenvalues[None, indices], unstable[None, indices])
 
 
 def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
@@ -109,32 +109,32 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     from .onset import locate_onset
 
     F = lines.F.tolist()
-    w = lines.eigenvalues
-    onsets = _pairs_by_line(_pairs_at_onset(lines.F, w))
-    changes = _pairs_by_line(_sign_changes(w))
+    eigenvalues = lines.eigenvalues
+    onsets = _pairs_by_line(_pairs_at_onset(lines.F, eigenvalues))
+    changes = _pairs_by_line(_sign_changes(eigenvalues))
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
-        here = w[number]
+        here = eigenvalues[number]
         rods = rod.coefficients, rod.coefficient_derivative("F")
-        far = MAX_FORCE_SPACING * (F[-1] - F[0])
-        tried = (
+        max_spacing = MAX_FORCE_SPACING * (F[-1] - F[0])
+        candidates = (
             locate_onset(rods, rod, (F[i], F[j]), here[i], here[j])
-            if F[j] - F[i] > far
+            if F[j] - F[i] > max_spacing
             else onset_between(rods, (F[i], F[j]), here[i], here[j])
             for i, j in onsets.get(number, ())
         )
-        found = [next(filter(None, tried), None)]
+        located = [next(filter(None, candidates), None)]
         for i, j in changes.get(number, ()):
-            counted = lines.unstable_counts[number, [i, j]]
-            among_stored = np.count_nonzero(here[[i, j]].real > 0, axis=-1)
-            unstable = int(np.where(counted >= 0, counted, among_stored).max())
-            found.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))
-        for change in filter(None, found):
-            named = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
-            named |= {"error": change.error / abs(change.F) if change.F else change.error}
-            named |= {"growth_rate": change.growth_rate, "frequency": change.frequency}
-            yield {f"change_{name}": value for name, value in named.items()}
+            counts = lines.unstable_counts[number, [i, j]]
+            stored_counts = np.count_nonzero(here[[i, j]].real > 0, axis=-1)
+            unstable = int(np.where(counts >= 0, counts, stored_counts).max())
+            located.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))
+        for change in filter(None, located):
+            values = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
+            values |= {"error": change.error / abs(change.F) if change.F else change.error}
+            values |= {"growth_rate": change.growth_rate, "frequency": change.frequency}
+            yield {f"change_{name}": value for name, value in values.items()}
 
 
 NeighbourPairs = NDArray[np.int64]
@@ -142,47 +142,50 @@ NeighbourPairs = NDArray[np.int64]
 point)."""
 
 
-def _sign_changes(w: Complex) -> NeighbourPairs:
+def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which the leading growth rate changes its sign.
 
-    w: eigenvalues, (lines, n, modes).
+    eigenvalues: eigenvalues, (lines, n, modes).
     """
-    growing = w[..., 0].real > 0
-    line, before, behind = _neighbouring_points(np.isfinite(w[..., 0].real))
-    differ = growing[line, before] != growing[line, behind]
-    return np.stack([line, before, behind], axis=-1)[differ]
+    growing = eigenvalues[..., 0].real > 0
+    line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., 0].real))
+    differ = growing[line, lower] != growing[line, upper]
+    return np.stack([line, lower, upper], axis=-1)[differ]
 
 
-def _pairs_at_onset(F: Array, w: Complex) -> NeighbourPairs:
+def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
     leading eigenvalue is real at the first point and complex at the second.
 
     Between forces that are close to each other, the second eigenvalue at the first point is real too;
-    otherwise a complex pair overtakes a real eigenvalue. F: forces, (n,). w: eigenvalues, (lines, n, modes).
+    otherwise a complex pair overtakes a real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines,
+    n, modes).
     """
-    if w.shape[-1] < 2:
+    if eigenvalues.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
-    real = w[..., :2].imag == 0
-    line, before, behind = _neighbouring_points(np.isfinite(w[..., :2].real).all(axis=-1))
-    far = F[behind] - F[before] > MAX_FORCE_SPACING * np.ptp(F)
-    begins = real[line, before, 0] & (real[line, before, 1] | far) & (w[line, behind, 0].imag > 0)
-    return np.stack([line, before, behind], axis=-1)[begins]
+    is_real = eigenvalues[..., :2].imag == 0
+    line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., :2].real).all(axis=-1))
+    is_far = F[upper] - F[lower] > MAX_FORCE_SPACING * np.ptp(F)
+    is_onset = (
+        is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & (eigenvalues[line, upper, 0].imag > 0)
+    )
+    return np.stack([line, lower, upper], axis=-1)[is_onset]
 
 
-def _neighbouring_points(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
+def _neighbouring_points(has_eigenvalues: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     """Returns three index arrays, (pairs,), for pairs of neighbouring points with eigenvalues: line, first
     point, second point.
 
-    Points without eigenvalues are skipped. known: whether a point has eigenvalues, (lines, n).
+    Points without eigenvalues are skipped. has_eigenvalues: whether a point has eigenvalues, (lines, n).
     """
-    line, point = np.nonzero(known)
-    together = line[1:] == line[:-1]
-    return line[1:][together], point[:-1][together], point[1:][together]
+    line, point = np.nonzero(has_eigenvalues)
+    same_line = line[1:] == line[:-1]
+    return line[1:][same_line], point[:-1][same_line], point[1:][same_line]
 
 
 def _pairs_by_line(steps: NeighbourPairs) -> dict[int, list[tuple[int, int]]]:
     """Pairs (index of the first point, index of the second point), by index of the line."""
-    found: dict[int, list[tuple[int, int]]] = {}
-    for line, before, behind in steps.tolist():
-        found.setdefault(line, []).append((before, behind))
-    return found
+    pairs: dict[int, list[tuple[int, int]]] = {}
+    for line, lower, upper in steps.tolist():
+        pairs.setdefault(line, []).append((lower, upper))
+    return pairs

@@ -49,10 +49,10 @@ class HopfLine:
 
         forget_arm_determinants()
         start = self.start
-        stop = self.stop
+        end = self.stop
         if self.varied_parameter == "F":
-            stop = min(
-                stop,
+            end = min(
+                end,
                 self._crushing_force_ratio
                 * self.fixed_parameters["k1"]
                 * (1 - CRUSHING_END_SETTINGS.crushing_margin),
@@ -63,12 +63,12 @@ class HopfLine:
                 self.fixed_parameters["F"]
                 / (self._crushing_force_ratio * (1 - CRUSHING_END_SETTINGS.crushing_margin)),
             )
-        if not start < stop:
+        if not start < end:
             return None
-        at_start: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
+        start_values: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
         try:
             return find_axis_crossings(
-                Path(Rod(**at_start, build=self.build), self.varied_parameter), start, stop
+                Path(Rod(**start_values, build=self.build), self.varied_parameter), start, end
             )
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
@@ -99,19 +99,19 @@ def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterat
         ends = [_finite_range(columns[name])] * len(rods)
         builds = [points.build] * len(rods)
     else:
-        different, numbers = points.builds_of_rods
+        distinct_builds, numbers = points.builds_of_rods
         table = np.stack([numbers, *(columns[n] for n in others)], axis=-1)
         lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
-        cuts = np.cumsum(np.bincount(line.ravel()))[:-1]
-        ends = [_finite_range(values) for values in np.split(columns[name][order], cuts)]
+        line_starts = np.cumsum(np.bincount(line.ravel()))[:-1]
+        ends = [_finite_range(values) for values in np.split(columns[name][order], line_starts)]
         rods = lines[:, 1:]
-        builds = [different[int(number)] for number in lines[:, 0]]
-    shared = Counter(map(tuple, rods.tolist()))
-    for rod, (start, stop), build in zip(map(tuple, rods.tolist()), ends, builds, strict=True):
-        if start < stop and shared[rod] == 1:
-            first = min(start, 0.0) if name == "F" else start
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), first, stop, build)
+        builds = [distinct_builds[int(number)] for number in lines[:, 0]]
+    rod_counts = Counter(map(tuple, rods.tolist()))
+    for rod, (start, end), build in zip(map(tuple, rods.tolist()), ends, builds, strict=True):
+        if start < end and rod_counts[rod] == 1:
+            search_start = min(start, 0.0) if name == "F" else start
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), search_start, end, build)
 
 
 def _finite_range(values: np.ndarray) -> tuple[float, float]:
@@ -121,15 +121,15 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 
 
 def hopf_variables(
-    names: Collection[str], lines: Sequence[HopfLine], found: "Sequence[ThresholdSearchResult | None]"
+    names: Collection[str], lines: Sequence[HopfLine], results: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
     """Hopf points of all lines, one line after another, as variables of a file.
 
-    names: parameters of the file. found: result of the search on each line.
+    names: parameters of the file. results: result of the search on each line.
     """
-    known = [(line, each) for line, each in zip(lines, found, strict=True) if each is not None]
-    rows = [_hopf_point_values(line, crossing) for line, each in known for crossing in each.thresholds]
-    proved = sum(each.proved_to_the_end for _, each in known)
+    solved = [(line, result) for line, result in zip(lines, results, strict=True) if result is not None]
+    rows = [_hopf_point_values(line, crossing) for line, result in solved for crossing in result.thresholds]
+    proved = sum(result.proved_to_the_end for _, result in solved)
     counts = {"hopf_lines": len(lines), "hopf_lines_proved": proved}
     return tuple(
         (v, np.array(counts[v.name] if v.name in counts else [row[v.name] for row in rows], v.dtype))

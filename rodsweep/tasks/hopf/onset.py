@@ -27,27 +27,31 @@ MESH_ACCURACY = 1e-6
 
 
 def locate_onset(
-    rods: CoefficientsAlongForce, rod: Rod, ends: tuple[float, float], before: Complex, after: Complex
+    rods: CoefficientsAlongForce,
+    rod: Rod,
+    ends: tuple[float, float],
+    lower_eigenvalues: Complex,
+    upper_eigenvalues: Complex,
 ) -> StabilityChange | None:
     """The force between the forces `ends` at which the two leading real eigenvalues merge into a pair; None
     if no such force is found.
 
-    rods: coefficients of `rod` at F = 0, and their derivative by F. before, after: leading eigenvalues at the
-    first and second force, (modes,); the leading eigenvalue is real at the first force and complex at the
-    second.
+    rods: coefficients of `rod` at F = 0, and their derivative by F. lower_eigenvalues, upper_eigenvalues:
+    leading eigenvalues at the first and second force, (modes,); the leading eigenvalue is real at the first
+    force and complex at the second.
     """
     low, high = ends
     for _ in range(1 + MAX_HALVINGS):
-        if not before[:2].imag.any():
-            change = onset_between(rods, (low, high), before, after)
+        if not lower_eigenvalues[:2].imag.any():
+            change = onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)
             if change is not None and _leads(rod, change):
                 return change
         middle = (low + high) / 2
         eigenvalues = leading_pair_on_mesh(rod.with_coordinate("F", middle))
         if eigenvalues[0].imag:
-            high, after = middle, eigenvalues
+            high, upper_eigenvalues = middle, eigenvalues
         else:
-            low, before = middle, eigenvalues
+            low, lower_eigenvalues = middle, eigenvalues
     return None
 
 
@@ -62,7 +66,7 @@ def leading_pair_on_mesh(rod: Rod) -> Complex:
     """The two leading eigenvalues of a uniform rod, in 1/tau2, (2,), on a mesh of the relative accuracy
     MESH_ACCURACY."""
     wave_number = expected_wave_number(2, most_amplified_wave(rod)[1])
-    form = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
-    inverses = np.linalg.eigvals(shifted_inverse(form.A, form.B, 0.0)).astype(complex)
-    w = 1 / inverses[inverses != 0]
-    return w[np.lexsort((-w.imag, -w.real))[:2]]
+    eigenproblem = dense_eigenproblem(rod, pencil_on(resolution_for(wave_number, MESH_ACCURACY)))
+    inverses = np.linalg.eigvals(shifted_inverse(eigenproblem.A, eigenproblem.B, 0.0)).astype(complex)
+    eigenvalues = 1 / inverses[inverses != 0]
+    return eigenvalues[np.lexsort((-eigenvalues.imag, -eigenvalues.real))[:2]]

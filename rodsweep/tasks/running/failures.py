@@ -41,8 +41,8 @@ class FailureReasons:
             return []
         if len(self.examples) >= MAX_FAILURE_REASONS:
             return []
-        where = self.point_text(int(index))
-        line = " ".join(f"{where}: {result.status.name} {result.message}".split())
+        point = self.point_text(int(index))
+        line = " ".join(f"{point}: {result.status.name} {result.message}".split())
         if failure_kind(line) in self.examples:
             return []
         self.examples[failure_kind(line)] = line
@@ -54,9 +54,9 @@ def reasons_of_changed_points(
 ) -> list[str]:
     """Distinct reasons why points that have changed since they were solved failed, as in `FailureReasons`.
     statuses: all statuses that a point can have. point_text: as in `FailureReasons`."""
-    by_value = {int(status): status for status in statuses}
+    status_by_value = {int(status): status for status in statuses}
     reasons = FailureReasons(point_text)
     for index, values in result.changed_points.items():
-        status = by_value[int(values[STATUS.name])]
+        status = status_by_value[int(values[STATUS.name])]
         reasons.add(index, SimpleNamespace(status=status, message=result.messages[index]))
     return [*reasons.examples.values()]

@@ -32,34 +32,34 @@ def solved_view(job: Job) -> View:
     PETSc or SLEPc is missing.
     """
     require_solvers()
-    started = utc_time()
+    start = utc_time()
     solver = job.solver()
     plan = plan_of(job, solver, Shard(), blas_kernels())
     solver.warm_up()
     count = job.points.count
-    flat = {name: np.repeat(fill[None], count, axis=0) for name, fill in plan.layout.empty_point.items()}
+    columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
         for index in range(count):
             record = solver.record(index, solver.solve(index))
-            for name, array in flat.items():
+            for name, array in columns.items():
                 array[index] = record[name]
-    values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in flat.items()}
+    values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in columns.items()}
     view = view_in_memory(job, plan, values)
     return replace(
-        view, attributes=view.attributes | plan.attributes | {"started": started, "finished": utc_time()}
+        view, attributes=view.attributes | plan.attributes | {"started": start, "finished": utc_time()}
     )
 
 
 def view_in_memory(
-    job: Job, plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[FilledVariable] = ()
+    job: Job, plan: Plan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable] = ()
 ) -> View:
     """Results as a `View`, with only the attributes `task` and `config_resolved`.
 
-    values: variables of the layout by name, shape (points, own dimensions). filled: variables that do not
+    values: variables of the layout by name, shape (points, own dimensions). sweep_wide: variables that do not
     belong to single points, with values.
     """
-    coordinates, variables = stored_variables(plan, values, filled)
+    coordinates, variables = stored_variables(plan, values, sweep_wide)
     return View(
         Path(job.title),
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
@@ -75,9 +75,9 @@ def view_in_memory(
 
 
 def stored_variables(
-    plan: Plan, values: Mapping[str, np.ndarray], filled: Sequence[FilledVariable]
+    plan: Plan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
-    """Returns (coordinates, variables) of the file of a plan, by name. values, filled: as in
+    """Returns (coordinates, variables) of the file of a plan, by name. values, sweep_wide: as in
     `view_in_memory`.
     """
     coordinates = _coordinates(plan)
@@ -85,11 +85,11 @@ def stored_variables(
     for variable in plan.layout.variables:
         dimensions = (*plan.dimensions, *variable.extra)
         variables[variable.name] = (dimensions, values[variable.name], variable.attributes)
-    for variable, array in filled:
+    for variable, array in sweep_wide:
         data = array.astype(variable.dtype)
         variables[variable.name] = (variable.extra, data, variable.attributes)
-        for name, extent in zip(variable.extra, data.shape, strict=True):
-            coordinates.setdefault(name, ((name,), np.arange(1, extent + 1), dimension_attributes(name)))
+        for name, length in zip(variable.extra, data.shape, strict=True):
+            coordinates.setdefault(name, ((name,), np.arange(1, length + 1), dimension_attributes(name)))
     variables["status"][2].update(flag_attributes(((MISSING_STATUS, "missing"), *plan.flags)))
     return coordinates, variables
 
@@ -97,18 +97,18 @@ def stored_variables(
 def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
     """Coordinates of the points and of all other dimensions of a plan, by name."""
     points = plan.points
-    found: dict[str, StoredVariable] = {}
+    coordinates: dict[str, StoredVariable] = {}
     if not points.axes:
         rows = np.arange(1, points.count + 1, dtype="<i4")
-        found["point"] = (("point",), rows, dimension_attributes("point"))
+        coordinates["point"] = (("point",), rows, dimension_attributes("point"))
     for name, column in () if points.arm_axes else points.columns_by_name.items():
-        found[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
+        coordinates[name] = ((name if points.is_grid else "point",), column, dimension_attributes(name))
     for variable, values in plan.quantities:
-        found[variable.name] = (variable.extra, values, variable.attributes)
-    for name, extent in plan.layout.extents.items():
-        coordinate = plan.coordinates.get(name, np.arange(1, extent + 1))
-        found[name] = ((name,), coordinate, dimension_attributes(name))
-    return found
+        coordinates[variable.name] = (variable.extra, values, variable.attributes)
+    for name, length in plan.layout.extents.items():
+        coordinate = plan.coordinates.get(name, np.arange(1, length + 1))
+        coordinates[name] = ((name,), coordinate, dimension_attributes(name))
+    return coordinates
 
 
 @cache

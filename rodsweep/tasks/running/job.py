@@ -76,11 +76,13 @@ class Job:
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
-        once = solver_with_outcome_cache(self._with_arm_results(solver), self.points, self.layout)
+        cached_solver = solver_with_outcome_cache(self._with_arm_results(solver), self.points, self.layout)
         arm_statuses = self.points.arm_statuses
         if arm_statuses is None or not arm_statuses.any():
-            return once
-        return SkippingSolver(once, arm_statuses, self.points.failures, self.layout).solver_of_all_points()
+            return cached_solver
+        return SkippingSolver(
+            cached_solver, arm_statuses, self.points.failures, self.layout
+        ).solver_of_all_points()
 
     def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
@@ -88,20 +90,20 @@ class Job:
         """
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = quantities_at_points(self.quantities, self.points)
-        as_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
+        is_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
             return (
                 values
-                | si_values(values, index, layout, quantities, as_force)
+                | si_values(values, index, layout, quantities, is_force)
                 | validity.variables_of_points(values, index)
             )
 
         def together(indices: NDArray[np.int64]) -> StretchResult:
             assert solver.stretched is not None
-            found = solver.stretched[1](indices)
-            return replace(found, values=complete(found.values, indices))
+            result = solver.stretched[1](indices)
+            return replace(result, values=complete(result.values, indices))
 
         return replace(
             solver,
@@ -141,40 +143,40 @@ def job_of_config(
             "machine; use fewer values"
         )
     count = grid_size(config)
-    resolved = resolved_config(config)
-    layout = layout_of(resolved)
-    each = layout.bytes_per_point
-    if count * each > MAX_FILE_BYTES:
+    document = resolved_config(config)
+    layout = layout_of(document)
+    bytes_per_point = layout.bytes_per_point
+    if count * bytes_per_point > MAX_FILE_BYTES:
         raise InputError(
             f"{path}: parameters make a grid of {count:.6g} points, whose results take "
-            f"{count * each:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
+            f"{count * bytes_per_point:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
             "fewer values"
         )
-    if each > MAX_RECORD_BYTES:
+    if bytes_per_point > MAX_RECORD_BYTES:
         raise InputError(
-            f"{path}: the results of one point take {each / 1e9:.3g} GB, more than the "
+            f"{path}: the results of one point take {bytes_per_point / 1e9:.3g} GB, more than the "
             f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
             "values are stored"
         )
     points = replace(points_of(config, path.parent, flutter), build=config.build)
-    return Job(path, config, source, points, TASKS[config.task](config, points), resolved, layout)
+    return Job(path, config, source, points, TASKS[config.task](config, points), document, layout)
 
 
 def plan_without_solver(config: Config, points: Points) -> Plan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
-    resolved = resolved_config(config)
+    document = resolved_config(config)
     task = TASKS[config.task](config, replace(points, build=config.build))
-    return _plan(task, resolved, layout_of(resolved))
+    return _plan(task, document, layout_of(document))
 
 
-def _plan(task: Task, resolved: dict[str, Any], layout: Layout) -> Plan:
+def _plan(task: Task, document: dict[str, Any], layout: Layout) -> Plan:
     return Plan(
         points=task.points,
         layout=layout,
         coordinates=task.coordinates(),
         variables_from_config=task.variables_from_config,
         variables_from_points=task.variables_from_points,
-        config=resolved,
+        config=document,
         attributes={},
         flags=(),
         chains=task.chains,
@@ -187,7 +189,7 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
     return replace(
         _plan(job.task, job.resolved, job.layout),
         quantities=job.quantities,
-        flags=tuple((int(s), s.name) for s in statuses),
+        flags=tuple((int(status), status.name) for status in statuses),
     )
 
 
@@ -216,7 +218,7 @@ def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> 
         "config": job.config_text,
         "petsc_options": petsc.user_options_text(),
         "shard": "",
-        "status_sentences": "\n".join(f"{s.name}: {s.sentence}" for s in statuses),
+        "status_sentences": "\n".join(f"{status.name}: {status.sentence}" for status in statuses),
         provenance.KERNELS_ATTRIBUTE: kernels,
     }
     versions = {f"{name}_version": value for name, value in petsc.versions().items()}

@@ -84,8 +84,9 @@ class _Guard:
         """
         began = time.perf_counter()
         try:
-            found, state = solve()
-            return RecordedOutcome(found.status, found.message, self.guarded.record(index, found)), state
+            outcome, state = solve()
+            record = self.guarded.record(index, outcome)
+            return RecordedOutcome(outcome.status, outcome.message, record), state
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
@@ -120,10 +121,10 @@ class _Guard:
 
 def describe_exception(error: Exception) -> str:
     """An unforeseen exception in one line: class, message, and the line of code that raised the exception."""
-    said = " ".join(str(error).split())
-    place = traceback.extract_tb(error.__traceback__)[-1]
-    where = f"{Path(place.filename).name}, line {place.lineno}, in {place.name}"
-    return f"unforeseen {type(error).__name__}{': ' if said else ''}{said} ({where}), a bug of rodsweep"
+    message = " ".join(str(error).split())
+    frame = traceback.extract_tb(error.__traceback__)[-1]
+    place = f"{Path(frame.filename).name}, line {frame.lineno}, in {frame.name}"
+    return f"unforeseen {type(error).__name__}{': ' if message else ''}{message} ({place}), a bug of rodsweep"
 
 
 def log_file(output: Path) -> Path:
@@ -136,14 +137,15 @@ class TracebackLog:
     tracebacks.
     """
 
-    def __init__(self, output: Path, rank: int, where: Callable[[int], str], strict: bool = False):
-        """output: the result file. rank: number of this rank. where: function from the flat index of a point
-        to a text with its parameters. strict: whether every exception is raised again after it is logged.
+    def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
+        """output: the result file. rank: number of this rank. point_text: function from the flat index of a
+        point to a text with its parameters. is_strict: whether every exception is raised again after it is
+        logged.
         """
-        self.strict = strict
+        self.strict = is_strict
         self.path = log_file(output)
         self.rank = rank
-        self.point_text = where
+        self.point_text = point_text
         self.count = 0
         """Number of unforeseen exceptions on this rank."""
         self._known: set[str] = set()
@@ -172,13 +174,15 @@ class TracebackLog:
             raise error
 
     def _write(self, place: str, error: Exception) -> None:
-        head = f"{utc_time()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
+        heading = (
+            f"{utc_time()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
+        )
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text
         self._known.add(text)
         handle = os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
         try:  # a single call, so that lines of different ranks do not mix
-            os.write(handle, f"{head}{body}\n".encode(errors="backslashreplace"))
+            os.write(handle, f"{heading}{body}\n".encode(errors="backslashreplace"))
         finally:
             os.close(handle)

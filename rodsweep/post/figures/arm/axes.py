@@ -39,16 +39,16 @@ def add_arm_scales(figure: Figure, views: Sequence[View]) -> None:
 def _add_si_scales(figure: Figure, views: Sequence[View]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
     load = "force" if all(view.load_kind == "force" for view in views) else "pressure"
-    given = [view.quantities.get(SCALE_NAME[load]) for view in views]
-    units = {float(unit) for values in given if values is not None for unit in np.ravel(values)}
-    if len(units) != 1 or any(values is None for values in given):
+    factors = [view.quantities.get(SCALE_NAME[load]) for view in views]
+    units = {float(unit) for values in factors if values is not None for unit in np.ravel(values)}
+    if len(units) != 1 or any(values is None for values in factors):
         return
     (unit,) = units
     for axes in list(figure.axes):
-        for which in ("x", "y"):
-            label, scale = (getattr(axes, f"get_{which}{what}")() for what in ("label", "scale"))
+        for letter in ("x", "y"):
+            label, scale = (getattr(axes, f"get_{letter}{what}")() for what in ("label", "scale"))
             if label in (LABELS["F"], CRITICAL_FORCE_LABEL) and scale in SCALES_WITH_SECOND_AXIS:
-                _add_second_scale(_outermost_panel(axes, which), which, unit, load)
+                _add_second_scale(_outermost_panel(axes, letter), letter, unit, load)
 
 
 def _add_poisson_scales(figure: Figure, view: View) -> None:
@@ -58,54 +58,54 @@ def _add_poisson_scales(figure: Figure, view: View) -> None:
     if not view.is_grid or len(ratios) < 2 or len(ratios) != len(stiffnesses):
         return
     for axes in list(figure.axes):
-        for which in ("x", "y"):
-            if getattr(axes, f"get_{which}label")() != LABELS["k2"]:
+        for letter in ("x", "y"):
+            if getattr(axes, f"get_{letter}label")() != LABELS["k2"]:
                 continue
-            panel = _outermost_panel(axes, which)
-            limits = sorted(getattr(panel, f"get_{which}lim")())
-            inside = MaxNLocator(MAX_TICK_INTERVALS).tick_values(ratios.min(), ratios.max())
-            inside = inside[(inside >= ratios.min()) & (inside <= ratios.max())]
-            at = np.array([shear_stiffness(view, float(ratio)) for ratio in inside])
+            panel = _outermost_panel(axes, letter)
+            limits = sorted(getattr(panel, f"get_{letter}lim")())
+            ticks = MaxNLocator(MAX_TICK_INTERVALS).tick_values(ratios.min(), ratios.max())
+            ticks = ticks[(ticks >= ratios.min()) & (ticks <= ratios.max())]
+            positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
             # The ends of the range are drawn, whatever the rounding error.
-            shown = (at >= limits[0] * (1 - ROUNDING)) & (at <= limits[1] * (1 + ROUNDING))
-            second = panel.secondary_xaxis("top") if which == "x" else panel.secondary_yaxis("right")
-            getattr(second, f"set_{which}label")("Poisson's ratio")
-            texts = [f"{ratio:.4g}" for ratio in inside[shown]]
-            getattr(second, f"set_{which}ticks")(at[shown], texts)
-            getattr(second, f"{which}axis").set_minor_locator(NullLocator())
+            is_visible = (positions >= limits[0] * (1 - ROUNDING)) & (positions <= limits[1] * (1 + ROUNDING))
+            poisson_axis = panel.secondary_xaxis("top") if letter == "x" else panel.secondary_yaxis("right")
+            getattr(poisson_axis, f"set_{letter}label")("Poisson's ratio")
+            texts = [f"{ratio:.4g}" for ratio in ticks[is_visible]]
+            getattr(poisson_axis, f"set_{letter}ticks")(positions[is_visible], texts)
+            getattr(poisson_axis, f"{letter}axis").set_minor_locator(NullLocator())
 
 
-def _outermost_panel(axes: Axes, which: str) -> Axes:
+def _outermost_panel(axes: Axes, letter: str) -> Axes:
     """The top panel of the column (which = "x") or the rightmost panel of the row (which = "y") of `axes`,
     among the panels that share this axis with `axes`; `axes` itself if it is in no grid of panels."""
-    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
+    shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
     grid_cell = axes.get_subplotspec()
-    panels = [other for other in shared.get_siblings(axes) if other.get_subplotspec() is not None]
+    panels = [panel for panel in shared_axes.get_siblings(axes) if panel.get_subplotspec() is not None]
     if grid_cell is None or not panels:
         return axes
-    if which == "x":
-        column = [other for other in panels if other.get_subplotspec().colspan == grid_cell.colspan]
-        return min(column, key=lambda other: other.get_subplotspec().rowspan.start)
-    row = [other for other in panels if other.get_subplotspec().rowspan == grid_cell.rowspan]
-    return max(row, key=lambda other: other.get_subplotspec().colspan.start)
+    if letter == "x":
+        column = [panel for panel in panels if panel.get_subplotspec().colspan == grid_cell.colspan]
+        return min(column, key=lambda panel: panel.get_subplotspec().rowspan.start)
+    row = [panel for panel in panels if panel.get_subplotspec().rowspan == grid_cell.rowspan]
+    return max(row, key=lambda panel: panel.get_subplotspec().colspan.start)
 
 
-def _add_second_scale(axes: Axes, which: str, unit: float, load: str) -> None:
-    """Adds a second scale to a panel, opposite to the axis `which` ("x" or "y"). unit: load at F = 1, in SI
+def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
+    """Adds a second scale to a panel, opposite to the axis `letter` ("x" or "y"). unit: load at F = 1, in SI
     units. load: kind of load.
     """
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
-    largest = unit * max(map(abs, getattr(axes, f"get_{which}lim")()))
+    largest = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
     power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 else 0
     power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))
     unit *= 10.0**-power
     symbol = EngFormatter.ENG_PREFIXES[power] + symbol
     functions = partial(np.multiply, unit), partial(np.multiply, 1 / unit)
-    if which == "x":
-        second = axes.secondary_xaxis("top", functions=functions)
-        second.set_xlabel(f"{word} ({symbol})")
+    if letter == "x":
+        si_axis = axes.secondary_xaxis("top", functions=functions)
+        si_axis.set_xlabel(f"{word} ({symbol})")
     else:
-        second = axes.secondary_yaxis("right", functions=functions)
-        second.set_ylabel(f"{word} ({symbol})")
-    getattr(second, f"{which}axis").set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))
+        si_axis = axes.secondary_yaxis("right", functions=functions)
+        si_axis.set_ylabel(f"{word} ({symbol})")
+    getattr(si_axis, f"{letter}axis").set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))

@@ -64,30 +64,32 @@ def draw_arm_map(request: FigureRequest) -> str:
     axes = sorted(long, key=lambda name: -len(view.variables[name]))[:2]
     x = next(name for name in view.arm_axes if name in axes)
     y = next((name for name in view.arm_axes if name in axes and name != x), "")
-    first = {name: 0 for name in view.arm_axes if name not in axes}
-    if DRAG_AXIS in first:  # the likeliest drag has the smallest number
-        first[DRAG_AXIS] = int(np.argmin(view.variables[DRAG_AXIS]))
-    index = tuple(first.get(name, slice(None)) for name in view.arm_axes)
+    indices = {name: 0 for name in view.arm_axes if name not in axes}
+    if DRAG_AXIS in indices:  # the likeliest drag has the smallest number
+        indices[DRAG_AXIS] = int(np.argmin(view.variables[DRAG_AXIS]))
+    index = tuple(indices.get(name, slice(None)) for name in view.arm_axes)
     panels = PANEL_MAKERS[view.task](view)
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
-    figure, drawn = _new_panels(len(panels), request.look.is_narrow, bool(y))
+    figure, plots = _new_panels(len(panels), request.look.is_narrow, bool(y))
     handles: list[Artist] = []
-    for subplot, panel in zip(drawn, panels, strict=True):
+    for subplot, panel in zip(plots, panels, strict=True):
         if y:
             handles = [*handles, *_draw_map(subplot, panel, view, (x, y), index)]
         else:
             handles = [*handles, *_draw_curves(subplot, panel, view, x, index)]
-    covers = [
+    cover_texts = [
         _cover_invalid_cells(plot, view, panel, (x, y), index)
-        for plot, panel in zip(drawn, panels, strict=True)
+        for plot, panel in zip(plots, panels, strict=True)
     ]
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
-    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
-    banded = [DRAG_AXIS] if not y and DRAG_AXIS in first and len(view.variables[DRAG_AXIS]) > 1 else []
-    figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + banded)))
+    style.legend_below(figure, [*reversed(entries.values()), *cover_texts[0]], columns=3)
+    band_axes = [DRAG_AXIS] if not y and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
+    figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + band_axes)))
     labels = " and ".join(panel.label for panel in panels)
-    cut = _section_text(view, {name: at for name, at in first.items() if name not in banded})
-    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{cut}")
+    constants_text = _section_text(
+        view, {name: place for name, place in indices.items() if name not in band_axes}
+    )
+    return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{constants_text}")
 
 
 def _section_text(view: View, indices: dict[str, int]) -> str:
@@ -106,9 +108,9 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
     user has not chosen another kind of figure.
     """
     view = request.views[0]
-    chosen = request.what not in (None, *MAP_KINDS) or request.points or request.roots
-    several = any(len(view.variables[name]) > 1 for name in view.arm_axes)
-    return len(request.views) == 1 and several and view.task in PANEL_MAKERS and not chosen
+    has_other_options = request.what not in (None, *MAP_KINDS) or request.points or request.roots
+    has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)
+    return len(request.views) == 1 and has_map and view.task in PANEL_MAKERS and not has_other_options
 
 
 def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
@@ -120,13 +122,14 @@ def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
     return values, quantity_words(name) + (f" ({unit})" if unit else "")
 
 
-def _new_panels(count: int, narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `count` panels: side by side if `maps` and not `narrow`, else stacked."""
-    across = maps and not narrow
-    size = (4.8 * count, 4.4) if across else (4.6, 2.9 * count)
-    apart = ConstrainedLayoutEngine(wspace=0.06 if across else 0.0)  # room for the label of a colour bar
-    figure = Figure(figsize=size, layout=apart)
-    shape = (1, count) if across else (count, 1)
+def _new_panels(count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[Axes]]:
+    """Returns (figure, panels) with `count` panels: side by side if `maps` and not `is_narrow`, else
+    stacked."""
+    is_one_row = maps and not is_narrow
+    size = (4.8 * count, 4.4) if is_one_row else (4.6, 2.9 * count)
+    layout = ConstrainedLayoutEngine(wspace=0.06 if is_one_row else 0.0)  # room for the label of a colour bar
+    figure = Figure(figsize=size, layout=layout)
+    shape = (1, count) if is_one_row else (count, 1)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
@@ -157,16 +160,16 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
     for colour, (line, values) in zip(
         colours, (panel.threshold_lines or {"": panel.values}).items(), strict=False
     ):
-        style_of_line = "o" if name == DRAG_AXIS else "-o"
-        axes.plot(x, values[index], style_of_line, ms=2.5, lw=1.2, color=colour)
+        line_format = "o" if name == DRAG_AXIS else "-o"
+        axes.plot(x, values[index], line_format, ms=2.5, lw=1.2, color=colour)
         handles += _draw_drag_band(axes, view, name, values, index, colour)
         if line and np.isfinite(values[index]).any():
             handles.append(Line2D([], [], color=colour, marker="o", ms=2.5, lw=1.2, label=line))
     style.scale_axis(axes, "x", x)
     if name == DRAG_AXIS:
         axes.set_xticks(x, [DRAG_NAMES[int(drag)].replace("_", "\n") for drag in x], rotation=90)
-    several = sum(isinstance(each, Line2D) for each in handles) > 1
-    style.label_outer(axes, label, panel.lines_label if several else panel.label)
+    has_several_lines = sum(isinstance(artist, Line2D) for artist in handles) > 1
+    style.label_outer(axes, label, panel.lines_label if has_several_lines else panel.label)
     return handles
 
 
@@ -178,8 +181,10 @@ def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, c
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
     drag = view.arm_axes.index(DRAG_AXIS)
-    whole = np.moveaxis(values, drag, -1)[tuple(each for i, each in enumerate(index) if i != drag)]
-    low, high = (extreme.reduce(whole, axis=-1) for extreme in (np.fmin, np.fmax))
+    values_by_drag = np.moveaxis(values, drag, -1)[
+        tuple(axis_index for i, axis_index in enumerate(index) if i != drag)
+    ]
+    low, high = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
     axes.fill_between(
         _axis_values_and_label(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1
     )
@@ -196,19 +201,19 @@ def _cover_invalid_cells(
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []
-    across = cell_edges(_axis_values_and_label(view, x)[0])
+    x_edges = cell_edges(_axis_values_and_label(view, x)[0])
     limits = axes.get_ylim()
-    up = cell_edges(_axis_values_and_label(view, y)[0]) if y else np.array(limits)
+    y_edges = cell_edges(_axis_values_and_label(view, y)[0]) if y else np.array(limits)
     handles: list[Artist] = []
     for variable, value, label, look in COVERED_CELL_LOOKS:
-        chosen = view.variables[variable][index] == value
-        empty.append((chosen if variable == "status" else chosen & rods, label, look))
-    for chosen, label, look in empty:
-        for i, j in np.argwhere(chosen if y else chosen[:, None]):
-            corner = across[[i, i + 1]], up[[j, j + 1]]
+        is_covered = view.variables[variable][index] == value
+        empty.append((is_covered if variable == "status" else is_covered & rods, label, look))
+    for is_covered, label, look in empty:
+        for i, j in np.argwhere(is_covered if y else is_covered[:, None]):
+            corner = x_edges[[i, i + 1]], y_edges[[j, j + 1]]
             axes.fill_between(corner[0], *corner[1], ec=MAP_HATCH_COLOUR, lw=0, zorder=3 if y else 0, **look)
-        if chosen.any():
+        if is_covered.any():
             handles.append(Patch(label=label, ec=MAP_HATCH_COLOUR, lw=0.5, **look))
-    axes.set_xlim(across[0], across[-1])
-    axes.set_ylim(up[0], up[-1]) if y else axes.set_ylim(limits)
+    axes.set_xlim(x_edges[0], x_edges[-1])
+    axes.set_ylim(y_edges[0], y_edges[-1]) if y else axes.set_ylim(limits)
     return handles

@@ -36,11 +36,13 @@ def _threshold_panels(view: View) -> list[Panel]:
     restabilization), and frequency at flutter.
     """
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
-    load, si, typed = ("force", "N", "force") if view.load_kind == "force" else ("pressure", "Pa", "young")
+    load, si, unit_quantity = (
+        ("force", "N", "force") if view.load_kind == "force" else ("pressure", "Pa", "young")
+    )
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
         lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(
-            view, typed, view.variables[f"{load}_{event}"], si
+            view, unit_quantity, view.variables[f"{load}_{event}"], si
         )
     flutter = lines[THRESHOLD_KIND_WORDS["hopf"]]
     return [

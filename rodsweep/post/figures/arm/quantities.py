@@ -38,9 +38,9 @@ def quantity_text(view: View, name: str, value: float) -> str:
     """
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"
-    shown, unit = in_typed_unit(view, name, np.array([value]))
+    converted, unit = in_typed_unit(view, name, np.array([value]))
     unit = unit.replace("^3", "$^3$").replace("*", " ").replace(" ", NO_BREAK)
-    return f"{quantity_words(name)}{NO_BREAK}{shown[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
+    return f"{quantity_words(name)}{NO_BREAK}{converted[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 
 
 def given_quantities(view: View) -> list[str]:
@@ -48,19 +48,19 @@ def given_quantities(view: View) -> list[str]:
     return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
 
 
-def constant_quantities_text(view: View, drawn: Sequence[str] = ()) -> str:
-    """Constant quantities of the arm with their values, as text; empty without an arm. drawn: names of the
-    quantities on axes."""
+def constant_quantities_text(view: View, drawn_names: Sequence[str] = ()) -> str:
+    """Constant quantities of the arm with their values, as text; empty without an arm. drawn_names: names of
+    the quantities on axes."""
     texts = []
     for name, values in view.quantities.items():
-        if name in drawn or name in ARM_SCALES:
+        if name in drawn_names or name in ARM_SCALES:
             continue
         if (
             np.size(values) > 1 and name not in view.arm_axes
         ):  # varies with another quantity, as a relative load
             continue
-        more = f" (of {len(values)} values)" if np.size(values) > 1 else ""
-        texts.append(quantity_text(view, name, float(np.min(values))) + more)
+        count_clause = f" (of {len(values)} values)" if np.size(values) > 1 else ""
+        texts.append(quantity_text(view, name, float(np.min(values))) + count_clause)
     return ", ".join(texts)
 
 
@@ -80,32 +80,36 @@ def quantity_at_point(view: View, name: str, number: int) -> float:
 def shear_stiffness(view: View, poisson: float) -> float:
     """The dimensionless k2 of the arm of a file with the Poisson's ratio `poisson`; only this ratio, a load
     and the drag may vary in the file."""
-    given: dict[str, Any] = {
+    quantities: dict[str, Any] = {
         name: float(np.ravel(view.quantities[name])[0]) for name in NON_LOAD_KEYS if name in view.quantities
     }
-    given.pop("drag", None)
-    return float(_arm_of(view, given | {"poisson": poisson}).k2)
+    quantities.pop("drag", None)
+    return float(_arm_of(view, quantities | {"poisson": poisson}).k2)
 
 
-def _arm_of(view: View, given: Mapping[str, Any]) -> SlenderArm:
-    """The arm of a file with the quantities `given`, in SI units."""
+def _arm_of(view: View, quantities: Mapping[str, Any]) -> SlenderArm:
+    """The arm of a file with the quantities `quantities`, in SI units."""
     arm = view.config.get("parameters", {}).get("arm") or {}
-    return SlenderArm(**given, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None})
+    return SlenderArm(
+        **quantities, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None}
+    )
 
 
 def replaced_parameters(view: View, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""
-    given: dict[str, Any] = {name: quantity_at_point(view, name, number) for name in given_quantities(view)}
-    if "drag" in given:
-        given["drag"] = DRAG_NAMES[int(given["drag"])]
-    own = _arm_of(view, given)
-    at = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
-    if own.load:
-        at.pop("F", None)
+    quantities: dict[str, Any] = {
+        name: quantity_at_point(view, name, number) for name in given_quantities(view)
+    }
+    if "drag" in quantities:
+        quantities["drag"] = DRAG_NAMES[int(quantities["drag"])]
+    arm = _arm_of(view, quantities)
+    stored_parameters = {name: float(view.point_columns[name][number - 1]) for name in view.parameters}
+    if arm.load:
+        stored_parameters.pop("F", None)
     return {
         name: value
-        for name, value in at.items()
-        if name == "F" or not isclose(value, getattr(own, name), rel_tol=SAME_NUMBER_TOLERANCE)
+        for name, value in stored_parameters.items()
+        if name == "F" or not isclose(value, getattr(arm, name), rel_tol=SAME_NUMBER_TOLERANCE)
     }

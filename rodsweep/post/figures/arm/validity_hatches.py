@@ -31,76 +31,78 @@ def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
     the axes are parameters of the file; adds notes to the title. Without such points, the figure is
     unchanged.
     """
-    judged = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
-    notes = [_hatched_note(figure, views, judged, validity) for validity in HATCHES]
+    validities = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
+    notes = [_hatched_note(figure, views, validities, validity) for validity in HATCHES]
     figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *notes))))
 
 
 def _hatched_note(
-    figure: Figure, views: Sequence[View], judged: Sequence[np.ndarray], validity: Validity
+    figure: Figure, views: Sequence[View], validities: Sequence[np.ndarray], validity: Validity
 ) -> str:
     """Hatches the points of a figure with a validity of the model, and returns the note for the title; empty
-    if there is no such point. judged: validities of all points of each file."""
-    outside = [np.asarray(values == validity) for values in judged]
-    number, count = (sum(map(each, outside)) for each in (np.count_nonzero, np.size))
+    if there is no such point. validities: validities of all points of each file."""
+    outside = [np.asarray(values == validity) for values in validities]
+    number, count = (sum(map(counting, outside)) for counting in (np.count_nonzero, np.size))
     if not number:
         return ""
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
-    along = (
+    names = (
         [name for name in views[0].parameters if len(views[0].parameter_values[name]) > 1] if is_alone else []
     )
     word, sentence = NOTES[validity]
-    if along and _hatch_points(figure, views[0], along, outside[0], HATCHES[validity]):
+    if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
         return f"{word}: {sentence}"
     return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 
-def _hatch_points(figure: Figure, view: View, along: list[str], outside: np.ndarray, hatch: str) -> bool:
+def _hatch_points(figure: Figure, view: View, names: list[str], outside: np.ndarray, hatch: str) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
-    parameters `along`; returns whether any panel has these axes. hatch: matplotlib's pattern.
+    parameters `names`; returns whether any panel has these axes. hatch: matplotlib's pattern.
     """
-    look = HATCH_LOOK | {"hatch": hatch}
+    keywords = HATCH_LOOK | {"hatch": hatch}
     cells = np.squeeze(outside)
-    edges = [cell_edges(view.parameter_values[name]) for name in along]
-    done = False
+    edges = [cell_edges(view.parameter_values[name]) for name in names]
+    is_hatched = False
     for axes in list(figure.axes):
-        labels = [_axis_label(axes, which) for which in "xy"]
-        for which, label in zip("xy", labels, strict=True):
-            if len(along) == 1 and label == LABELS[along[0]]:
-                _hatch_intervals(axes, which, edges[0], cells, look)
-                done = True
-        if len(along) == 2 and labels == [LABELS[name] for name in along]:
-            _hatch_map_cells(axes, edges, cells, look)
-            done = True
-    return done
+        labels = [_axis_label(axes, letter) for letter in "xy"]
+        for letter, label in zip("xy", labels, strict=True):
+            if len(names) == 1 and label == LABELS[names[0]]:
+                _hatch_intervals(axes, letter, edges[0], cells, keywords)
+                is_hatched = True
+        if len(names) == 2 and labels == [LABELS[name] for name in names]:
+            _hatch_map_cells(axes, edges, cells, keywords)
+            is_hatched = True
+    return is_hatched
 
 
-def _axis_label(axes: Axes, which: str) -> str:
-    """Label of an axis, from the panel itself or from a panel that shares the axis. which: "x" or "y"."""
-    shared = axes.get_shared_x_axes() if which == "x" else axes.get_shared_y_axes()
-    labels = [getattr(each, f"get_{which}label")() for each in (axes, *shared.get_siblings(axes))]
+def _axis_label(axes: Axes, letter: str) -> str:
+    """Label of an axis, from the panel itself or from a panel that shares the axis. letter: "x" or "y"."""
+    shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
+    labels = [getattr(panel, f"get_{letter}label")() for panel in (axes, *shared_axes.get_siblings(axes))]
     return next(filter(None, labels), "")
 
 
-def _hatch_intervals(axes: Axes, which: str, edges: Array, there: np.ndarray, look: dict[str, Any]) -> None:
-    """Hatches intervals of the axis `which` over the whole panel. edges: edges of the intervals. there: mask
-    of the hatched intervals. look: matplotlib's keywords of the hatches.
+def _hatch_intervals(
+    axes: Axes, letter: str, edges: Array, mask: np.ndarray, keywords: dict[str, Any]
+) -> None:
+    """Hatches intervals of the axis `letter` over the whole panel. edges: edges of the intervals. mask: mask
+    of the hatched intervals. keywords: matplotlib's keywords of the hatches.
     """
-    limits = axes.get_xlim() if which == "x" else axes.get_ylim()
-    hatch = axes.axvspan if which == "x" else axes.axhspan
+    limits = axes.get_xlim() if letter == "x" else axes.get_ylim()
+    hatch = axes.axvspan if letter == "x" else axes.axhspan
     low, high = sorted(limits)
-    for i in np.flatnonzero(there):
+    for i in np.flatnonzero(mask):
         left, right = np.clip(edges[[i, i + 1]], low, high)
-        hatch(left, right, zorder=0 if which == "x" else 3, **look)
-    axes.set(**{f"{which}lim": limits})
+        hatch(left, right, zorder=0 if letter == "x" else 3, **keywords)
+    axes.set(**{f"{letter}lim": limits})
 
 
-def _hatch_map_cells(axes: Axes, edges: list[Array], there: np.ndarray, look: dict[str, Any]) -> None:
-    """Hatches cells of a map. edges: edges of the cells along x and along y. there: mask of the hatched
-    cells, (nx, ny). look: matplotlib's keywords of the hatches.
+def _hatch_map_cells(axes: Axes, edges: list[Array], mask: np.ndarray, keywords: dict[str, Any]) -> None:
+    """Hatches cells of a map. edges: edges of the cells along x and along y. mask: mask of the hatched
+    cells, (nx, ny). keywords: matplotlib's keywords of the hatches.
     """
     limits = axes.get_xlim(), axes.get_ylim()
-    for i, j in np.argwhere(there):
-        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **look)
+    for i, j in np.argwhere(mask):
+        axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **keywords)
     axes.set_xlim(limits[0])
     axes.set_ylim(limits[1])

@@ -96,8 +96,8 @@ class MovingArm:
         self.frames = len(cycle.values["shape_x"])
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        fading = np.linspace(0.85, 0.45, GHOST_COUNT)
-        self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in fading]
+        grey_levels = np.linspace(0.85, 0.45, GHOST_COUNT)
+        self.ghosts = [axes.plot([], [], color=str(grey), lw=1.2, zorder=1.5)[0] for grey in grey_levels]
         (self.rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
         self.arrow = force_arrow(axes, np.zeros(1), np.zeros(1), np.zeros(1), VERMILION, cycle.units.length)
         self.text = axes.text(0.02, 0.02, "", transform=axes.transAxes, size=9)
@@ -107,8 +107,10 @@ class MovingArm:
     def show_frame(self, k: int) -> None:
         """Moves the arm to the shape with index `k`."""
         shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
-        back = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)
-        for ghost, steps in zip(self.ghosts, back, strict=True):
+        steps_back = (
+            np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)
+        )
+        for ghost, steps in zip(self.ghosts, steps_back, strict=True):
             ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
         x, y, theta = (values[k] for values in shapes)
         self.rod.set_data(x, y)

@@ -18,12 +18,12 @@ RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
 
 
-def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
+def draw_energy(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). A column of panels for each cycle: energy U; injection and dissipation;
     injection minus dissipation with marks of dU/dt.
 
     The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
-    curve. points: numbers of the chosen points. narrow: whether the page is narrow.
+    curve. points: numbers of the chosen points. is_narrow: whether the page is narrow.
     """
     selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles
@@ -38,7 +38,7 @@ def draw_energy(view: View, points: Sequence[int], narrow: bool = False) -> tupl
     for axes, label in zip(rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
-    legend_below(figure, handles, columns=2 if narrow else min(3, 1 + len(cycles)))
+    legend_below(figure, handles, columns=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.left_out
@@ -50,9 +50,9 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = relative_power_error(cycle.values)
-    mean = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
+    mean_text = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
     unit = cycle.units.names[3]
-    power = f"mean power ${mean}$" + (f"{NO_BREAK}{unit}" if unit else "")
+    power = f"mean power ${mean_text}$" + (f"{NO_BREAK}{unit}" if unit else "")
     return power, f"imbalance {v['energy_imbalance']:.1e}"
 
 
@@ -68,19 +68,19 @@ def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
         interpolate_samples(cycle.values[name], phase) for name in ENERGY_BUDGET_VARIABLES
     )
     top.plot(time, energy, color="k", lw=1.5)
-    mean = float(cycle.values["injection_mean"])
-    middle.axhline(mean, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
+    mean_power = float(cycle.values["injection_mean"])
+    middle.axhline(mean_power, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
     middle.plot(time, injection, color=VERMILION, lw=1.5, label="injection")
     middle.plot(time, dissipation, color=BLUE, lw=1.5, ls="--", label="dissipation")
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
-    at = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
+    marks = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
     rate = (
-        interpolate_samples(time_derivative(cycle.values["energy"]), at)
+        interpolate_samples(time_derivative(cycle.values["energy"]), marks)
         / cycle.period
         * cycle.units.power_of_rate
     )
-    bottom.plot(at * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
+    bottom.plot(marks * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)
     bottom.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))

@@ -55,27 +55,27 @@ MAP_QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 panel."""
 
 
-def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
+def draw_maps(view: View, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points, unstable cycles, and the statuses of cells without a cycle. narrow: whether the panels are
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the panels are
     stacked. Raises InputError if no point has a cycle.
     """
     points = point_map(view)
-    words = view.status_names[points.point_indices]
-    cycles = np.isin(words, CYCLE_STATUSES)
+    statuses = view.status_names[points.point_indices]
+    cycles = np.isin(statuses, CYCLE_STATUSES)
     style.require_content(view, cycles.any(), "cycle")
-    figure, panels = map_panels(2, narrow)
+    figure, panels = map_panels(2, is_narrow)
     lines = hopf_lines(points, view)
     (units,) = units_of_files([view], [points.point_indices.ravel()])
     _, largest_y, period, _ = units.panel_labels
     for axes, label, (name, colours, ratios) in zip(panels, (period, largest_y), MAP_QUANTITIES, strict=True):
-        drawn = units.converted({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
-        values = np.where(cycles, drawn.reshape(points.point_indices.shape), np.nan)
+        converted = units.converted({name: view.variables[name].ravel()[points.point_indices.ravel()]})[name]
+        values = np.where(cycles, converted.reshape(points.point_indices.shape), np.nan)
         edges = cell_edges(points.x), cell_edges(points.y)
         style.draw_coloured_cells(axes, edges, values, label, colours, ratios)
         handles = _draw_hopf_lines(axes, points, lines)
-        handles += _draw_statuses(axes, points, words)
-        handles += _mark_unstable(axes, points, words == "unstable")
+        handles += _draw_statuses(axes, points, statuses)
+        handles += _mark_unstable(axes, points, statuses == "unstable")
     label_maps(panels, points)
     if handles:
         rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
@@ -84,24 +84,28 @@ def draw_maps(view: View, narrow: bool = False) -> tuple[Figure, str]:
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
 
 
-def _common_parameters_text(view: View, points: PointMap, in_si: bool) -> str:
-    """Text of the parameters that are equal at all points; for an arm (`in_si`), of the quantities that are
-    equal at all points.
+def _common_parameters_text(view: View, points: PointMap, is_in_si: bool) -> str:
+    """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
+    are equal at all points.
     """
-    if not in_si:
+    if not is_in_si:
         return style.parameter_text(points.common_parameters)
-    along = {quantity for quantity, moved in CHANGED_PARAMETER.items() if moved in points.names}
+    varied_quantities = {
+        quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name in points.names
+    }
     numbers = [int(points.point_indices[0, 0]) + 1, int(points.point_indices[-1, -1]) + 1]
-    return shared_and_own_of_arms(view, numbers, {*points.names, *along})[0]
+    return shared_and_own_of_arms(view, numbers, {*points.names, *varied_quantities})[0]
 
 
-def map_panels(count: int, narrow: bool) -> tuple[Figure, list[Axes]]:
-    """Returns (figure, panels) with `count` panels that share axes, stacked if `narrow`, else side by
+def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
+    """Returns (figure, panels) with `count` panels that share axes, stacked if `is_narrow`, else side by
     side.
     """
-    apart = ConstrainedLayoutEngine(wspace=0.0 if narrow else 0.06)  # room for the first colour bar's label
-    figure = Figure(figsize=(4.2, 3.2 * count) if narrow else (4.8 * count, 4.5), layout=apart)
-    shape = (count, 1) if narrow else (1, count)
+    layout = ConstrainedLayoutEngine(
+        wspace=0.0 if is_narrow else 0.06
+    )  # room for the first colour bar's label
+    figure = Figure(figsize=(4.2, 3.2 * count) if is_narrow else (4.8 * count, 4.5), layout=layout)
+    shape = (count, 1) if is_narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
 
 
@@ -115,21 +119,23 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
         style.label_outer(axes, *(style.LABELS[name] for name in points.names))
 
 
-def _draw_statuses(axes: Axes, points: PointMap, words: NDArray[np.str_]) -> list[Artist]:
-    """Fills the cells without a cycle with colours and hatches by status; returns legend entries. words:
+def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> list[Artist]:
+    """Fills the cells without a cycle with colours and hatches by status; returns legend entries. statuses:
     status of each cell, (ny, nx).
     """
-    further = cycle(UNLISTED_STATUS_LOOKS)
+    unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
     handles: list[Artist] = []
-    for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(words).tolist()]):
-        cells = words == word
+    for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(statuses).tolist()]):
+        cells = statuses == word
         if word in CYCLE_STATUSES or not cells.any():
             continue
-        colour, hatch = STATUS_LOOKS.get(word) or next(further)
-        look: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
+        colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
+        keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
         for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            axes.broken_barh(_runs_of_cells(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **look)
-        handles.append(Patch(label=word.replace("_", " "), lw=0.5, **look))
+            axes.broken_barh(
+                _runs_of_cells(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **keywords
+            )
+        handles.append(Patch(label=word.replace("_", " "), lw=0.5, **keywords))
     return handles
 
 
@@ -146,11 +152,11 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
     return [Line2D([], [], label="unstable cycle", ms=MARKER_SIZES[1], **look)]
 
 
-def _runs_of_cells(chosen: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
-    """(left edge, width) of each run of neighbouring chosen cells in a row. chosen: mask of the cells, (n,).
+def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
+    """(left edge, width) of each run of neighbouring chosen cells in a row. mask: mask of the cells, (n,).
     edges: edges of the cells, (n + 1,).
     """
-    steps = np.diff(np.concatenate(([0], chosen.astype(int), [0])))
+    steps = np.diff(np.concatenate(([0], mask.astype(int), [0])))
     starts = edges[np.flatnonzero(steps > 0)]
     ends = edges[np.flatnonzero(steps < 0)]
     return list(zip(starts.tolist(), (ends - starts).tolist(), strict=True))
@@ -162,12 +168,12 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
     On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
     0, because the characteristic determinant is D(0) = 1.
     """
-    look: dict[str, Any] = {"color": "k", "lw": 1.4}
-    halo = [withStroke(linewidth=3.0, foreground="white")]
+    keywords: dict[str, Any] = {"color": "k", "lw": 1.4}
+    path_effects = [withStroke(linewidth=3.0, foreground="white")]
     for line in lines:
-        axes.plot(*line, path_effects=halo, **look)
+        axes.plot(*line, path_effects=path_effects, **keywords)
     symbol = f" ${HOPF_SYMBOL}$" if "F" in points.names else ""
-    return [Line2D([], [], label=f"Hopf points{symbol}", **look)] if lines else []
+    return [Line2D([], [], label=f"Hopf points{symbol}", **keywords)] if lines else []
 
 
 def hopf_lines(points: PointMap, view: View) -> list[Array]:
@@ -180,25 +186,27 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     (x, x_back), (y, y_back) = (axis_coordinates(values) for values in (points.x, points.y))
     to_scale = np.log if style.is_logarithmic(points.x) else np.asarray
     growth = view.variables["linear_growth_rate"].ravel()[points.point_indices]
-    zeros = [to_scale(places) for places in _hopf_points(points, view)]
-    refined = np.unique(np.concatenate([x, *zeros]))
+    zeros = [to_scale(hopf_values) for hopf_values in _hopf_points(points, view)]
+    refined_x = np.unique(np.concatenate([x, *zeros]))
     rows = []
-    for row, own in zip(growth, zeros, strict=True):
-        nodes, first = np.unique(np.concatenate([x, own]), return_index=True)
-        rows.append(np.interp(refined, nodes, np.concatenate([row, np.zeros_like(own)])[first]))
+    for row, row_zeros in zip(growth, zeros, strict=True):
+        nodes, indices = np.unique(np.concatenate([x, row_zeros]), return_index=True)
+        rows.append(np.interp(refined_x, nodes, np.concatenate([row, np.zeros_like(row_zeros)])[indices]))
     if not np.nanmin(rows) < 0 < np.nanmax(rows):
         return []
     # This figure is never drawn; matplotlib only computes the contours.
-    contours = Figure().subplots().contour(refined, y, np.ma.masked_invalid(rows), levels=[0.0])
+    contours = Figure().subplots().contour(refined_x, y, np.ma.masked_invalid(rows), levels=[0.0])
     lines = (line for line in contours.allsegs[0] if len(line) > 1)
     return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
 
 
 def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
-    name, other = points.names
+    name, row_parameter = points.names
     stored = StoredThresholds(view, name)
-    for value, at in zip(points.y, points.point_indices, strict=True):
-        row = ParameterLine(name, points.common_parameters | {other: float(value)}, points.x, at)
+    for value, row_indices in zip(points.y, points.point_indices, strict=True):
+        row = ParameterLine(
+            name, points.common_parameters | {row_parameter: float(value)}, points.x, row_indices
+        )
         located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

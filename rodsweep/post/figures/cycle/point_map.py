@@ -38,27 +38,27 @@ def point_map(view: View) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
     do not form a grid over two parameters with at least two finite values each.
     """
-    varied = list(varied_parameters_at_points(view))
-    if len(varied) != 2:
+    names = list(varied_parameters_at_points(view))
+    if len(names) != 2:
         raise InputError(
-            f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(varied)}"
+            f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(names)}"
         )
     columns = view.point_columns
-    (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in varied)
-    at = np.full((len(y), len(x)), -1)
-    at[row.ravel(), column.ravel()] = np.arange(row.size)
-    if (at < 0).any() or at.size != row.size:
+    (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in names)
+    indices = np.full((len(y), len(x)), -1)
+    indices[row.ravel(), column.ravel()] = np.arange(row.size)
+    if (indices < 0).any() or indices.size != row.size:
         raise InputError(
-            f"{view.path} holds points that form no grid over {varied[0]} and {varied[1]}; a map needs every "
+            f"{view.path} holds points that form no grid over {names[0]} and {names[1]}; a map needs every "
             "combination exactly once"
         )
     finite = np.isfinite(x), np.isfinite(y)
     if min(np.count_nonzero(is_finite) for is_finite in finite) < 2:
-        raise InputError(f"{view.path} has fewer than two finite values of {varied[0]} or {varied[1]} to map")
-    left_out = left_out_clause(columns, varied)
-    shared = {name: float(values[0]) for name, values in columns.items() if name not in varied}
-    at = at[np.ix_(*finite[::-1])]
-    return PointMap((varied[0], varied[1]), x[finite[0]], y[finite[1]], at, shared, left_out)
+        raise InputError(f"{view.path} has fewer than two finite values of {names[0]} or {names[1]} to map")
+    omissions = left_out_clause(columns, names)
+    constants = {name: float(values[0]) for name, values in columns.items() if name not in names}
+    indices = indices[np.ix_(*finite[::-1])]
+    return PointMap((names[0], names[1]), x[finite[0]], y[finite[1]], indices, constants, omissions)
 
 
 def varies_two_parameters_on_grid(view: View) -> bool:
@@ -89,9 +89,11 @@ def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
 
 def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
-    centres, back = axis_coordinates(values)
-    inner = (centres[1:] + centres[:-1]) / 2
-    return back(np.concatenate(([2 * centres[0] - inner[0]], inner, [2 * centres[-1] - inner[-1]])))
+    centres, from_coordinates = axis_coordinates(values)
+    midpoints = (centres[1:] + centres[:-1]) / 2
+    return from_coordinates(
+        np.concatenate(([2 * centres[0] - midpoints[0]], midpoints, [2 * centres[-1] - midpoints[-1]]))
+    )
 
 
 def cell_centres(edges: Array) -> Array:

@@ -54,56 +54,56 @@ UNUSED_COLOUR_FRACTION = 0.14
 """Fraction of the colour map that is not used: the yellow end, which is invisible on white paper."""
 
 
-def draw_portrait(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
+def draw_portrait(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
     darker, and x and y of the tip against time.
 
-    points: numbers of the chosen points. narrow: whether the page is too narrow for panels side by side.
+    points: numbers of the chosen points. is_narrow: whether the page is too narrow for panels side by side.
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
-    figure, shapes, tips = _new_panels(cycles, narrow)
-    emerging = all(cycle.has_transient for cycle in cycles)
-    end = DRAWN_TIP_PERIODS * max(c.period for c in cycles)
-    drawn, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
+    figure, shapes, tips = _new_panels(cycles, is_narrow)
+    has_transients = all(cycle.has_transient for cycle in cycles)
+    end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
+    shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
     colours = ListedColormap(
-        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(drawn)))
+        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices)))
     )
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
-        for k, frame in enumerate(drawn):
+        for k, frame in enumerate(shape_indices):
             x, y, theta = (cycle.values[name][frame] for name in SHAPE_VARIABLES)
             axes.plot(x, y, color=colours(k), lw=1.8, solid_capstyle="round", zorder=2 + k / 100)
             force_arrow(axes, x, y, theta, colours(k), cycle.units.length)
         axes.set_xlabel(cycle.units.axis_label("x"))
         axes.set_title(cycle.heading(cycle.period_text, cycle.period_in_tau1))
-        if emerging:
+        if has_transients:
             draw_start_of_motion(upper, lower, cycle)
         else:
             _draw_tip_motion(upper, lower, cycle, end)
     set_frame(shapes, cycles)
     shapes[0].set_ylabel(cycles[0].units.axis_label("y"))
     label_tip_axes(*tips[0], cycles[0].units)
-    _draw_phase_bar(figure, shapes, colours, step, narrow)
+    _draw_phase_bar(figure, shapes, colours, step, is_narrow)
     figure.suptitle(selection.title)
-    tip = "the tip from the start on" if emerging else "the tip in time"
-    return figure, f"shapes through the cycle and {tip}{selection.left_out}"
+    tip_text = "the tip from the start on" if has_transients else "the tip in time"
+    return figure, f"shapes through the cycle and {tip_text}{selection.left_out}"
 
 
 def _new_panels(
-    cycles: Sequence[StoredCycle], narrow: bool
+    cycles: Sequence[StoredCycle], is_narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
     """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
 
     The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. narrow: whether the
-    page is narrow.
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. is_narrow: whether
+    the page is narrow.
     """
     count = len(cycles)
     (left, right), (low, high) = limits_of_shapes(cycles)
-    if count == 1 and not narrow:
+    if count == 1 and not is_narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
         table: dict[str, Axes] = figure.subplot_mosaic(
             [["shapes", "x"], ["shapes", "y"]], width_ratios=(1, 1.25)
@@ -111,8 +111,8 @@ def _new_panels(
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes = SHAPES_WIDTH * (high - low) / (right - left)
-    beside = NARROW_TEXT_HEIGHT if narrow else TEXT_HEIGHT
-    size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + beside
+    text_height = NARROW_TEXT_HEIGHT if is_narrow else TEXT_HEIGHT
+    size = SHAPES_WIDTH * count + 1.2, shapes + 2 * TIP_HEIGHT + text_height
     figure = Figure(figsize=size, layout=ConstrainedLayoutEngine(w_pad=PANEL_PADDING))
     heights = (shapes, TIP_HEIGHT, TIP_HEIGHT)
     rows = figure.subplots(3, count, squeeze=False, sharey="row", height_ratios=heights)
@@ -130,24 +130,24 @@ def drawn_shape_indices(stored: int) -> tuple[range, float]:
 
 
 def _draw_phase_bar(
-    figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, below: bool
+    figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, is_below: bool
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
-    two shapes, in periods. below: whether the bar is below the panels.
+    two shapes, in periods. is_below: whether the bar is below the panels.
     """
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
-    bar = figure.colorbar(
+    colorbar = figure.colorbar(
         ScalarMappable(norm, colours),
         ax=panels,
         label="time of the shape $t/T$",
-        location="bottom" if below else "right",
+        location="bottom" if is_below else "right",
         shrink=0.8,
         ticks=ticks,
         format=FuncFormatter(lambda tick, _: f"{tick:.3g}"),
     )
-    bar.ax.minorticks_off()
+    colorbar.ax.minorticks_off()
 
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
@@ -167,10 +167,10 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
     sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
     L, in the unit of the axes.
     """
-    e1 = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
-    along = -ARROW_LENGTH * length * e1
+    tangent = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
+    arrow = -ARROW_LENGTH * length * tangent
     return axes.quiver(
-        x[-1], y[-1], *along, angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
+        x[-1], y[-1], *arrow, angles="xy", scale_units="xy", scale=1, pivot="tip", color=colour,
         width=0.011, headwidth=4, headlength=4.5, headaxislength=4, zorder=4,
     )  # fmt: skip
 
@@ -178,35 +178,37 @@ def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, lengt
 def draw_clamp(axes: Axes, length: float) -> None:
     """Draws the wall that clamps the rod at u = 0. length: L, in the unit of the axes."""
     depth = WALL_DEPTH * length
-    half = WALL_HALF_HEIGHT * length
-    wall = Rectangle((-depth, -half), depth, 2 * half, fc="white", ec="0.3", hatch="/////", lw=0)
+    half_height = WALL_HALF_HEIGHT * length
+    wall = Rectangle(
+        (-depth, -half_height), depth, 2 * half_height, fc="white", ec="0.3", hatch="/////", lw=0
+    )
     axes.add_patch(wall)
-    axes.plot([0, 0], [-half, half], color="k", lw=1.4, zorder=5)
+    axes.plot([0, 0], [-half_height, half_height], color="k", lw=1.4, zorder=5)
 
 
 def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
     """Sets the same limits in all panels, with equal scales for x and y, so that all cycles fit."""
-    along_x, along_y = limits_of_shapes(cycles)
+    x_limits, y_limits = limits_of_shapes(cycles)
     for axes in panels:
         axes.set_aspect("equal")
-        axes.set(xlim=along_x, ylim=along_y)
+        axes.set(xlim=x_limits, ylim=y_limits)
 
 
 def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns ((left, right), (bottom, top)), the limits of all shapes and arrows, in the cycles' unit of
     length. ValueError if the shapes are too large for floating-point limits."""
     longest = max(cycle.units.length for cycle in cycles)
-    wall = -WALL_DEPTH * longest
+    wall_x = -WALL_DEPTH * longest
     margin = SHAPE_MARGIN * longest
-    along_x = [np.array([wall])]
-    along_y = []
+    x_parts = [np.array([wall_x])]
+    y_parts = []
     for cycle in cycles:
         x, y, theta = (cycle.values[name] for name in SHAPE_VARIABLES)
         arrow = ARROW_LENGTH * cycle.units.length
-        along_x += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
-        along_y += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
-    along = [np.concatenate(values) for values in (along_x, along_y)]
-    (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in along)
+        x_parts += [x.ravel(), x[:, -1] + arrow * np.cos(theta[:, -1])]
+        y_parts += [y.ravel(), y[:, -1] + arrow * np.sin(theta[:, -1])]
+    coordinates = [np.concatenate(values) for values in (x_parts, y_parts)]
+    (left, right), (low, high) = ((x.min() - margin, x.max() + margin) for x in coordinates)
     if not (left < right and low < high):
         raise ValueError("the shapes are too large for axes in floating-point numbers")
     return (left, right), (low, high)
@@ -224,8 +226,10 @@ def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -
     for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < MARKED_BELOW_SAMPLES:
-            at = np.arange(int(end / cycle.period * len(values)) + 1)
-            axes.plot(at * cycle.period / len(values), values[at % len(values)], "o", color=colour, ms=2.5)
+            indices = np.arange(int(end / cycle.period * len(values)) + 1)
+            axes.plot(
+                indices * cycle.period / len(values), values[indices % len(values)], "o", color=colour, ms=2.5
+            )
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

@@ -48,7 +48,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
     _set_up_axes(axes, motion)
     (path,) = axes.plot([], [], color="0.6", lw=0.8)
     (rod,) = axes.plot([], [], color=BLUE, lw=3.0, solid_capstyle="round", zorder=3)
-    tip = smooth_tip_path(np.stack([motion.x[:, -1], motion.y[:, -1]], axis=1), is_closed=False)
+    tip_path = smooth_tip_path(np.stack([motion.x[:, -1], motion.y[:, -1]], axis=1), is_closed=False)
     with TemporaryDirectory() as directory:
         output = Path(directory) / "film.gif"
         writer = PillowWriter(fps=FRAME_RATE)
@@ -56,7 +56,7 @@ def motion_film(motion: FilmedMotion) -> bytes:
             for k in range(frames):
                 report(lambda k=k: SolvePosition(f"frame {k + 1} of {frames}", k / frames))  # type: ignore[misc]
                 rod.set_data(motion.x[k], motion.y[k])
-                path.set_data(*tip[: k * PATH_SEGMENT_COUNT + 1].T)
+                path.set_data(*tip_path[: k * PATH_SEGMENT_COUNT + 1].T)
                 axes.set_title(f"$t$ = {k * motion.step:.3g} {motion.units[1]}")
                 writer.grab_frame()
         return output.read_bytes()
@@ -66,7 +66,7 @@ def _set_up_axes(axes: Axes, motion: FilmedMotion) -> None:
     """Draws the clamp, and sets the axes so that all shapes fit, with equal scales for x and y."""
     draw_clamp(axes, motion.length)
     margin = SHAPE_MARGIN * motion.length
-    left = min(float(motion.x.min()), -WALL_DEPTH * motion.length)
-    reach = float(abs(motion.y).max()) + margin
-    axes.set(xlim=(left - margin, float(motion.x.max()) + margin), ylim=(-reach, reach), aspect="equal")
+    x_min = min(float(motion.x.min()), -WALL_DEPTH * motion.length)
+    y_max = float(abs(motion.y).max()) + margin
+    axes.set(xlim=(x_min - margin, float(motion.x.max()) + margin), ylim=(-y_max, y_max), aspect="equal")
     axes.set(xlabel=f"$x$ ({motion.units[0]})", ylabel=f"$y$ ({motion.units[0]})")

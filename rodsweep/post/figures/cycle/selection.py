@@ -114,19 +114,19 @@ class CycleSelection:
     """Clause on cycles that the figure leaves out; empty if all cycles are shown."""
 
 
-def chosen_cycles(view: View, points: Sequence[int], needs: Sequence[str]) -> CycleSelection:
+def chosen_cycles(view: View, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
-    empty. needs: variables that the figure needs. Raises InputError if a point, a cycle or a variable is
-    missing, or for more than MAX_CYCLES points.
+    empty. variable_names: variables that the figure needs. Raises InputError if a point, a cycle or a
+    variable is missing, or for more than MAX_CYCLES points.
     """
-    _refuse_missing(view, needs)
-    words = view.status_names
+    _refuse_missing(view, variable_names)
+    statuses = view.status_names
     _refuse_bad_points(view, points)
     for number in points:
-        if words[number - 1] != "cycle":
-            word = words[number - 1].replace("_", " ")
+        if statuses[number - 1] != "cycle":
+            word = statuses[number - 1].replace("_", " ")
             raise InputError(f"--point {number}: the point has no cycle to draw; its status is: {word}")
-    return _selected_cycles(view, points, words == "cycle", "cycle")
+    return _selected_cycles(view, points, statuses == "cycle", "cycle")
 
 
 def chosen_transients(view: View, points: Sequence[int]) -> CycleSelection:
@@ -145,45 +145,45 @@ def chosen_transients(view: View, points: Sequence[int]) -> CycleSelection:
     return _selected_cycles(view, points, is_stored, "transient")
 
 
-def _refuse_missing(view: View, needs: Sequence[str]) -> None:
-    """Raises InputError if one of the variables `needs` is missing; the message names the option with which
-    the variable is stored.
+def _refuse_missing(view: View, variable_names: Sequence[str]) -> None:
+    """Raises InputError if one of the variables `variable_names` is missing; the message names the option
+    with which the variable is stored.
     """
-    for name in needs:
+    for name in variable_names:
         if name not in view.variables:
             key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
             raise InputError(f"{view.path} holds no {name}; run with {key} > 0, which stores it")
 
 
 def _selected_cycles(
-    view: View, points: Sequence[int], drawable: NDArray[np.bool_], what: str
+    view: View, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. drawable: mask, (points,). what: noun for messages. Raises InputError if no point is drawable.
+    empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable.
     """
     available = np.flatnonzero(drawable)
-    words = view.status_names
+    statuses = view.status_names
     if not available.size:
-        states = ", ".join(sorted({word.replace("_", " ") for word in words.tolist()}))
+        states = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
         raise InputError(
-            f"{view.path} holds no {what} that could be drawn; the statuses of its points are: {states}"
+            f"{view.path} holds no {noun} that could be drawn; the statuses of its points are: {states}"
         )
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
     units = units_at_points(view, numbers)
-    shared, own = shared_and_own_of_points(view, numbers)
+    common_text, labels = shared_and_own_of_points(view, numbers)
     cycles = []
-    for number, label, at, drawn_in in zip(numbers, own, parameters, units, strict=True):
+    for number, label, at_point, scales in zip(numbers, labels, parameters, units, strict=True):
         of_point = view.point_values(number - 1).items()
-        values = drawn_in.converted({n: v for n, v in of_point if n not in (*view.parameters, "point")})
+        values = scales.converted({n: v for n, v in of_point if n not in (*view.parameters, "point")})
         period = float(values["period"])
-        word = str(words[number - 1])
-        cycles.append(StoredCycle(number, label, at, period, values, word, drawn_in))
-    left_out = ""
+        word = str(statuses[number - 1])
+        cycles.append(StoredCycle(number, label, at_point, period, values, word, scales))
+    omissions = ""
     if not points and available.size > len(cycles):
-        left_out = f", the first {len(cycles)} of {available.size} {what}s (--point chooses others)"
-    return CycleSelection(cycles, heading_text(view, shared), left_out)
+        omissions = f", the first {len(cycles)} of {available.size} {noun}s (--point chooses others)"
+    return CycleSelection(cycles, heading_text(view, common_text), omissions)
 
 
 def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
@@ -204,9 +204,9 @@ def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, l
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
     parameters of each mapping.
     """
-    shared = {n: v for n, v in parameters[0].items() if all(other[n] == v for other in parameters)}
-    own = [parameter_text({n: v for n, v in each.items() if n not in shared}) for each in parameters]
-    return parameter_text(shared), own
+    common = {n: v for n, v in parameters[0].items() if all(values[n] == v for values in parameters)}
+    labels = [parameter_text({n: v for n, v in each.items() if n not in common}) for each in parameters]
+    return parameter_text(common), labels
 
 
 def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
@@ -220,23 +220,23 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
 
 
 def shared_and_own_of_arms(
-    view: View, numbers: Sequence[int], without: Collection[str] = ()
+    view: View, numbers: Sequence[int], omitted: Collection[str] = ()
 ) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the quantities that are equal for all arms, and text of the other
     quantities of each arm, in the units typed by the user.
 
-    numbers: numbers of the points of the arms, from 1. without: quantities and parameters that are left out,
+    numbers: numbers of the points of the arms, from 1. omitted: quantities and parameters that are left out,
     for example because they are on axes.
     """
     texts = []
     for number in numbers:
-        given = {
+        quantities = {
             n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in given_quantities(view)
         }
-        own = {
+        changes = {
             name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
         }
-        texts.append({name: text for name, text in (given | own).items() if name not in without})
-    shared = {name: text for name, text in texts[0].items() if all(each[name] == text for each in texts)}
-    labels = [", ".join(text for name, text in each.items() if name not in shared) for each in texts]
-    return ", ".join(shared.values()), labels
+        texts.append({name: text for name, text in (quantities | changes).items() if name not in omitted})
+    common = {name: text for name, text in texts[0].items() if all(entry[name] == text for entry in texts)}
+    labels = [", ".join(text for name, text in entry.items() if name not in common) for entry in texts]
+    return ", ".join(common.values()), labels

@@ -23,18 +23,18 @@ def smooth_tip_path(tips: Array, is_closed: bool) -> Array:
     if is_closed:
         p = np.concatenate([tips[-1:], tips, tips[:2]])
     else:
-        before = 3 * (tips[0] - tips[1]) + tips[2]
-        after = 3 * (tips[-1] - tips[-2]) + tips[-3]
-        p = np.concatenate([[before], tips, [after]])
-    part = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
+        tip_before = 3 * (tips[0] - tips[1]) + tips[2]
+        tip_after = 3 * (tips[-1] - tips[-2]) + tips[-3]
+        p = np.concatenate([[tip_before], tips, [tip_after]])
+    s = np.arange(PATH_SEGMENT_COUNT)[:, None] / PATH_SEGMENT_COUNT
     slopes = (p[2:] - p[:-2]) / 2
     start, end = p[1:-2, None], p[2:-1, None]
     start_slope, end_slope = slopes[:-1, None], slopes[1:, None]
-    rest = 1 - part
-    between = (
-        rest**2 * (1 + 2 * part) * start
-        + part**2 * (1 + 2 * rest) * end
-        + part * rest * (rest * start_slope - part * end_slope)
+    remainder = 1 - s
+    points = (
+        remainder**2 * (1 + 2 * s) * start
+        + s**2 * (1 + 2 * remainder) * end
+        + s * remainder * (remainder * start_slope - s * end_slope)
     )
-    path: Array = np.concatenate([between.reshape(-1, 2), p[-2:-1]])
+    path: Array = np.concatenate([points.reshape(-1, 2), p[-2:-1]])
     return path

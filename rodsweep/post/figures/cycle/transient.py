@@ -17,11 +17,12 @@ EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 
 """Line style of horizontal lines at the extrema of the cycle that the motion approaches."""
 
 
-def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> tuple[Figure, str]:
+def draw_transients(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has a column for each point: x and y of the tip against time,
     with horizontal lines at the extrema of the cycle, if any.
 
-    points: numbers of the chosen points. narrow: whether the titles leave out the explanation of these lines.
+    points: numbers of the chosen points. is_narrow: whether the titles leave out the explanation of these
+    lines.
     """
     selection = chosen_transients(view, points)
     count = len(selection.cycles)
@@ -31,7 +32,7 @@ def draw_transients(view: View, points: Sequence[int], narrow: bool = False) -> 
         draw_start_of_motion(upper, lower, cycle)
         ends = [cycle.status_name.replace("_", " ")]
         if cycle.status_name in CYCLE_STATUSES:
-            ends[0] += "" if narrow else " (extrema dashed)"
+            ends[0] += "" if is_narrow else " (extrema dashed)"
             ends.append(cycle.period_text)
         upper.set_title(cycle.heading(*ends))
     label_tip_axes(rows[0, 0], rows[1, 0], selection.cycles[0].units)
@@ -44,10 +45,10 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x (upper panel) and y (lower panel) of the tip from the initial state on, with horizontal lines
     at the extrema of the cycle, if any.
     """
-    time, *tip = (cycle.values[name] for name in TRANSIENT_VARIABLE_NAMES)
+    time, *tip_values = (cycle.values[name] for name in TRANSIENT_VARIABLE_NAMES)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
-    for axes, values, colour, pair in zip((upper, lower), tip, (BLUE, VERMILION), levels, strict=True):
+    for axes, values, colour, pair in zip((upper, lower), tip_values, (BLUE, VERMILION), levels, strict=True):
         axes.plot(time, values, color=colour, lw=1.1)
         for name, sign in pair if cycle.status_name in CYCLE_STATUSES else ():
             axes.axhline(sign * float(v[name]), **EXTREMUM_LINE_LOOK)
@@ -72,7 +73,7 @@ def label_time_axes(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
     lower.set_xlabel(cycle.units.time_label)
     if 0 < tau1 < np.inf:
-        top = upper.secondary_xaxis(
+        tau1_axis = upper.secondary_xaxis(
             "top", functions=(lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
         )
-        top.set_xlabel(r"time $t/\tau_1$")
+        tau1_axis.set_xlabel(r"time $t/\tau_1$")

@@ -119,38 +119,40 @@ def units_at_points(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     (units,) = units_of_files([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
-    drawn = zip(units.length, units.time, units.energy, units.power, strict=True)
-    return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in drawn]
+    scales = zip(units.length, units.time, units.energy, units.power, strict=True)
+    return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in scales]
 
 
-def units_of_files(views: Sequence[View], at: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
-    """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm. at:
-    indices of the points of each file, (n,).
+def units_of_files(views: Sequence[View], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
+    """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
+    indices: indices of the points of each file, (n,).
     """
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
-        [quantities_at_points(view)[name][places] for view, places in zip(views, at, strict=True)]
+        [quantities_at_points(view)[name][chosen] for view, chosen in zip(views, indices, strict=True)]
         for name in REQUIRED_QUANTITIES
     )
-    powers = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
+    power_units = [force * length / time for force, length, time in zip(forces, lengths, times, strict=True)]
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
-    cycles = list(zip(views, at, times, powers, strict=True))
-    period = max(_largest_in_units(view, "period", places, time) for view, places, time, _ in cycles)
-    mean = max(_largest_in_units(view, "injection_mean", places, power) for view, places, _, power in cycles)
+    cycles = list(zip(views, indices, times, power_units, strict=True))
+    period = max(_largest_in_units(view, "period", chosen, time) for view, chosen, time, _ in cycles)
+    mean_power = max(
+        _largest_in_units(view, "injection_mean", chosen, power) for view, chosen, _, power in cycles
+    )
     length = views[0].typed_units.get("length", "m")
-    second = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
+    time_unit = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
-    watt = with_si_prefix(mean, "W")[1]
-    names = (length, second, joule, watt)
+    watt = with_si_prefix(mean_power, "W")[1]
+    names = (length, time_unit, joule, watt)
     scales = [value_in_unit(1.0, unit, si) for unit, si in zip(names, SI_UNITS_OF_SCALES, strict=True)]
-    columns = zip(lengths, times, energies, powers, strict=True)
-    scaled = ([scale * column for scale, column in zip(scales, each, strict=True)] for each in columns)
+    columns = zip(lengths, times, energies, power_units, strict=True)
+    scaled = ([scale * column for scale, column in zip(scales, factors, strict=True)] for factors in columns)
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
 
 
-def _largest_in_units(view: View, name: str, at: NDArray[np.int64], factors: Array) -> float:
-    """Maximum of |v| f over the points with the indices `at`, (n,); 0 if no value is finite. v: variable
+def _largest_in_units(view: View, name: str, indices: NDArray[np.int64], factors: Array) -> float:
+    """Maximum of |v| f over the points with the indices `indices`, (n,); 0 if no value is finite. v: variable
     `name`. f: `factors`, (n,).
     """
-    return float(np.nanmax(np.abs(view.variables[name].ravel()[at]) * factors, initial=0.0))
+    return float(np.nanmax(np.abs(view.variables[name].ravel()[indices]) * factors, initial=0.0))

@@ -23,37 +23,37 @@ def cached_ticks(figure: Figure) -> Iterator[None]:
     matplotlib lacks a method in CACHED_METHODS.
     """
     panels = [panel for axes in figure.axes for panel in (axes, *axes.child_axes)]
-    known = all(hasattr(Axis, name) for name in CACHED_METHODS)
-    held = [axis for panel in panels for axis in (panel.xaxis, panel.yaxis)] if known else []
-    for axis in held:
+    has_methods = all(hasattr(Axis, name) for name in CACHED_METHODS)
+    cached_axes = [axis for panel in panels for axis in (panel.xaxis, panel.yaxis)] if has_methods else []
+    for axis in cached_axes:
         for name, method in zip(CACHED_METHODS, _cached_methods(axis), strict=True):
             setattr(axis, name, method)
     try:
         yield
     finally:
-        for axis in held:
+        for axis in cached_axes:
             for name in CACHED_METHODS:
                 delattr(axis, name)
 
 
 def _cached_methods(axis: Any) -> tuple[Callable[[], list[Any]], Callable[[Sequence[Any], Any], Any]]:
     """Returns the two methods CACHED_METHODS of an axis with a cache for the last position of the panel."""
-    find, measure = (getattr(axis, name) for name in CACHED_METHODS)
-    last: dict[str, Any] = {}
+    find_ticks, measure_boxes = (getattr(axis, name) for name in CACHED_METHODS)
+    latest: dict[str, Any] = {}
 
     def ticks() -> list[Any]:
         position = (*axis.axes.bbox.bounds, *axis.axes.viewLim.bounds)
-        if last.get("position") != position:
-            last.clear()
-            last.update(position=position, ticks=find())
-        found: list[Any] = last["ticks"]
-        return found
+        if latest.get("position") != position:
+            latest.clear()
+            latest.update(position=position, ticks=find_ticks())
+        result: list[Any] = latest["ticks"]
+        return result
 
     def boxes(of: Sequence[Any], renderer: Any) -> Any:
         if of is not ticks():
-            return measure(of, renderer)
-        if "boxes" not in last:
-            last["boxes"] = measure(of, renderer)
-        return last["boxes"]
+            return measure_boxes(of, renderer)
+        if "boxes" not in latest:
+            latest["boxes"] = measure_boxes(of, renderer)
+        return latest["boxes"]
 
     return ticks, boxes

@@ -41,19 +41,23 @@ def adapt_to_dark_background(figure: Figure) -> None:
 
 def _is_map(axes: Axes) -> bool:
     """Whether axes are filled with colours of a map."""
-    return bool(axes.images) or any(isinstance(one, QuadMesh) for one in axes.collections)
+    return bool(axes.images) or any(isinstance(collection, QuadMesh) for collection in axes.collections)
 
 
 def _exchange_colours(artist: object, background: ColorType) -> None:
     """Exchanges black and white of a line with its markers, or of a collection of lines or markers."""
     if isinstance(artist, Line2D):
         # All are read before one is set: the colours of markers may follow the colour of the line.
-        given = artist.get_color(), artist.get_markeredgecolor(), artist.get_markerfacecolor()
-        line, edge, face = (_exchanged(one, background) for one in given)
-        artist.set(color=line, markeredgecolor=edge, markerfacecolor=face)
+        colours = artist.get_color(), artist.get_markeredgecolor(), artist.get_markerfacecolor()
+        line, edge_, face_ = (_exchanged(colour, background) for colour in colours)
+        artist.set(color=line, markeredgecolor=edge_, markerfacecolor=face_)
     elif isinstance(artist, Collection):
-        artist.set_edgecolor([_exchanged(one, background) for one in to_rgba_array(artist.get_edgecolor())])
-        artist.set_facecolor([_exchanged(one, background) for one in to_rgba_array(artist.get_facecolor())])
+        artist.set_edgecolor(
+            [_exchanged(colour, background) for colour in to_rgba_array(artist.get_edgecolor())]
+        )
+        artist.set_facecolor(
+            [_exchanged(colour, background) for colour in to_rgba_array(artist.get_facecolor())]
+        )
 
 
 def _exchanged(colour: ColorType, background: ColorType) -> ColorType:

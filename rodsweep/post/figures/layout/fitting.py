@@ -56,8 +56,8 @@ def fit_layout(figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         if not any(changes):
             break
     # The texts fit; now remove the additional height. No text becomes longer by this.
-    spare = _spare_height(figure, min_aspect)
-    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - spare, MAX_FIGURE_HEIGHT)))
+    excess_height = _spare_height(figure, min_aspect)
+    figure.set_size_inches(width, max(height, min(height + SPARE_HEIGHT - excess_height, MAX_FIGURE_HEIGHT)))
     for _ in range(MAX_PASSES):
         _position_panels(figure)
         if not thin_ticks(figure):
@@ -78,33 +78,33 @@ def _position_panels(figure: Figure) -> None:
         legend.draw(canvas.get_renderer())  # drawing places the entries
 
 
-def break_lines(text: Text, room: float, upright: bool = False) -> bool:
-    """Breaks a text at spaces into lines of at most `room` pixels; returns whether the text changed.
+def break_lines(text: Text, max_width: float, is_vertical: bool = False) -> bool:
+    """Breaks a text at spaces into lines of at most `max_width` pixels; returns whether the text changed.
 
-    upright: whether the text is rotated by 90 degrees.
+    is_vertical: whether the text is rotated by 90 degrees.
     """
 
     def length() -> float:
         box = text.get_window_extent()
-        return float(box.height if upright else box.width)
+        return float(box.height if is_vertical else box.width)
 
-    before = text.get_text()
-    if not before or length() <= room:
+    original = text.get_text()
+    if not original or length() <= max_width:
         return False
     lines: list[str] = []
-    for given in before.split("\n"):
+    for given_line in original.split("\n"):
         line = ""
-        for word in WORD_PATTERN.findall(given):
-            longer = f"{line} {word}" if line else word
-            text.set_text(longer)
-            if line and length() > room:
+        for word in WORD_PATTERN.findall(given_line):
+            extended_line = f"{line} {word}" if line else word
+            text.set_text(extended_line)
+            if line and length() > max_width:
                 lines.append(line)
                 line = word
             else:
-                line = longer
+                line = extended_line
         lines.append(line)
     text.set_text("\n".join(lines))
-    return text.get_text() != before
+    return text.get_text() != original
 
 
 def _break_texts(figure: Figure) -> bool:
@@ -117,16 +117,18 @@ def _break_texts(figure: Figure) -> bool:
         grid_cell = axes.get_subplotspec()
         rows = 1 if grid_cell is None else ceil(grid_cell.get_gridspec().nrows / len(grid_cell.rowspan))
         centred = min(box.x0 + box.x1, 2 * width - box.x0 - box.x1) - 2 * margin
-        across = min(centred, _column_distance(axes, figure) - 2 * margin)
-        down = max(figure.bbox.height / rows - 2 * margin, box.height)
-        own = [text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts]
-        for title in own:
-            from_left = min(width - box.x0 - margin, _column_distance(axes, figure) - 2 * margin)
-            room = across if title.get_horizontalalignment() == "center" else from_left
-            changed.append(break_lines(title, room))
-        for one in (axes, *axes.child_axes):
-            changed.append(break_lines(one.xaxis.label, across))
-            changed.append(break_lines(one.yaxis.label, down, upright=True))
+        title_width = min(centred, _column_distance(axes, figure) - 2 * margin)
+        max_height = max(figure.bbox.height / rows - 2 * margin, box.height)
+        side_texts = [
+            text for text in axes.get_children() if isinstance(text, Text) and text not in axes.texts
+        ]
+        for title in side_texts:
+            left_title_width = min(width - box.x0 - margin, _column_distance(axes, figure) - 2 * margin)
+            max_width = title_width if title.get_horizontalalignment() == "center" else left_title_width
+            changed.append(break_lines(title, max_width))
+        for panel in (axes, *axes.child_axes):
+            changed.append(break_lines(panel.xaxis.label, title_width))
+            changed.append(break_lines(panel.yaxis.label, max_height, is_vertical=True))
     return any(changed)
 
 
@@ -137,30 +139,34 @@ def _column_distance(axes: Axes, figure: Figure) -> float:
     grid_cell = axes.get_subplotspec()
     if grid_cell is None:
         return float(figure.bbox.width)
-    middles = {
-        round(other.get_position(original=True).intervalx.mean() * figure.bbox.width)
-        for other in figure.axes
-        if (its := other.get_subplotspec()) is not None and its.get_gridspec() is grid_cell.get_gridspec()
+    centres = {
+        round(panel.get_position(original=True).intervalx.mean() * figure.bbox.width)
+        for panel in figure.axes
+        if (spec := panel.get_subplotspec()) is not None and spec.get_gridspec() is grid_cell.get_gridspec()
     }
-    own = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
-    return float(min((abs(middle - own) for middle in middles - {own}), default=figure.bbox.width))
+    centre = round(axes.get_position(original=True).intervalx.mean() * figure.bbox.width)
+    return float(
+        min((abs(other_centre - centre) for other_centre in centres - {centre}), default=figure.bbox.width)
+    )
 
 
 def _fit_legends(figure: Figure) -> bool:
     """Reduces the number of columns of legends that are too wide, and breaks long entries; returns whether
     any legend changed.
     """
-    room = figure.bbox.width - 2 * TEXT_MARGIN * figure.dpi
+    max_width = figure.bbox.width - 2 * TEXT_MARGIN * figure.dpi
     changed = False
-    for given in list(figure.legends):
-        legend = given
-        while legend.get_window_extent().width > room and _legend_column_count(legend) > 1:
+    for old_legend in list(figure.legends):
+        legend = old_legend
+        while legend.get_window_extent().width > max_width and _legend_column_count(legend) > 1:
             legend = _legend_with_columns(figure, legend, _legend_column_count(legend) - 1)
             changed = True
         texts = legend.get_texts()
-        if legend.get_window_extent().width > room:
-            beside = legend.get_window_extent().width - max(text.get_window_extent().width for text in texts)
-            changed |= any([break_lines(text, room - beside) for text in texts])
+        if legend.get_window_extent().width > max_width:
+            extra_width = legend.get_window_extent().width - max(
+                text.get_window_extent().width for text in texts
+            )
+            changed |= any([break_lines(text, max_width - extra_width) for text in texts])
     return changed
 
 
@@ -176,9 +182,9 @@ def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
-    new = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
+    columned_legend = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
     _position_panels(figure)
-    return new
+    return columned_legend
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
@@ -186,18 +192,18 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
     min_aspect: smallest ratio of height to width of a panel.
     """
     width, height = figure.get_size_inches()
-    spare = [height]
+    spares = [height]
     for axes in figure.axes:
         grid_cell = axes.get_subplotspec()
         if grid_cell is None or hasattr(axes, "_colorbar"):
             continue
-        room = axes.get_position(original=True)
+        panel_box = axes.get_position(original=True)
         ratios = np.asarray(grid_cell.get_gridspec().get_height_ratios())
-        part = ratios[grid_cell.rowspan.start : grid_cell.rowspan.stop].sum() / ratios.sum()
+        row_fraction = ratios[grid_cell.rowspan.start : grid_cell.rowspan.stop].sum() / ratios.sum()
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
-        own = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-        shape = max(min_aspect, EQUAL_SCALE_SLACK * own)
-        least = max(shape * room.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
-        spare.append((room.height * height - least) / part)
-    return min(spare)
+        data_ratio = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
+        shape = max(min_aspect, EQUAL_SCALE_SLACK * data_ratio)
+        min_height = max(shape * panel_box.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
+        spares.append((panel_box.height * height - min_height) / row_fraction)
+    return min(spares)

@@ -15,12 +15,12 @@ def thin_ticks(figure: Figure) -> bool:
     """Removes some tick labels, such as every second, from each axis whose labels overlap; returns whether
     any label was removed.
     """
-    every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
+    all_axes = [*figure.axes, *(inset for axes in figure.axes for inset in axes.child_axes)]
     return any(
         [
-            _remove_overlapping_labels(axis, way)
-            for axes in every
-            for axis, way in ((axes.xaxis, 0), (axes.yaxis, 1))
+            _remove_overlapping_labels(axis, direction)
+            for axes in all_axes
+            for axis, direction in ((axes.xaxis, 0), (axes.yaxis, 1))
         ]
     )
 
@@ -28,23 +28,26 @@ def thin_ticks(figure: Figure) -> bool:
 def visible_labels(axis: Axis) -> list[Text]:
     """Visible tick labels within the limits of an axis."""
     low, high = sorted(axis.get_view_interval())
-    near = EDGE_TOLERANCE * (high - low)
+    margin = EDGE_TOLERANCE * (high - low)
     return [
         label
         for position, label in zip(axis.get_majorticklocs(), axis.get_majorticklabels(), strict=False)
-        if label.get_visible() and label.get_text() and low - near <= position <= high + near
+        if label.get_visible() and label.get_text() and low - margin <= position <= high + margin
     ]
 
 
-def _remove_overlapping_labels(axis: Axis, way: int) -> bool:
+def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
     """Removes some tick labels of an axis, such as every second, if its labels overlap; returns whether any
-    label was removed. way: 0 for a horizontal axis, 1 for a vertical axis.
+    label was removed. direction: 0 for a horizontal axis, 1 for a vertical axis.
     """
-    shown = visible_labels(axis)
-    boxes = [label.get_window_extent() for label in shown]
-    spans = sorted(tuple(box.intervaly if way else box.intervalx) for box in boxes)
-    least = 0.0 if way else LABEL_GAP * max((box.height for box in boxes), default=0.0)
-    if all(later[0] - earlier[1] >= least for earlier, later in zip(spans[:-1], spans[1:], strict=True)):
+    labels = visible_labels(axis)
+    boxes = [label.get_window_extent() for label in labels]
+    extents = sorted(tuple(box.intervaly if direction else box.intervalx) for box in boxes)
+    min_gap = 0.0 if direction else LABEL_GAP * max((box.height for box in boxes), default=0.0)
+    if all(
+        following[0] - previous[1] >= min_gap
+        for previous, following in zip(extents[:-1], extents[1:], strict=True)
+    ):
         return False
     locator = axis.get_major_locator()
     if isinstance(locator, FixedLocator):
@@ -55,23 +58,23 @@ def _remove_overlapping_labels(axis: Axis, way: int) -> bool:
     if isinstance(locator, LogLocator):
         return _thin_decades(axis, locator)
     if isinstance(locator, SymmetricalLogLocator):
-        return _thin_powers(axis, len(shown))
-    if isinstance(locator, MaxNLocator) and len(shown) > 2:
-        axis.set_major_locator(MaxNLocator(max(len(shown) - 2, 1), steps=[1, 2, 2.5, 5, 10]))
+        return _thin_powers(axis, len(labels))
+    if isinstance(locator, MaxNLocator) and len(labels) > 2:
+        axis.set_major_locator(MaxNLocator(max(len(labels) - 2, 1), steps=[1, 2, 2.5, 5, 10]))
         return True
     return False
 
 
-def _thin_powers(axis: Axis, shown: int) -> bool:
+def _thin_powers(axis: Axis, label_count: int) -> bool:
     """Removes labelled powers of ten from a symmetric logarithmic axis; returns whether any label was
-    removed. shown: present number of labels.
+    removed. label_count: present number of labels.
     """
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
         return False
-    for powers in (2, 3, 4, 6):
-        axis.set_major_locator(SymmetricalLogLocator(base=10.0**powers, linthresh=10 * start))
-        if len(visible_labels(axis)) < shown:
+    for decade_step in (2, 3, 4, 6):
+        axis.set_major_locator(SymmetricalLogLocator(base=10.0**decade_step, linthresh=10 * start))
+        if len(visible_labels(axis)) < label_count:
             return True
     return False
 
@@ -82,12 +85,12 @@ def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
     """
     low, high = sorted(axis.get_view_interval())
     labelled = getattr(locator, "_subs", None)
-    most = 0 if labelled is None or isinstance(labelled, str) else len(labelled)
-    for subs in ((1.0, 3.0), (1.0,), (2.0,)):
-        if len(subs) >= most:
+    max_labels = 0 if labelled is None or isinstance(labelled, str) else len(labelled)
+    for multiples in ((1.0, 3.0), (1.0,), (2.0,)):
+        if len(multiples) >= max_labels:
             continue
-        ticks = [tick for tick in LogLocator(subs=subs).tick_values(low, high) if low <= tick <= high]
+        ticks = [tick for tick in LogLocator(subs=multiples).tick_values(low, high) if low <= tick <= high]
         if len(ticks) >= 2:
-            axis.set_major_locator(LogLocator(subs=subs))
+            axis.set_major_locator(LogLocator(subs=multiples))
             return True
     return False

@@ -38,8 +38,8 @@ def draw_eigenvalues(view: View) -> Figure:
     scale_if_spread(axes, growth, frequency)
     for mode in range(min(modes, MAX_NUMBERED)):
         if np.isfinite(growth[mode]):
-            at = growth[mode], frequency[mode]
-            axes.annotate(str(mode + 1), at, (5, 5), textcoords="offset points", size=8)
+            eigenvalue = growth[mode], frequency[mode]
+            axes.annotate(str(mode + 1), eigenvalue, (5, 5), textcoords="offset points", size=8)
     axes.axvline(0, color="0.5", lw=0.6)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
@@ -56,11 +56,11 @@ def draw_list_of_spectra(view: View) -> Figure:
     figure = Figure(figsize=(5.2, 5.4), layout="constrained")
     panels = figure.subplots(2, 1, sharex=True)
     number = np.broadcast_to(np.arange(1, len(growth) + 1)[:, None], growth.shape)
-    for axes, values, part in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
+    for axes, values, part_name in zip(panels, (growth, frequency), ("Re", "Im"), strict=True):
         handles = _draw_markers(axes, number, values, growth > 0)
         scale_if_spread(axes, None, values)
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
-        axes.set_ylabel(rf"$\mathrm{{{part}}}\,\omega\,\tau_2$")
+        axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
     figure.suptitle(_heading(view))
@@ -72,15 +72,17 @@ def _heading(view: View) -> str:
     return heading_text(view, constant_quantities_text(view), parameter_text(shared_parameters(view)))
 
 
-def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, grows: np.ndarray) -> list[Line2D]:
-    """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. grows: mask of
-    growing modes, of the same shape.
+def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> list[Line2D]:
+    """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. is_growing:
+    mask of growing modes, of the same shape.
     """
     handles = []
     for kind, (colour, marker, word) in MODE_LOOKS.items():
-        chosen = (grows == kind) & np.isfinite(y)
-        if chosen.any():
-            handles += axes.plot(x[chosen], y[chosen], marker, color=colour, mfc="none", ms=4.5, label=word)
+        is_drawn = (is_growing == kind) & np.isfinite(y)
+        if is_drawn.any():
+            handles += axes.plot(
+                x[is_drawn], y[is_drawn], marker, color=colour, mfc="none", ms=4.5, label=word
+            )
     return handles
 
 

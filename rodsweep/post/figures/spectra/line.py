@@ -66,31 +66,34 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
     # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.
-    around = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
-    jump = np.flatnonzero((step > 8 * around) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
+    local_step = np.array([np.median(step[max(0, i - 3) : i + 4]) for i in range(len(step))])
+    jump = np.flatnonzero((step > 8 * local_step) & (step > 0.5 * np.minimum(size[1:], size[:-1]))) + 1
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
 
 
-def roots_to_follow(views: Sequence[View], asked: str | None) -> str:
-    """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `asked`, or else
-    "smallest" or "rightmost", whichever gives fewer gaps and shows a growing root where one is stored.
+def roots_to_follow(views: Sequence[View], typed_roots: str | None) -> str:
+    """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `typed_roots`, or
+    else "smallest" or "rightmost", whichever gives fewer gaps and shows a growing root where one is stored.
 
     If the numbers of gaps are equal, the smallest roots are followed, as in the paper. If a file stores only
     one root, the choice is "all".
     """
     if any(len(view.variables["mode"]) < FOLLOWED_COUNT for view in views):
         return "all"
-    if asked:
-        return asked
+    if typed_roots:
+        return typed_roots
 
     def breaks(roots: str) -> int:
         lines = (_followed_roots(view, roots) for view in views)
         return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
     def hides_growth(roots: str) -> bool:
-        drawn = (_followed_roots(view, roots).real.max(axis=1) for view in views)
+        followed_growths = (_followed_roots(view, roots).real.max(axis=1) for view in views)
         stored = (view.by_point("growth_rate").max(axis=1) for view in views)
-        return any(((own <= 0) & (all_ > 0)).any() for own, all_ in zip(drawn, stored, strict=True))
+        return any(
+            ((followed_growth <= 0) & (all_growth > 0)).any()
+            for followed_growth, all_growth in zip(followed_growths, stored, strict=True)
+        )
 
     return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
@@ -104,8 +107,8 @@ def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
     label of the colour bar.
     """
-    across = np.broadcast_to(x[:, None], w.shape)
-    dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=across.ravel(), cmap="viridis_r")
+    x_of_roots = np.broadcast_to(x[:, None], w.shape)
+    dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
     axes.figure.colorbar(dots, ax=axes, label=label)
 
@@ -147,15 +150,22 @@ def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
         x_broken, w = with_gaps_between_roots(x, w)
         # A thin line over a thick line: both are visible where the lines coincide.
         for i, (colour, width) in enumerate(((style.BLUE, 3.0), (style.VERMILION, 1.2))):
-            look: dict[str, Any] = {"color": colour, "lw": width}
-            axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **look)
-            axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **look)
+            keywords: dict[str, Any] = {"color": colour, "lw": width}
+            axes.plot(x_broken, w[:, i].real, label=rf"$\mathrm{{Re}}\,\omega_{i + 1}$", **keywords)
+            axes.plot(x_broken, w[:, i].imag, ":", label=rf"$\mathrm{{Im}}\,\omega_{i + 1}$", **keywords)
     else:
-        across = np.broadcast_to(x[:, None], w.shape)
-        for part, colour, marker in ((w.real, style.BLUE, "o"), (w.imag, style.VERMILION, "s")):
+        x_of_roots = np.broadcast_to(x[:, None], w.shape)
+        for root_part, colour, marker in ((w.real, style.BLUE, "o"), (w.imag, style.VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
             axes.plot(
-                across.ravel(), part.ravel(), marker, color=colour, mfc="none", ms=2, mew=0.6, label=word
+                x_of_roots.ravel(),
+                root_part.ravel(),
+                marker,
+                color=colour,
+                mfc="none",
+                ms=2,
+                mew=0.6,
+                label=word,
             )
     axes.axhline(0, color="0.5", lw=0.6)
     style.scale_axis(axes, "x", x)
@@ -173,14 +183,14 @@ def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     """Draws an arrow at the middle of the path w, (n,), of a root, in the direction of the path. If w has
     gaps, the part with the most points is used.
     """
-    pieces = np.split(w, np.flatnonzero(~np.isfinite(w)))
-    path = max((piece[np.isfinite(piece)] for piece in pieces), key=len)
+    unbroken_parts = np.split(w, np.flatnonzero(~np.isfinite(w)))
+    path = max((unbroken_part[np.isfinite(unbroken_part)] for unbroken_part in unbroken_parts), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
     lengths = np.hypot(np.diff(path.real) / ranges[0], np.diff(path.imag) / ranges[1])
     if not lengths.sum() > 0:
         return
     k = int(np.searchsorted(np.cumsum(lengths), lengths.sum() / 2))
-    start, end = ((z.real, z.imag) for z in path[k : k + 2])
+    start, end = ((eigenvalue.real, eigenvalue.imag) for eigenvalue in path[k : k + 2])
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     axes.annotate("", xy=end, xytext=start, arrowprops=arrow)
 
@@ -201,12 +211,12 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedThreshold]
     unstable = view.variables["unstable_count"].reshape(-1) > 0
     if name != "F":
         if unstable.any():
-            across = axes.get_xaxis_transform()
-            axes.fill_between(x, 0, 1, where=unstable, transform=across, label="flutter", **SHADE_LOOK)
+            transform = axes.get_xaxis_transform()
+            axes.fill_between(x, 0, 1, where=unstable, transform=transform, label="flutter", **SHADE_LOOK)
         return []
     (line,) = lines_along(view.point_columns, name)
-    found = StoredThresholds(view, name).thresholds_on(line)
-    thresholds = [threshold for threshold in found if isinstance(threshold, LocatedThreshold)]
+    located = StoredThresholds(view, name).thresholds_on(line)
+    thresholds = [threshold for threshold in located if isinstance(threshold, LocatedThreshold)]
     for threshold in thresholds:
         _, dashes = THRESHOLD_LOOKS[threshold.kind]
         axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE)
@@ -214,11 +224,11 @@ def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedThreshold]
     # bracketed restabilization.
     starts, ends = (
         [
-            change.position if isinstance(change, LocatedThreshold) else getattr(change, inner)
-            for change in found
+            change.position if isinstance(change, LocatedThreshold) else getattr(change, inner_end)
+            for change in located
             if change.kind == kind
         ]
-        for kind, inner in (("hopf", "high"), ("restabilization", "low"))
+        for kind, inner_end in (("hopf", "high"), ("restabilization", "low"))
     )
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))

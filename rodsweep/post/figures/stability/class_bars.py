@@ -43,11 +43,11 @@ def draw_class_bars(view: View) -> Figure:
     style.require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
     figure = Figure(figsize=(5.8, 2.2 if count == 1 else 4.0), layout="constrained")
     axes = figure.subplots()
-    seen = set[str]()
+    drawn_classes = set[str]()
     for rod in range(count):
-        seen |= draw_class_bar(axes, view, rod, upright=count > 1)
-    handles: list = class_legend_entries(seen)
-    handles += mark_thresholds_on_bars(axes, view, upright=count > 1)
+        drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=count > 1)
+    handles: list = class_legend_entries(drawn_classes)
+    handles += mark_thresholds_on_bars(axes, view, is_vertical=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
         axes.set(xlim=(0, end), ylim=(-0.75, 0.75), yticks=[], xlabel=style.LABELS["F"])
@@ -68,61 +68,63 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
     search. The first interval has the class "monotone"; the last is "not stored" if the file has no room
     for all crossings. rod: index of the rod."""
-    kinds, F, after = (view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after"))
+    kinds, F, counts = (
+        view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after")
+    )
     end = float(view.variables["F_end"].ravel()[rod])
-    found = int(view.variables["crossing_count"].ravel()[rod])
+    crossing_count = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0
     word = "monotone"
     for index in np.flatnonzero(kinds > 0):
         yield start, float(F[index]), word
         start = float(F[index])
-        word = class_above_crossing(int(kinds[index]), int(after[index]))
-    if found > np.count_nonzero(kinds > 0):
+        word = class_above_crossing(int(kinds[index]), int(counts[index]))
+    if crossing_count > np.count_nonzero(kinds > 0):
         word = "not stored"
     if np.isfinite(end):
         yield start, end, word
 
 
-def draw_class_bar(axes: Axes, view: View, rod: int, upright: bool) -> set[str]:
-    """Draws the bar of the rod with the index `rod`; returns the classes of the bar. upright: whether the bar
-    is vertical.
+def draw_class_bar(axes: Axes, view: View, rod: int, is_vertical: bool) -> set[str]:
+    """Draws the bar of the rod with the index `rod`; returns the classes of the bar. is_vertical: whether the
+    bar is vertical.
     """
-    pieces = list(classes_over_force(view, rod))
-    from_, to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
-    if np.isfinite(from_):
-        pieces.append((float(from_), float(to), "undecided"))
-    for start, end, word in pieces:
-        if upright:
+    intervals = list(classes_over_force(view, rod))
+    undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
+    if np.isfinite(undecided_from):
+        intervals.append((float(undecided_from), float(undecided_to), "undecided"))
+    for start, end, word in intervals:
+        if is_vertical:
             axes.bar(rod + 1, end - start, BAR_WIDTH, bottom=start, color=CLASS_COLOURS[word])
         else:
             axes.barh(0, end - start, BAR_WIDTH, left=start, color=CLASS_COLOURS[word])
-    return {word for *_, word in pieces}
+    return {word for *_, word in intervals}
 
 
 def mark_thresholds_on_bars(
-    axes: Axes, view: View, upright: bool, unit: str = "", factor: float = 1.0
+    axes: Axes, view: View, is_vertical: bool, unit: str = "", factor: float = 1.0
 ) -> list[Line2D]:
     """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 
-    upright: whether bars are vertical. unit: unit of the loads in legend entries; empty for F. factor: load
-    at F = 1, in this unit.
+    is_vertical: whether bars are vertical. unit: unit of the loads in legend entries; empty for F. factor:
+    load at F = 1, in this unit.
     """
-    kinds, F, after = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
-    hopf = kinds == CROSSING_KINDS.index("hopf")
-    chosen = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
-    chosen |= {"hopf": hopf & (after <= 2), FURTHER_HOPF: hopf & (after > 2)}
+    kinds, F, counts = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
+    is_hopf = kinds == CROSSING_KINDS.index("hopf")
+    masks = {kind: kinds == CROSSING_KINDS.index(kind) for kind in CROSSING_MARKS if kind != FURTHER_HOPF}
+    masks |= {"hopf": is_hopf & (counts <= 2), FURTHER_HOPF: is_hopf & (counts > 2)}
     handles = []
     for kind, (colour, marker, word) in CROSSING_MARKS.items():
-        rods, places = np.nonzero(chosen[kind])
+        rods, crossing_indices = np.nonzero(masks[kind])
         if not rods.size:
             continue
-        force = F[rods, places]
-        x, y = (rods + 1, force) if upright else (force, rods)
+        force = F[rods, crossing_indices]
+        x, y = (rods + 1, force) if is_vertical else (force, rods)
         name = plural(word) if kind == FURTHER_HOPF and rods.size > 1 else word
         if unit:
             name = name.partition(" $")[0]
-        loads = ", ".join(f"{factor * at:#.{THRESHOLD_DIGITS}g}" for at in force)
-        label = name if upright else f"{name} = {loads} {unit}".rstrip()
+        loads = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
+        label = name if is_vertical else f"{name} = {loads} {unit}".rstrip()
         handles += axes.plot(
             x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
         )

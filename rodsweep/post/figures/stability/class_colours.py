@@ -44,12 +44,12 @@ LEGEND_ENTRIES = {
 entry."""
 
 
-def class_legend_entries(seen: set[str]) -> list[Patch]:
-    """Legend entries for the classes in `seen`."""
-    shown = {word: colour for word, colour in CLASS_COLOURS.items() if word in seen}
+def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
+    """Legend entries for the classes in `drawn_classes`."""
+    drawn_colours = {word: colour for word, colour in CLASS_COLOURS.items() if word in drawn_classes}
     return [
         Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-        for word, colour in shown.items()
+        for word, colour in drawn_colours.items()
     ]
 
 
@@ -74,10 +74,10 @@ class Palette:
 
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        shown = (word for number, word in self.words if (table == number).any())
+        drawn_words = (word for number, word in self.words if (table == number).any())
         return [
             Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-            for word in shown
+            for word in drawn_words
         ]
 
 

@@ -47,26 +47,26 @@ DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, hopf_only: bool) -> list[Line2D]:
     """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
     v = view.variables
-    sides = "curve_criticality" in v
-    handles = _draw_criticality(axes, view, line, row) if sides else []
-    looks = {0: DOUBLE_LOOK} if sides else CURVE_LOOKS
-    for number, (word, width, style) in looks.items():
-        of_kind = v["curve_kind"] == number
+    has_criticality = "curve_criticality" in v
+    handles = _draw_criticality(axes, view, line, row) if has_criticality else []
+    curve_looks = {0: DOUBLE_LOOK} if has_criticality else CURVE_LOOKS
+    for number, (word, width, style) in curve_looks.items():
+        mask = v["curve_kind"] == number
         if hopf_only and number == 0:
             continue
-        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][of_kind])]
-        for one in curves:
-            axes.plot(v[f"curve_{line}"][one], v[f"curve_{row}"][one], style, color="k", lw=width)
-        if of_kind.any():
+        curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][mask])]
+        for curve in curves:
+            axes.plot(v[f"curve_{line}"][curve], v[f"curve_{row}"][curve], style, color="k", lw=width)
+        if mask.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
-        if of_kind.any() and not sides:
+        if mask.any() and not has_criticality:
             named = boundaries_to_name(view, number, line, row)
-            paths = [np.column_stack([v[f"curve_{n}"][one] for n in (line, row)]) for one in named]
+            paths = [np.column_stack([v[f"curve_{n}"][curve] for n in (line, row)]) for curve in named]
             if paths and "F" in (line, row):
                 paths = _lowest_parts(paths, 0 if line == "F" else 1)
-            name, share = CURVE_SYMBOLS[number]
+            name, position = CURVE_SYMBOLS[number]
             if paths:
-                _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), share)
+                _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), position)
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line, row)
 
 
@@ -104,8 +104,7 @@ def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2
         if not (v[line][0] <= x <= v[line][-1] and rows[0] <= y <= rows[-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
-        (cross,) = axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
-        handles.append(cross)
+        handles += axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
     return handles
 
 
@@ -114,12 +113,12 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
     v = view.variables
     handles = []
     for kind, (word, colour) in CYCLE_CURVE_STYLES.items():
-        of_kind = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
-        for curve in np.unique(v["cycle_curve_number"][of_kind]):
-            one = v["cycle_curve_number"] == curve
-            points = v[f"cycle_curve_{line}"][one], v[f"cycle_curve_{row}"][one]
+        mask = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
+        for curve in np.unique(v["cycle_curve_number"][mask]):
+            curve_mask = v["cycle_curve_number"] == curve
+            points = v[f"cycle_curve_{line}"][curve_mask], v[f"cycle_curve_{row}"][curve_mask]
             axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
-        if of_kind.any():
+        if mask.any():
             handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
     return handles
 
@@ -128,34 +127,35 @@ def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Lin
     """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
     values = view.point_columns[row]
-    kinds, at = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
+    kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
     for kind, (word, marker) in CYCLE_MARKS.items():
-        rows, places = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
-        alone = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line, row, at[rows, places], values[rows])
-        x = at[rows, places][alone]
-        y = values[rows][alone]
-        if alone.any():
-            handles += axes.plot(x, y, marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word)
+        rows, items = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
+        x, y = positions[rows, items], values[rows]
+        is_free = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line, row, x, y)
+        if is_free.any():
+            handles += axes.plot(
+                x[is_free], y[is_free], marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word
+            )
     return handles
 
 
 def _is_on_curve(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
     """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
     v = view.variables
-    near = np.zeros(len(x), dtype=bool)
+    is_near = np.zeros(len(x), dtype=bool)
     if "cycle_curve_number" not in v:
-        return near
+        return is_near
     for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
-        on = v["cycle_curve_number"] == curve
-        along = v[f"cycle_curve_{line}"][on]
-        across = v[f"cycle_curve_{row}"][on]
-        before = across[:-1, None] - y
-        after = across[1:, None] - y
-        share = np.divide(before, before - after, out=np.zeros_like(before), where=before != after)
-        places = along[:-1, None] + share * np.diff(along)[:, None]
-        off = np.where(before * after <= 0, np.abs(places - x), np.inf)
-        near |= off.min(axis=0, initial=np.inf) <= CURVE_TOLERANCE * np.ptp(v[line])
-    return near
+        mask = v["cycle_curve_number"] == curve
+        line_values = v[f"cycle_curve_{line}"][mask]
+        row_values = v[f"cycle_curve_{row}"][mask]
+        below = row_values[:-1, None] - y
+        above = row_values[1:, None] - y
+        fraction = np.divide(below, below - above, out=np.zeros_like(below), where=below != above)
+        crossings = line_values[:-1, None] + fraction * np.diff(line_values)[:, None]
+        distances = np.where(below * above <= 0, np.abs(crossings - x), np.inf)
+        is_near |= distances.min(axis=0, initial=np.inf) <= CURVE_TOLERANCE * np.ptp(v[line])
+    return is_near
 
 
 def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
@@ -163,16 +163,16 @@ def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2
     entries.
     """
     v = view.variables
-    used = set()
+    drawn_criticalities = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
-        for side, points in parts_of_equal_criticality(view, int(curve), line, row):
-            _, width, style = CRITICALITY_LOOKS[side]
+        for criticality, points in parts_of_equal_criticality(view, int(curve), line, row):
+            _, width, style = CRITICALITY_LOOKS[criticality]
             axes.plot(*points.T, style, color="k", lw=width)
-            used.add(side)
+            drawn_criticalities.add(criticality)
     handles = [
         Line2D([], [], color="k", lw=width, ls=style, label=word)
-        for side, (word, width, style) in CRITICALITY_LOOKS.items()
-        if side in used
+        for criticality, (word, width, style) in CRITICALITY_LOOKS.items()
+        if criticality in drawn_criticalities
     ]
     for i in range(len(v["bautin_curve"])):
         x = v[f"bautin_{line}"][i]
@@ -185,66 +185,66 @@ def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2
 def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     """Draws curves of generalised Hopf points; returns legend entries. line, row: see the module."""
     v = view.variables
-    drawn = []
+    curves = []
     third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
     for number in np.unique(v["bautin_along_curve"]):
-        on = v["bautin_along_curve"] == number
-        reach = v[f"bautin_along_{third}"][on]
-        low, high = (number_text(float(end), 3) for end in (reach.min(), reach.max()))
+        mask = v["bautin_along_curve"] == number
+        third_values = v[f"bautin_along_{third}"][mask]
+        low, high = (number_text(float(end), 3) for end in (third_values.min(), third_values.max()))
         label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
-        x, y = (v[f"bautin_along_{name}"][on] for name in (line, row))
-        drawn += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
-    return drawn
+        x, y = (v[f"bautin_along_{name}"][mask] for name in (line, row))
+        curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
+    return curves
 
 
 def parts_of_equal_criticality(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     v = view.variables
-    rows = np.flatnonzero(v["curve_number"] == curve)
-    on = np.flatnonzero(v["bautin_curve"] == curve)
-    places = np.searchsorted(rows, v["bautin_curve_point"][on] - 1, side="right")
-    columns = [np.insert(v[f"curve_{name}"][rows], places, v[f"bautin_{name}"][on]) for name in (line, row)]
-    points = np.column_stack(columns)
-    side = np.insert(np.nan_to_num(v["curve_criticality"][rows]), places, 0)
+    indices = np.flatnonzero(v["curve_number"] == curve)
+    bautin = np.flatnonzero(v["bautin_curve"] == curve)
+    places = np.searchsorted(indices, v["bautin_curve_point"][bautin] - 1, side="right")
+    names = ((f"curve_{name}", f"bautin_{name}") for name in (line, row))
+    points = np.column_stack([np.insert(v[a][indices], places, v[b][bautin]) for a, b in names])
+    criticality = np.insert(np.nan_to_num(v["curve_criticality"][indices]), places, 0)
     # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.
-    ends = side[:-1], side[1:]
-    pieces = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
-    cuts = [0, *(np.flatnonzero(np.diff(pieces)) + 1), len(pieces)]
-    return [(int(pieces[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
+    ends = criticality[:-1], criticality[1:]
+    signs = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
+    cuts = [0, *(np.flatnonzero(np.diff(signs)) + 1), len(signs)]
+    return [(int(signs[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
 
 
 def _lowest_parts(paths: list[Array], force: int) -> list[Array]:
     """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
     column with F."""
     starts, ends = (
-        np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
+        np.concatenate([path[part] for path in paths]) for part in (slice(None, -1), slice(1, None))
     )
     y0 = starts[:, 1 - force]
     y1 = ends[:, 1 - force]
-    parts = []
+    lowest = []
     for path in paths:
         y = path[:, 1 - force, None]
-        share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
+        fraction = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
         crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        at = np.where(crosses, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
-        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
-    return parts
+        forces = np.where(crosses, starts[:, force] + fraction * (ends[:, force] - starts[:, force]), np.inf)
+        lowest.append(path[path[:, force] <= forces.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
+    return lowest
 
 
-def _label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
-    this length. paths: curves, (points, 2) each."""
+def _label_longest_curve(axes: Axes, paths: list[Array], name: str, fraction: float) -> None:
+    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `fraction`
+    of this length. paths: curves, (points, 2) each."""
     lengths = []
-    seen = []
+    parts = []
     for path in paths:
-        places = axes.transAxes.inverted().transform(axes.transData.transform(path))
-        inside = ((places >= 0) & (places <= 1)).all(axis=1)
-        steps = np.linalg.norm(np.diff(places[inside], axis=0), axis=1)
-        seen.append(path[inside])
-        lengths.append(np.append(0.0, np.cumsum(steps)) if inside.any() else np.zeros(1))
+        pixels = axes.transAxes.inverted().transform(axes.transData.transform(path))
+        is_inside = ((pixels >= 0) & (pixels <= 1)).all(axis=1)
+        parts.append(path[is_inside])
+        steps = np.linalg.norm(np.diff(pixels[is_inside], axis=0), axis=1)
+        lengths.append(np.append(0.0, np.cumsum(steps)) if is_inside.any() else np.zeros(1))
     longest = max(range(len(paths)), key=lambda i: lengths[i][-1])
     if lengths[longest][-1] > 0:
-        at = int(np.searchsorted(lengths[longest], share * lengths[longest][-1]))
+        k = int(np.searchsorted(lengths[longest], fraction * lengths[longest][-1]))
         axes.annotate(
-            name, seen[longest][at], xytext=(4, -2), textcoords="offset points", size=LABEL_FONTSIZE, va="top"
+            name, parts[longest][k], xytext=(4, -2), textcoords="offset points", size=LABEL_FONTSIZE, va="top"
         )

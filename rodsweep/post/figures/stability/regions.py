@@ -45,10 +45,10 @@ class DrawnPlane:
     @staticmethod
     def pixel_centres(axis: Array) -> Array:
         """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
-        share = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
+        fractions = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
         if is_logarithmic(axis):
-            return np.asarray(axis[0] * (axis[-1] / axis[0]) ** share)
-        return np.asarray(axis[0] + (axis[-1] - axis[0]) * share)
+            return np.asarray(axis[0] * (axis[-1] / axis[0]) ** fractions)
+        return np.asarray(axis[0] + (axis[-1] - axis[0]) * fractions)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,32 +62,34 @@ class ClassifiedPoints:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
         """
-        inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
-        at = self.at[inside]
-        return ClassifiedPoints(at, self.classes[inside]), regions[tuple(_pixels_of_points(at).T)]
+        is_inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
+        coordinates = self.at[is_inside]
+        return ClassifiedPoints(coordinates, self.classes[is_inside]), regions[
+            tuple(_pixels_of_points(coordinates).T)
+        ]
 
 
 def pixel_classes(
     computed: ClassifiedPoints,
-    further: ClassifiedPoints,
+    row_points: ClassifiedPoints,
     curves: Sequence[Array],
     closed: NDArray[Any],
     undecided: int,
 ) -> NDArray[Any]:
     """Class of each pixel, (PIXEL_COUNT, PIXEL_COUNT): the class of the nearest point in the same region.
 
-    The lowest row of pixels comes first. further: points that are used in regions without a computed point.
-    curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong to no region,
-    (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class `undecided`, or, if the lines over
-    its boundary cover it, the class of the nearest computed point.
+    The lowest row of pixels comes first. row_points: points that are used in regions without a computed
+    point. curves: boundaries as fractions of the axes, (m, 2) each. closed: mask of pixels that belong to no
+    region, (PIXEL_COUNT, PIXEL_COUNT). A region without any point has the class `undecided`, or, if the lines
+    over its boundary cover it, the class of the nearest computed point.
     """
     walls = scipy.ndimage.binary_dilation(closed)
     for curve in curves:
         row, column = _pixels_of_points(_dense_curve_points(curve)).T
         walls[row, column] = True
     regions, count = scipy.ndimage.label(~walls)
-    known, region_of_known = computed.with_regions(regions)
-    sources = [(known, region_of_known), further.with_regions(regions), (known, None)]
+    computed_points, computed_regions = computed.with_regions(regions)
+    sources = [(computed_points, computed_regions), row_points.with_regions(regions), (computed_points, None)]
     table = np.full((PIXEL_COUNT, PIXEL_COUNT), undecided, computed.classes.dtype)
     distance_to_wall = scipy.ndimage.distance_transform_edt(~walls) if walls.any() else None
     for region in range(1, count + 1):
@@ -96,9 +98,9 @@ def pixel_classes(
         for source, of_region in sources:
             if of_region is None and is_visible:
                 break
-            own = np.full(len(source.at), True) if of_region is None else of_region == region
-            if own.any():
-                table[pixels] = _nearest_classes(pixels, source.at[own], source.classes[own])
+            is_inside = np.full(len(source.at), True) if of_region is None else of_region == region
+            if is_inside.any():
+                table[pixels] = _nearest_classes(pixels, source.at[is_inside], source.classes[is_inside])
                 break
     if walls.any() and not walls.all():
         nearest = scipy.ndimage.distance_transform_edt(walls, return_distances=False, return_indices=True)
@@ -106,19 +108,19 @@ def pixel_classes(
     return table
 
 
-def _nearest_classes(pixels: tuple[NDArray[Any], ...], places: Array, classes: NDArray[Any]) -> NDArray[Any]:
-    """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. places: points as
+def _nearest_classes(pixels: tuple[NDArray[Any], ...], points: Array, classes: NDArray[Any]) -> NDArray[Any]:
+    """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. points: points as
     fractions of the axes, (m, 2). classes: classes of the points, (m,).
     """
     if (classes == classes[0]).all():
         return classes[0]
     centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXEL_COUNT
-    return classes[scipy.spatial.cKDTree(places).query(centres)[1]]
+    return classes[scipy.spatial.cKDTree(points).query(centres)[1]]
 
 
-def _pixels_of_points(places: Array) -> NDArray[np.intp]:
-    """(row, column) of the pixels that contain the points, (n, 2). places: fractions of the axes, (n, 2)."""
-    return np.clip(places[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
+def _pixels_of_points(points: Array) -> NDArray[np.intp]:
+    """(row, column) of the pixels that contain the points, (n, 2). points: fractions of the axes, (n, 2)."""
+    return np.clip(points[:, ::-1] * PIXEL_COUNT, 0, PIXEL_COUNT - 1).astype(np.intp)
 
 
 def _dense_curve_points(curve: Array) -> Array:
@@ -129,16 +131,16 @@ def _dense_curve_points(curve: Array) -> Array:
     the plane.
     """
     curve = curve[np.isfinite(curve).all(axis=1)]
-    edge = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
+    half_pixel = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
     steps = np.diff(curve, axis=0)
     with np.errstate(all="ignore"):  # a segment parallel to an axis gives infinities, which are correct
-        crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-edge, 1 + edge)])
-    enters = np.maximum(crossed.min(axis=0).max(axis=1), 0)
-    leaves = np.minimum(crossed.max(axis=0).min(axis=1), 1)
-    pieces = [curve[:1]]
-    for i in np.flatnonzero(enters <= leaves):
-        share = leaves[i] - enters[i]
-        count = int(share * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_STEP) + 1
-        pieces.append(curve[i] + steps[i] * np.linspace(enters[i], leaves[i], count + 1)[:, None])
-    places = np.concatenate(pieces)
-    return places[((places > -edge) & (places < 1 + edge)).all(axis=1)]
+        crossed = np.stack([(bound - curve[:-1]) / steps for bound in (-half_pixel, 1 + half_pixel)])
+    entry = np.maximum(crossed.min(axis=0).max(axis=1), 0)
+    exit_ = np.minimum(crossed.max(axis=0).min(axis=1), 1)
+    point_parts = [curve[:1]]
+    for i in np.flatnonzero(entry <= exit_):
+        inner_fraction = exit_[i] - entry[i]
+        count = int(inner_fraction * np.abs(steps[i]).max() * PIXEL_COUNT / CURVE_STEP) + 1
+        point_parts.append(curve[i] + steps[i] * np.linspace(entry[i], exit_[i], count + 1)[:, None])
+    points = np.concatenate(point_parts)
+    return points[((points > -half_pixel) & (points < 1 + half_pixel)).all(axis=1)]

@@ -40,25 +40,27 @@ def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, A
     of a stable rod, and the last part only if all crossings are stored. Rows at infinity are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
-    kinds, after, at, counts, open_from = map(view.by_point, names)
+    kinds, unstable_counts, positions, counts, undecided_from = map(view.by_point, names)
     values = view.point_columns[row]
     build = build_of_rods(view)
-    found: list[tuple[float, float, int]] = []
+    rows: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
         stored = np.flatnonzero(kinds[index] > 0)
         if not len(stored):
             continue
         low, high = _uncrushed_row(view, build, line, int(index))
-        ends = [low, *at[index, stored].tolist(), high]
-        is_monotone = kinds[index, stored[0]] == ONSET and after[index, stored[0]] == 0
-        words = ["monotone" if is_monotone else ""]
-        words += [class_above_crossing(int(kinds[index, i]), int(after[index, i])) for i in stored]
-        if len(stored) < counts[index] or np.isfinite(open_from[index]):
-            words[-1] = ""
-        for word, (start, end) in zip(words, pairwise(ends), strict=True):
+        ends = [low, *positions[index, stored].tolist(), high]
+        is_monotone = kinds[index, stored[0]] == ONSET and unstable_counts[index, stored[0]] == 0
+        curve_words = ["monotone" if is_monotone else ""]
+        curve_words += [
+            class_above_crossing(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored
+        ]
+        if len(stored) < counts[index] or np.isfinite(undecided_from[index]):
+            curve_words[-1] = ""
+        for word, (start, end) in zip(curve_words, pairwise(ends), strict=True):
             if word and start < end:
-                found.append(((start + end) / 2, float(values[index]), flag_number(word, STABILITY_CLASSES)))
-    x, y, classes = np.array(found, dtype=float).reshape(-1, 3).T
+                rows.append(((start + end) / 2, float(values[index]), flag_number(word, STABILITY_CLASSES)))
+    x, y, classes = np.array(rows, dtype=float).reshape(-1, 3).T
     return x, y, classes.astype(np.intp)
 
 
@@ -66,8 +68,8 @@ def _uncrushed_row(view: View, build: Build, line: str, index: int) -> tuple[flo
     """First and last value of `line` on a row at which the force does not crush the rod. build: constitutive
     law and profile of the rods. index: index of the row."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    first, last = view.variables[line][[0, -1]].tolist()
-    return uncrushed_interval(build, rod, (line, first, last))
+    row_start, row_end = view.variables[line][[0, -1]].tolist()
+    return uncrushed_interval(build, rod, (line, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
@@ -93,22 +95,22 @@ def pixel_classes_of_row(
     classes = view.by_point(variable)[index]
     changes = _class_changes(view, variable, line, index)
     if variable == "class":
-        between, rows, found = classes_between_crossings(view, line, row)
-        own = rows == view.parameter_values[row][index]
-        x = np.append(x, between[own])
-        classes = np.append(classes, found[own])
+        positions, rows, classified = classes_between_crossings(view, line, row)
+        is_in_row = rows == view.parameter_values[row][index]
+        x = np.append(x, positions[is_in_row])
+        classes = np.append(classes, classified[is_in_row])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
     pixels = (pixel_edges[1:] + pixel_edges[:-1]) / 2
     piece_of_pixels = np.searchsorted(changes, pixels)
     piece_of_points = np.searchsorted(changes, x)
-    found = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
-    for piece in np.unique(piece_of_pixels):
-        own_pixels = piece_of_pixels == piece
-        own_points = decided & (piece_of_points == piece)
+    classified = np.full(len(pixels), flag_number("undecided", CLASS_WORDS[variable]), dtype=np.intp)
+    for piece_number in np.unique(piece_of_pixels):
+        own_pixels = piece_of_pixels == piece_number
+        own_points = decided & (piece_of_points == piece_number)
         if own_points.any():
             nearest = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
-            found[own_pixels] = classes[own_points][nearest]
-    return found
+            classified[own_pixels] = classes[own_points][nearest]
+    return classified
 
 
 def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
@@ -117,13 +119,13 @@ def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
     """
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
-    at = v["crossing_at"]
+    positions = v["crossing_at"]
     kinds = v["crossing_kind"]
     if variable == "class":
-        found = [at[kinds > 0]]
+        change_positions = [positions[kinds > 0]]
     else:
-        found = [at[np.isin(kinds, HOPF_CROSSING_CODES)], v[f"cycle_special_{line}"]]
+        change_positions = [positions[np.isin(kinds, HOPF_CROSSING_CODES)], v[f"cycle_special_{line}"]]
     row_ends = view.variables[line][[0, -1]]
     ends = np.array(_uncrushed_row(view, build_of_rods(view), line, index))
-    changes = np.concatenate([*found, ends[ends != row_ends]])
+    changes = np.concatenate([*change_positions, ends[ends != row_ends]])
     return np.unique(changes[np.isfinite(changes)])

@@ -39,22 +39,22 @@ FORCE_AXIS_RATIO = 1.05
 force divided by the lower limit."""
 
 
-def draw_lines_of_grid(view: View, varied: list[str], searched: str) -> tuple[Figure, str]:
+def draw_lines_of_grid(view: View, names: list[str], search: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
-    a line for each value of the other parameter. varied: the one or two parameters with several
-    values. searched: clause on the searched range. Raises InputError if nothing can be drawn."""
-    along = max(varied, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
-    other = next((name for name in varied if name != along), None)
+    a line for each value of the other parameter. names: the one or two parameters with several
+    values. search: clause on the searched range. Raises InputError if nothing can be drawn."""
+    x_name = max(names, key=lambda name: np.count_nonzero(np.isfinite(view.parameter_values[name])))
+    other = next((name for name in names if name != x_name), None)
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
-    table = _first_force_table(view, along, other)
+    table = _first_force_table(view, x_name, other)
     style.require_content(
-        view, np.isfinite(_abscissa_values(view, along)).sum() > 1, f"two finite values of {along}"
+        view, np.isfinite(_abscissa_values(view, x_name)).sum() > 1, f"two finite values of {x_name}"
     )
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
         handles = _draw_threshold_lines(
-            axes, _abscissa_values(view, along), values, {"color": shade} if other else {"ls": "-"}
+            axes, _abscissa_values(view, x_name), values, {"color": shade} if other else {"ls": "-"}
         )
     if other:
         handles = _kind_entries(table) + [
@@ -63,52 +63,52 @@ def draw_lines_of_grid(view: View, varied: list[str], searched: str) -> tuple[Fi
             )
             for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True)
         ]
-    _label_axes(axes, view, along, table)
+    _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *varied)
-    figure.suptitle(style.heading_text(view, *constants, searched))
-    words = f"critical forces against {along}" + (f" for every {other}" if other else "")
-    return figure, words + _infinite_values_clause(view, [along])
+    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
+    figure.suptitle(style.heading_text(view, *constants, search))
+    caption = f"critical forces against {x_name}" + (f" for every {other}" if other else "")
+    return figure, caption + _infinite_values_clause(view, [x_name])
 
 
-def draw_lines_of_files(views: Sequence[View], along: str, searched: str) -> tuple[Figure, str]:
-    """Returns (figure, description). The figure shows thresholds against the parameter `along`, with a colour
-    for each file. searched: clause on the searched range.
+def draw_lines_of_files(views: Sequence[View], x_name: str, search: str) -> tuple[Figure, str]:
+    """Returns (figure, description). The figure shows thresholds against the parameter `x_name`, with a
+    colour for each file. search: clause on the searched range.
     """
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
-    tables = np.concatenate([_first_force_table(view, along, None) for view in views])
+    tables = np.concatenate([_first_force_table(view, x_name, None) for view in views])
     handles = _kind_entries(tables)
     for view, values, shade in zip(views, tables, FILE_COLOURS, strict=False):
-        _draw_threshold_lines(axes, _abscissa_values(view, along), values, {"color": shade})
+        _draw_threshold_lines(axes, _abscissa_values(view, x_name), values, {"color": shade})
         handles.append(Line2D([], [], color=shade, lw=2, label=style.file_label(view, views)))
-    longest = max(views, key=lambda view: len(view.parameter_values[along]))
-    _label_axes(axes, longest, along, tables)
+    longest = max(views, key=lambda view: len(view.parameter_values[x_name]))
+    _label_axes(axes, longest, x_name, tables)
     forces = np.sort(tables[np.isfinite(tables)])
     if style.is_logarithmic(forces):
         style.scale_axis(axes, "y", forces)
         axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, along), searched))))
-    return figure, f"critical forces against {along} of {len(views)} files" + _infinite_values_clause(
-        longest, [along]
+    figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
+    return figure, f"critical forces against {x_name} of {len(views)} files" + _infinite_values_clause(
+        longest, [x_name]
     )
 
 
-def draw_selected_lines(view: View, varied: list[str], narrow: bool, searched: str) -> tuple[Figure, str]:
+def draw_selected_lines(view: View, names: list[str], is_narrow: bool, search: str) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `varied` as abscissa, with curves for some values of the second parameter. narrow:
-    whether the panels are stacked. searched: clause on the searched range."""
-    rows, columns = (2, 1) if narrow else (1, 2)
+    parameters `names` as abscissa, with curves for some values of the second parameter. is_narrow:
+    whether the panels are stacked. search: clause on the searched range."""
+    rows, columns = (2, 1) if is_narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
-    drawn = []
-    for panel, along, other in zip(panels, varied, reversed(varied), strict=True):
+    texts = []
+    for panel, x_name, other in zip(panels, names, reversed(names), strict=True):
         count = len(view.parameter_values[other])
-        drawn.append(f"{_some_lines(panel, view, along, other)} of {count} values of {other}")
-        if narrow or panel is panels[0]:
+        texts.append(f"{_some_lines(panel, view, x_name, other)} of {count} values of {other}")
+        if is_narrow or panel is panels[0]:
             panel.set_ylabel(style.CRITICAL_FORCE_LABEL)
     handles = [
         Line2D([], [], color=colour, marker=marker, ms=3, lw=1.2, label=word)
@@ -116,51 +116,55 @@ def draw_selected_lines(view: View, varied: list[str], narrow: bool, searched: s
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *varied)
-    figure.suptitle(style.heading_text(view, *constants, searched))
-    shown = (
-        f"critical forces against {' and '.join(varied)}, lines for {' and '.join(drawn)} (--what map: all)"
+    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
+    figure.suptitle(style.heading_text(view, *constants, search))
+    caption = (
+        f"critical forces against {' and '.join(names)}, lines for {' and '.join(texts)} (--what map: all)"
     )
-    return figure, shown + _infinite_values_clause(view, varied)
+    return figure, caption + _infinite_values_clause(view, names)
 
 
-def _some_lines(panel: Axes, view: View, along: str, other: str) -> int:
-    """Draws thresholds against the parameter `along` for up to three different values of the parameter
+def _some_lines(panel: Axes, view: View, x_name: str, other: str) -> int:
+    """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
     `other`, see `_label_line_indices`; returns the number of values.
     """
-    table = _first_force_table(view, along, other)
-    some = _label_line_indices(table)
-    for line, alike in zip(LINE_STYLES, _groups_of_equal_lines({at: table[at] for at in some}), strict=False):
-        _draw_threshold_lines(panel, _abscissa_values(view, along), table[alike[0]], {"ls": line, "ms": 2})
-        values = ", ".join(style.number_in_tex(float(view.parameter_values[other][at]), 3) for at in alike)
-        text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(alike) > 1 else "")
+    table = _first_force_table(view, x_name, other)
+    indices = _label_line_indices(table)
+    for line, group in zip(
+        LINE_STYLES, _groups_of_equal_lines({index: table[index] for index in indices}), strict=False
+    ):
+        _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
+        values = ", ".join(
+            style.number_in_tex(float(view.parameter_values[other][index]), 3) for index in group
+        )
+        text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(group) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
-    _label_axes(panel, view, along, table[some])
+    _label_axes(panel, view, x_name, table[indices])
     panel.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0))
-    return len(some)
+    return len(indices)
 
 
-def _first_force_table(view: View, along: str, other: str | None) -> Array:
-    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `along`); NaN for a
-    missing threshold. along, other: parameters; `other` is None if there is no second parameter.
+def _first_force_table(view: View, x_name: str, other: str | None) -> Array:
+    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for
+    a missing threshold. x_name, other: parameters; `other` is None if there is no second parameter.
     """
     names = list(view.parameter_values)
-    kept = [names.index(name) for name in (other, along) if name]
-    rest = tuple(place for place in range(len(names)) if place not in kept)
-    found = []
+    kept_axes = [names.index(name) for name in (other, x_name) if name]
+    other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
+    tables = []
     for force, *_ in CRITICAL_FORCES:
-        values = view.variables[force].squeeze(rest)
-        values = values if other and kept[0] < kept[1] else values.T
-        found.append(np.atleast_2d(values))
-    return np.stack(found, axis=1)
+        values = view.variables[force].squeeze(other_axes)
+        values = values if other and kept_axes[0] < kept_axes[1] else values.T
+        tables.append(np.atleast_2d(values))
+    return np.stack(tables, axis=1)
 
 
-def _abscissa_values(view: View, along: str) -> Array:
-    """Values on the horizontal axis: values of the parameter `along`, or 1/gamma3 instead of gamma3, as in
+def _abscissa_values(view: View, x_name: str) -> Array:
+    """Values on the horizontal axis: values of the parameter `x_name`, or 1/gamma3 instead of gamma3, as in
     the paper.
     """
-    values = view.parameter_values[along]
-    return 1 / values if along == "gamma3" else values
+    values = view.parameter_values[x_name]
+    return 1 / values if x_name == "gamma3" else values
 
 
 def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
@@ -168,37 +172,37 @@ def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, A
     x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
     keywords for matplotlib that replace the look in CRITICAL_FORCES.
     """
-    place = np.isfinite(x)
+    is_finite = np.isfinite(x)
     handles = []
     for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
-        own: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": colour, "ls": line} | look
-        axes.plot(x[place], forces[place], **own)
+        style: dict[str, Any] = {"marker": marker, "ms": 3, "lw": 1.2, "color": colour, "ls": line} | look
+        axes.plot(x[is_finite], forces[is_finite], **style)
         if np.isfinite(forces).any():
-            handles.append(Line2D([], [], label=word, **own))
+            handles.append(Line2D([], [], label=word, **style))
     return handles
 
 
-def _label_axes(axes: Axes, view: View, along: str, table: Array) -> None:
-    """Labels the horizontal axis, of the parameter `along`, and sets the scales. The axis of forces starts at
-    0. table: drawn forces.
+def _label_axes(axes: Axes, view: View, x_name: str, table: Array) -> None:
+    """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
+    at 0. table: drawn forces.
     """
-    x = _abscissa_values(view, along)
+    x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
-    axes.set_xlabel(style.INVERSE_DRAG_LABEL if along == "gamma3" else style.LABELS[along])
-    highest = max(
+    axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
+    max_force = max(
         float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, axes.get_ylim()[1] if axes.lines else 0.0
     )
-    axes.set_ylim(0, highest or 1.0)
+    axes.set_ylim(0, max_force or 1.0)
 
 
 def _kind_entries(table: Array) -> list[Line2D]:
     """Legend entries for the kinds of thresholds that occur in `table`, (..., kinds, ...) as in
     `_first_force_table`."""
-    shown = np.isfinite(table).any(axis=(0, 2))
+    has_force = np.isfinite(table).any(axis=(0, 2))
     return [
         Line2D([], [], color="0.3", marker=marker, ls=line, ms=3, lw=1.2, label=word)
-        for known, (_, word, _, marker, line) in zip(shown, CRITICAL_FORCES, strict=True)
-        if known
+        for is_drawn, (_, word, _, marker, line) in zip(has_force, CRITICAL_FORCES, strict=True)
+        if is_drawn
     ]
 
 
@@ -206,12 +210,12 @@ def _infinite_values_clause(view: View, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite.
     """
-    left_out = [
+    omissions = [
         f"{name} = {value:g}"
         for name in names
         for value in view.parameter_values[name][~np.isfinite(_abscissa_values(view, name))]
     ]
-    return f"; {' and '.join(left_out)} has no place on an axis and is left out" if left_out else ""
+    return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
 def _label_line_indices(table: Array) -> list[int]:
@@ -222,8 +226,8 @@ def _label_line_indices(table: Array) -> list[int]:
     if last < 2:
         return list(range(len(table)))
     heights = np.array([np.nanmean(values) if np.isfinite(values).any() else np.inf for values in table])
-    between = np.abs(heights - (heights[0] + heights[last]) / 2)
-    middle = 1 + int(np.argmin(between[1:last])) if np.isfinite(between[1:last]).any() else last // 2
+    distances = np.abs(heights - (heights[0] + heights[last]) / 2)
+    middle = 1 + int(np.argmin(distances[1:last])) if np.isfinite(distances[1:last]).any() else last // 2
     return [0, middle, last]
 
 
@@ -235,9 +239,9 @@ def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
     groups: list[list[int]] = []
     for number, values in lines.items():
         for group in groups:
-            other = lines[group[0]]
-            same = np.isnan(values) == np.isnan(other)
-            if same.all() and np.nanmax(np.abs(values - other), initial=0.0) < MIN_LINE_DISTANCE * size:
+            first = lines[group[0]]
+            same_gaps = np.isnan(values) == np.isnan(first)
+            if same_gaps.all() and np.nanmax(np.abs(values - first), initial=0.0) < MIN_LINE_DISTANCE * size:
                 group.append(number)
                 break
         else:

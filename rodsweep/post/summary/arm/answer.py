@@ -32,21 +32,21 @@ NO_CYCLE_WORDS = {
 """Predicate for an arm without a stable cycle, by status."""
 
 
-def arm_answer(view: View, done: np.ndarray) -> Lines:
-    """Lines with the answer about the arms at the points in the mask `done`, (...,); empty for a rod."""
+def arm_answer(view: View, computed: np.ndarray) -> Lines:
+    """Lines with the answer about the arms at the points in the mask `computed`, (...,); empty for a rod."""
     if not view.quantities:
         return []
-    rods = done & (view.variables["status"] < NOT_SLENDER)
-    lines = _validity_lines(view, done, rods)
+    rods = computed & (view.variables["status"] < NOT_SLENDER)
+    lines = _validity_lines(view, computed, rods)
     return [*plane_lines(view.quantities), *lines, *compression_lines(view, rods)]
 
 
-def _validity_lines(view: View, done: np.ndarray, rods: np.ndarray) -> Lines:
+def _validity_lines(view: View, computed: np.ndarray, rods: np.ndarray) -> Lines:
     """Line on the validity of the model, and lines with the answer for the points in `rods` to which it
-    applies; for all these points if it applies to none. done, rods: masks of computed points and rods."""
+    applies; for all these points if it applies to none. computed, rods: masks of computed points and rods."""
     if not rods.any():
-        nothing = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
-        return nothing if done.any() else []
+        no_rods = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
+        return no_rods if computed.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     caveat = validity_sentence(validity)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
@@ -80,8 +80,8 @@ def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]
         unsolved = [failure] if failed.any() else []
         if (failed == rods).all():
             return unsolved
-        first, further = answer(view, rods & ~failed)
-        return [*first, *unsolved, *further]
+        first_line, other_lines = answer(view, rods & ~failed)
+        return [*first_line, *unsolved, *other_lines]
 
     return lines
 
@@ -91,16 +91,18 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     to stability). rods: mask of the points with a result."""
     load = view.load_kind
     v = view.variables
-    hopf, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
-    lines = [*_extreme_arm_lines(view, rods, hopf), *flutter_force_line(view, rods)]
+    flutter, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
+    lines = [*_extreme_arm_lines(view, rods, flutter), *flutter_force_line(view, rods)]
     onset = v[f"{load}_onset"][rods]
-    back = v[f"{load}_restabilization"][rods]
-    if len(hopf) > 1 and np.isfinite(onset).any():
+    restabilized = v[f"{load}_restabilization"][rods]
+    if len(flutter) > 1 and np.isfinite(onset).any():
         lines.append(f"decaying disturbances oscillate from {load_range_text(view, onset)} on")
-    if len(hopf) > 1 and np.isfinite(back).any():
-        points = count_of_total(int(np.isfinite(back).sum()), len(back), "point")
-        lines.append(f"the straight arm is stable again at {points}, from {load_range_text(view, back)} on")
-    return _flutter_lines(view, hopf, end, rate), lines
+    if len(flutter) > 1 and np.isfinite(restabilized).any():
+        points = count_of_total(int(np.isfinite(restabilized).sum()), len(restabilized), "point")
+        lines.append(
+            f"the straight arm is stable again at {points}, from {load_range_text(view, restabilized)} on"
+        )
+    return _flutter_lines(view, flutter, end, rate), lines
 
 
 def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
@@ -110,12 +112,12 @@ def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines
         return []
     extremes = extreme_arms_text(view, rods, loads, "smallest flutter load")
     lines = [extremes] if extremes else []
-    places = np.flatnonzero(rods)
+    indices = np.flatnonzero(rods)
     numbers = {"flutter": loads, "its frequency": view.variables["frequency_hopf_hz"][rods]}
-    whole = {name: np.full(rods.size, np.nan) for name in numbers}
+    on_all_points = {name: np.full(rods.size, np.nan) for name in numbers}
     for name, values in numbers.items():
-        whole[name][places] = values
-    return [*lines, *drag_lines(view, whole)]
+        on_all_points[name][indices] = values
+    return [*lines, *drag_lines(view, on_all_points)]
 
 
 def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
@@ -127,22 +129,22 @@ def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, loads, end, frequency), []
 
 
-def _count_clause(some: np.ndarray, rods: np.ndarray) -> str:
-    """Clause on the number of points in the mask `some`; empty if the mask `rods` has one point only."""
-    return f" at {int(some.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
+def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
+    """Clause on the number of points in the mask `mask`; empty if the mask `rods` has one point only."""
+    return f" at {int(mask.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
-def _flutter_lines(view: View, hopf: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
-    """Lines about flutter. hopf: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
-    flutters = np.isfinite(hopf)
-    searched = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
+def _flutter_lines(view: View, loads: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
+    """Lines about flutter. loads: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
+    flutters = np.isfinite(loads)
+    search = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
     if not flutters.any():
-        return [f"does not flutter {searched}".rstrip()]
-    of = f" at {int(flutters.sum())} of {len(hopf)} points" if not flutters.all() else ""
-    begins = f"flutter begins{of} at {load_range_text(view, hopf)}"
-    lines = [f"{begins}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
+        return [f"does not flutter {search}".rstrip()]
+    count = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
+    sentence = f"flutter begins{count} at {load_range_text(view, loads)}"
+    lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
     if not flutters.all():
-        stable = f"does not flutter at {int((~flutters).sum())} of {len(hopf)} points {searched}"
+        stable = f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}"
         lines.append(stable.rstrip())
     return lines
 
@@ -155,16 +157,16 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
     cycles = rods & view.has_status("cycle")
     if not cycles.any():  # if some arms beat, another line of the summary counts all outcomes
-        masks = {words: rods & view.has_status(status) for status, words in NO_CYCLE_WORDS.items()}
-        return [f"{words}{_count_clause(mask, rods)}" for words, mask in masks.items() if mask.any()]
-    beats = cycles[rods]
-    wide, rate = (
-        range_text(view, v[name][beats], unit, errors[name][beats])
+        masks = {phrase: rods & view.has_status(status) for status, phrase in NO_CYCLE_WORDS.items()}
+        return [f"{phrase}{_count_clause(mask, rods)}" for phrase, mask in masks.items() if mask.any()]
+    is_cycle = cycles[rods]
+    height, frequency = (
+        range_text(view, v[name][is_cycle], unit, errors[name][is_cycle])
         for name, unit in (("tip_y_max_si", "m"), ("frequency_hz", "Hz"))
     )
-    motion = f"beats{_count_clause(cycles, rods)} at {rate}, its tip by {wide} to either side"
-    known = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
-    numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in known.items()}
+    motion = f"beats{_count_clause(cycles, rods)} at {frequency}, its tip by {height} to either side"
+    keys = {"frequency": "frequency_hz", "reach of the tip": "tip_y_max_si", "power": "injection_mean_si"}
+    numbers = {name: np.where(cycles, view.variables[key], np.nan).ravel() for name, key in keys.items()}
     return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
 
 
@@ -176,14 +178,14 @@ def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
         return []
     if (rods & ~view.has_status("cycle", "straight")).any():
         return []
-    beats = view.has_status("cycle").ravel()
-    of_arms = [beats[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
-    always = sum(each.all() for each in of_arms)
-    never = sum(not each.any() for each in of_arms)
-    some = len(of_arms) - always - never
+    is_cycle = view.has_status("cycle").ravel()
+    by_arm = [is_cycle[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
+    always = sum(mask.all() for mask in by_arm)
+    never = sum(not mask.any() for mask in by_arm)
+    some = len(by_arm) - always - never
     numbers = {"for every drag": always, "for part of the range of drag": some, "for no drag": never}
-    counts = ", ".join(f"{words} at {count}" for words, count in numbers.items() if count)
-    return [f"of {counted(len(of_arms), 'combination')} of arm and load: beats {counts}"]
+    counts = ", ".join(f"{phrase} at {count}" for phrase, count in numbers.items() if count)
+    return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts}"]
 
 
 def _mode_lines(view: View, rods: np.ndarray) -> Lines:
@@ -194,8 +196,8 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     lines = []
     if unstable.any():
         frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
-        where = _count_clause(unstable, rods)
-        lines = [f"the straight arm is unstable{where}; its leading mode oscillates at {frequency}"]
+        count_clause = _count_clause(unstable, rods)
+        lines = [f"the straight arm is unstable{count_clause}; its leading mode oscillates at {frequency}"]
     elif not unknown.any():
         lines = ["the straight arm is stable"]
     if unknown.any():
@@ -218,18 +220,18 @@ def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     v = view.variables
     scale = np.broadcast_to(v[SCALE_NAME[view.load_kind]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")
-    last = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
-    return _flutter_lines(view, forces * scale, last * scale, frequency), []
+    last_force = np.minimum(v["F"][-1], view.point_columns["k1"].reshape(rods.shape)[rods])
+    return _flutter_lines(view, forces * scale, last_force * scale, frequency), []
 
 
 def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm in the
     mask `rods`, (n,) each; NaN for an arm without a Hopf point."""
-    hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
-    at = np.arange(len(hopf)), np.argmax(hopf, axis=-1)
+    is_hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
+    first_hopf = np.arange(len(is_hopf)), np.argmax(is_hopf, axis=-1)
     values, frequency = (
-        np.where(hopf.any(axis=-1), view.variables[each][rods][at], np.nan)
-        for each in (name, "crossing_frequency_hz")
+        np.where(is_hopf.any(axis=-1), view.variables[variable][rods][first_hopf], np.nan)
+        for variable in (name, "crossing_frequency_hz")
     )
     return values, frequency
 

@@ -56,20 +56,16 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
     converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
     times, it has a prefix suitable for numbers up to `largest`, else it is `si`.
     """
-    typed = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
-    if typed != si:
-        return value_in_unit(1.0, typed, si), typed
+    unit = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
+    if unit != si:
+        return value_in_unit(1.0, unit, si), unit
     if si == "s" and largest < SHORT_TIME or si in PREFIXED_UNITS:
         return with_si_prefix(largest, si)
     return 1.0, si
 
 
 def range_in_unit(
-    view: View,
-    values: np.ndarray,
-    si: str,
-    errors: np.ndarray | float = 0.0,
-    max_digits: int = RANGE_DIGITS,
+    view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0, max_digits: int = RANGE_DIGITS
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
@@ -87,39 +83,41 @@ def _largest_absolute(values: np.ndarray) -> float:
 
 def given_columns(view: View) -> dict[str, np.ndarray]:
     """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
-    given = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
-    return {name: column for name, column in given.items() if len(np.unique(column[~np.isnan(column)])) > 1}
+    columns = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
+    return {name: column for name, column in columns.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
 def region_of_arms(view: View, mask: np.ndarray) -> str:
     """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,), as text; empty if all
     points of the file have the same arm.
     """
-    chosen = mask.ravel()
-    ranges = [quantity_range(view, name, column, chosen) for name, column in given_columns(view).items()]
+    flat_mask = mask.ravel()
+    range_texts = [
+        quantity_range(view, name, column, flat_mask) for name, column in given_columns(view).items()
+    ]
     for name in OPTIONAL_PARAMETERS:
         column = view.as_list.point_columns.get(name, np.ones(1)).ravel()
         if len(np.unique(column)) > 1:
-            ends = sorted({float(column[chosen].min()), float(column[chosen].max())})
-            ranges.append(f"{name} {' to '.join(f'{end:.{AXIS_DIGITS + 1}g}' for end in ends)}")
-    return ", ".join(filter(None, ranges))
+            ends = sorted({float(column[flat_mask].min()), float(column[flat_mask].max())})
+            range_texts.append(f"{name} {' to '.join(f'{end:.{AXIS_DIGITS + 1}g}' for end in ends)}")
+    return ", ".join(filter(None, range_texts))
 
 
-def quantity_range(view: View, name: str, column: np.ndarray, chosen: np.ndarray) -> str:
-    """Range of the quantity `name` over the points in the mask `chosen`, as text. column: values at all
+def quantity_range(view: View, name: str, column: np.ndarray, mask: np.ndarray) -> str:
+    """Range of the quantity `name` over the points in the mask `mask`, as text. column: values at all
     points, (points,). Empty for the quantity "drag" if the chosen points include all drags.
     """
-    values = column[chosen]
+    values = column[mask]
     if name == "drag":
-        names = [DRAG_NAMES[int(place)] for place in np.unique(values)]
+        names = [DRAG_NAMES[int(index)] for index in np.unique(values)]
         return "" if len(names) == len(np.unique(column)) else f"drag {' and '.join(names)}".replace("_", " ")
     unit = _quantity_unit(view, name)
     factor = value_in_unit(1.0, unit, ALL_QUANTITIES[name].unit) if unit else 1.0
     ends = [float(f"{factor * end:.{AXIS_DIGITS}g}") for end in (values.min(), values.max())]
-    extent = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
+    range_text = " to ".join(f"{end:.{AXIS_DIGITS + 1}g}" for end in sorted(set(ends)))
     if name in LOAD_OF_RATIO:
-        return f"{extent} of flutter"
-    return f"{quantity_words(name)} {extent} {unit}".rstrip()
+        return f"{range_text} of flutter"
+    return f"{quantity_words(name)} {range_text} {unit}".rstrip()
 
 
 def _quantity_unit(view: View, name: str) -> str:
@@ -128,33 +126,36 @@ def _quantity_unit(view: View, name: str) -> str:
     return "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
 
 
-def arm_lines(view: View, done: np.ndarray) -> list[str]:
-    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in the mask `done`,
-    (...,), without errors, crossings, and (for several points) other lists. Empty list for a rod."""
+def arm_lines(view: View, computed: np.ndarray) -> list[str]:
+    """Lines with the ranges of an arm's variables, in typed or SI units, at the points in the mask
+    `computed`, (...,), without errors, crossings, and (for several points) other lists. Empty list for a
+    rod."""
     if not view.quantities:
         return []
     si_variables = si_variables_of(LAYOUT_MAKERS[view.task](view.config), view.config)
-    shown = {
-        own: v
-        for own, v in si_variables.items()
-        if "error" not in v.name and (not v.extra or (done.size == 1 and v.extra != ("crossing",)))
+    printed = {
+        name: v
+        for name, v in si_variables.items()
+        if "error" not in v.name and (not v.extra or (computed.size == 1 and v.extra != ("crossing",)))
     }
-    known = {own: is_known(view.variables, own)[done] for own in shown}
-    values = {own: np.where(known[own], view.variables[v.name][done], np.nan) for own, v in shown.items()}
-    values = {own: column for own, column in values.items() if np.isfinite(column).any()}
+    known = {name: is_known(view.variables, name)[computed] for name in printed}
+    values = {
+        name: np.where(known[name], view.variables[v.name][computed], np.nan) for name, v in printed.items()
+    }
+    values = {name: column for name, column in values.items() if np.isfinite(column).any()}
     largest: dict[str, float] = {}
-    for own, column in values.items():
-        largest[shown[own].units] = max(largest.get(shown[own].units, 0.0), _largest_absolute(column))
-    items = []
-    for own, column in values.items():
-        variable = shown[own]
+    for name, column in values.items():
+        largest[printed[name].units] = max(largest.get(printed[name].units, 0.0), _largest_absolute(column))
+    rows = []
+    for name, column in values.items():
+        variable = printed[name]
         factor, unit = printing_unit(view, variable.units, largest[variable.units])
-        errors = errors_in_si(view.variables, own, variable.name)[done]
+        errors = errors_in_si(view.variables, name, variable.name)[computed]
         numbers = _numbers_text(factor * column, factor * errors)
-        items.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
-    if not items:
+        rows.append(f"{variable.name.removesuffix('_si').removesuffix('_hz')} = {numbers} {unit}")
+    if not rows:
         return []
-    return ["in the arm's units:", *wrapped_lines("; ".join(item.replace(" ", "\xa0") for item in items))]
+    return ["in the arm's units:", *wrapped_lines("; ".join(row.replace(" ", "\xa0") for row in rows))]
 
 
 def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
@@ -164,10 +165,10 @@ def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
     """
     is_finite = np.isfinite(values)
     finite = values[is_finite]
-    known = errors[is_finite]
+    finite_errors = errors[is_finite]
     if values.ndim > 1 and 1 < finite.size <= FEW_ITEMS:
-        return ", ".join(map(rounded_text, finite, np.nan_to_num(known)))
-    return span_text(finite, known)
+        return ", ".join(map(rounded_text, finite, np.nan_to_num(finite_errors)))
+    return span_text(finite, finite_errors)
 
 
 def wrapped_lines(text: str) -> list[str]:
@@ -176,14 +177,14 @@ def wrapped_lines(text: str) -> list[str]:
     return ["  " + line.replace("\xa0", " ") for line in lines]
 
 
-def errors_in_si(v: Mapping[str, np.ndarray], own: str, si_name: str) -> np.ndarray:
+def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
-    `own`; 0 where `own` is 0 or infinite. v: variables of the file. The errors have the shape of the two
+    `name`; 0 where `name` is 0 or infinite. v: variables of the file. The errors have the shape of the two
     variables.
     """
-    known = np.isfinite(v[own]) & (v[own] != 0)
-    scale = np.divide(v[si_name], v[own], out=np.zeros_like(v[si_name]), where=known)
-    return np.asarray(np.abs(scale) * absolute_errors(v, own))
+    is_nonzero = np.isfinite(v[name]) & (v[name] != 0)
+    scale = np.divide(v[si_name], v[name], out=np.zeros_like(v[si_name]), where=is_nonzero)
+    return np.asarray(np.abs(scale) * absolute_errors(v, name))
 
 
 def load_range_text(view: View, F: np.ndarray, points: np.ndarray) -> str:
@@ -214,16 +215,17 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(
-    view: View, kind: str, found: Sequence[tuple[LocatedThreshold, np.ndarray]]
+    view: View, kind: str, thresholds: Sequence[tuple[LocatedThreshold, np.ndarray]]
 ) -> list[str]:
     """List with a sentence on the thresholds of the given kind, with load and frequency; empty for a rod, or
-    if `found` is empty. found: pairs of a threshold and the indices of the points on its line, (points,)."""
-    if not view.quantities or not found:
+    if `thresholds` is empty. thresholds: pairs of a threshold and the indices of the points on its line,
+    (points,)."""
+    if not view.quantities or not thresholds:
         return []
-    points = np.concatenate([points for _, points in found])
-    each = [len(points) for _, points in found]
-    load = load_range_text(view, np.repeat([place.position for place, _ in found], each), points)
-    frequency = np.repeat([place.frequency for place, _ in found], each)
+    points = np.concatenate([points for _, points in thresholds])
+    counts = [len(points) for _, points in thresholds]
+    load = load_range_text(view, np.repeat([point.position for point, _ in thresholds], counts), points)
+    frequency = np.repeat([point.frequency for point, _ in thresholds], counts)
     rate = ""
     if np.isfinite(frequency).any():
         rate = f", where the arm begins to beat at {_in_hertz(view, frequency, points)}"

@@ -16,13 +16,13 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
     if arms is None:
         return []
     drags = len(np.unique(given_columns(view)["drag"]))
-    several = len(np.unique(arms)) > 1
+    has_several_arms = len(np.unique(arms)) > 1
     variations = []
     for name, values in numbers.items():
-        spread = _largest_spread(values, arms)
-        if np.isfinite(spread):
-            by = f"{100 * (spread - 1):.2g} %" if spread < 2 else f"a factor of {spread:.3g}"
-            variations.append(f"{name} by {'up to ' * several}{by}")
+        ratio = _largest_spread(values, arms)
+        if np.isfinite(ratio):
+            factor_text = f"{100 * (ratio - 1):.2g} %" if ratio < 2 else f"a factor of {ratio:.3g}"
+            variations.append(f"{name} by {'up to ' * has_several_arms}{factor_text}")
     if not variations:
         return []
     return [f"the results of an arm vary over the {drags} drags of its range: {', '.join(variations)}"]
@@ -44,9 +44,9 @@ def _largest_spread(values: np.ndarray, arms: np.ndarray) -> float:
     """Maximum, over all arms, of the largest value of an arm divided by the smallest; NaN if no arm has two
     positive values. arms: index of the arm at each point, as from `arms_of_drags`.
     """
-    spreads = [np.nan]
+    ratios = [np.nan]
     for arm in np.unique(arms):
-        own = values[(arms == arm) & np.isfinite(values)]
-        if len(own) > 1 and own.min() > 0:
-            spreads.append(float(own.max() / own.min()))
-    return float(np.nanmax(spreads)) if len(spreads) > 1 else np.nan
+        arm_values = values[(arms == arm) & np.isfinite(values)]
+        if len(arm_values) > 1 and arm_values.min() > 0:
+            ratios.append(float(arm_values.max() / arm_values.min()))
+    return float(np.nanmax(ratios)) if len(ratios) > 1 else np.nan

@@ -38,10 +38,10 @@ def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest:
     loads of the points in the mask `rods`, (n,). smallest: words for the smallest load."""
     if np.isfinite(loads).sum() < 2:
         return ""
-    places = np.flatnonzero(rods)
-    ends = [places[found(loads)] for found in (np.nanargmin, np.nanargmax)]
-    least, most = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
-    return "" if least == most else f"{smallest} at {least}; largest at {most}"
+    indices = np.flatnonzero(rods)
+    ends = [indices[argument(loads)] for argument in (np.nanargmin, np.nanargmax)]
+    first_text, last_text = (region_of_arms(view, np.arange(rods.size) == end) for end in ends)
+    return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
 
 def compression_lines(view: View, rods: np.ndarray) -> list[str]:
@@ -62,9 +62,9 @@ def compression_lines(view: View, rods: np.ndarray) -> list[str]:
     kind = view.load_kind
     scale = np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]
     lines = []
-    for share, verdict in COMPRESSION_VERDICTS.items():
-        if share * limits.min() < view.variables["F"].max():
-            loads = share * limits * scale
+    for max_fraction, verdict in COMPRESSION_VERDICTS.items():
+        if max_fraction * limits.min() < view.variables["F"].max():
+            loads = max_fraction * limits * scale
             text = range_in_unit(view, loads[np.isfinite(loads)], UNITS[kind][0], 0.0, ANSWER_DIGITS)
             lines.append(f"above {text} compression {verdict}")
     return lines

@@ -40,29 +40,31 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
     return "" if validity["model_applies"][0] == Validity.applies else validity_sentence(validity)
 
 
-def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
+def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
-    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. when: conditional clause.
+    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. condition: conditional clause.
     """
-    applies, effect, excess = (validity[variable.name] for variable in VALIDITY_VARIABLES)
-    unknown = applies == VALIDITY_NOT_KNOWN
+    validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
+    unknown = validities == VALIDITY_NOT_KNOWN
     if unknown.all():
-        where = f" at all {len(applies)} points" if len(applies) > 1 else ""
-        return f"whether the model applies is not known{where}{when}: {MISSED_MOTION}"
+        points_text = f" at all {len(validities)} points" if len(validities) > 1 else ""
+        return f"whether the model applies is not known{points_text}{condition}: {MISSED_MOTION}"
     rest = (
-        f"; not known at {count_of_total(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
+        f"; not known at {count_of_total(int(unknown.sum()), len(validities), 'point')}"
+        if unknown.any()
+        else ""
     )
-    worst = Validity(int(applies.max()))
-    affected = applies == worst
-    at = f" at {count_of_total(int(affected.sum()), len(applies), 'point')}"
-    if affected.all():
-        at = "" if len(applies) == 1 else f" at all {len(applies)} points"
-    if worst == Validity.applies:
-        everywhere = " at all points" if len(applies) > 1 else ""
-        return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
-    verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
-    index = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
-    name = NEGLECTED_EFFECTS[int(effect[index])].replace("_", " ")
-    size = f"{'up to ' * int(affected.sum() > 1)}{excess[index]:.2g}"
-    doubt = f", more than {DOUBTFUL_RATIO:g}" if worst == Validity.doubtful else ""
-    return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"
+    worst_validity = Validity(int(validities.max()))
+    is_affected = validities == worst_validity
+    place = f" at {count_of_total(int(is_affected.sum()), len(validities), 'point')}"
+    if is_affected.all():
+        place = "" if len(validities) == 1 else f" at all {len(validities)} points"
+    if worst_validity == Validity.applies:
+        all_points = " at all points" if len(validities) > 1 else ""
+        return f"the model applies{all_points if is_affected.all() else place}{condition}{rest}"
+    verdict = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
+    index = int(np.flatnonzero(is_affected)[np.argmax(excesses[is_affected])])
+    name = NEGLECTED_EFFECTS[int(effects[index])].replace("_", " ")
+    size = f"{'up to ' * int(is_affected.sum() > 1)}{excesses[index]:.2g}"
+    limit_text = f", more than {DOUBTFUL_RATIO:g}" if worst_validity == Validity.doubtful else ""
+    return f"the model {verdict}{place}{condition}: {name} is {size} times its limit{limit_text}{rest}"

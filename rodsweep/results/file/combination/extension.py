@@ -49,13 +49,13 @@ class StoredPointMap:
         """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
         computed again.
         """
-        each = [
-            place[i]
-            for place, i in zip(self.axis_positions, np.unravel_index(index, self.shape), strict=True)
+        places = [
+            positions[i]
+            for positions, i in zip(self.axis_positions, np.unravel_index(index, self.shape), strict=True)
         ]
-        stays = np.min(each, axis=0) >= 0
-        new = np.ravel_multi_index([np.maximum(place, 0) for place in each], self.new_shape)
-        return np.where(stays, new, -1)
+        is_kept = np.min(places, axis=0) >= 0
+        new_index = np.ravel_multi_index([np.maximum(positions, 0) for positions in places], self.new_shape)
+        return np.where(is_kept, new_index, -1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,27 +81,27 @@ class Extension:
             return
         for records in stored_records(self.path, self.stored_layout):
             index = self.point_map(records["index"])
-            stays = index >= 0
-            for increase, before in self.increased_options:
-                stays &= increase.has_data(records, before)
-            if stays.any():
-                yield self._converted(records[stays], index[stays])
+            is_kept = index >= 0
+            for option, old_value in self.increased_options:
+                is_kept &= option.has_data(records, old_value)
+            if is_kept.any():
+                yield self._converted(records[is_kept], index[is_kept])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
         """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,).
 
         Values that the old layout lacks are fill values.
         """
-        found = np.empty(len(records), self.new_layout.record_dtype)
-        found["index"] = index
+        converted = np.empty(len(records), self.new_layout.record_dtype)
+        converted["index"] = index
         for variable in self.new_layout.variables:
-            target = found[variable.name]
+            target = converted[variable.name]
             target[...] = variable.fill
             if variable.name in records.dtype.names:
                 values = records[variable.name]
-                part = tuple(map(slice, np.minimum(values.shape, target.shape)))
-                target[part] = values[part]
-        return found
+                common_part = tuple(map(slice, np.minimum(values.shape, target.shape)))
+                target[common_part] = values[common_part]
+        return converted
 
 
 def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
@@ -110,33 +110,35 @@ def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file, or has
     another task, arm, material, accuracy or option that cannot be increased.
     """
-    theirs = config_from_resolved(header.config).settings_of_results
-    ours = config_from_resolved(plan.config).settings_of_results
-    task = theirs["task"]
-    _refuse_difference(header, config_difference(task, ours["task"], "task"))
-    line_grew = False
-    for key, value in theirs["parameters"].items():
-        new = ours["parameters"].get(key)
-        if isinstance(value, dict) and isinstance(new, dict):  # the line of a phase diagram
-            _positions_on_axis(header, key, np.array(value["values"]), np.array(new["values"]))
-            line_grew = line_grew or value != new
+    in_file = config_from_resolved(header.config).settings_of_results
+    requested = config_from_resolved(plan.config).settings_of_results
+    task = in_file["task"]
+    _refuse_difference(header, config_difference(task, requested["task"], "task"))
+    has_longer_line = False
+    for key, value in in_file["parameters"].items():
+        new_value = requested["parameters"].get(key)
+        if isinstance(value, dict) and isinstance(new_value, dict):  # the line of a phase diagram
+            _positions_on_axis(header, key, np.array(value["values"]), np.array(new_value["values"]))
+            has_longer_line = has_longer_line or value != new_value
         else:
-            _refuse_difference(header, config_difference(value, new, f"parameters.{key}"))
-    _refuse_difference(header, config_difference(theirs.get("arm"), ours.get("arm"), "parameters.arm"))
-    compared = {"task", "parameters", "arm", task, "together"}
-    stored, asked = ({k: v for k, v in each.items() if k not in compared} for each in (theirs, ours))
-    _refuse_difference(header, config_difference(stored, asked))
-    grown = []
-    for name, value in theirs[task].items():
-        if name not in ours[task] or ours[task][name] == value:
+            _refuse_difference(header, config_difference(value, new_value, f"parameters.{key}"))
+    _refuse_difference(header, config_difference(in_file.get("arm"), requested.get("arm"), "parameters.arm"))
+    handled = {"task", "parameters", "arm", task, "together"}
+    stored, new_rest = (
+        {k: v for k, v in section.items() if k not in handled} for section in (in_file, requested)
+    )
+    _refuse_difference(header, config_difference(stored, new_rest))
+    longer = []
+    for name, value in in_file[task].items():
+        if name not in requested[task] or requested[task][name] == value:
             continue
-        increase = EXTENSION_RULES[task].get(name)
-        if increase is None or not increase.requests_more_data(value, ours[task][name]):
-            _refuse_difference(header, config_difference(value, ours[task][name], f"{task}.{name}"))
+        rule = EXTENSION_RULES[task].get(name)
+        if rule is None or not rule.requests_more_data(value, requested[task][name]):
+            _refuse_difference(header, config_difference(value, requested[task][name], f"{task}.{name}"))
         else:
-            grown.append((increase, value))
-    places = _stored_point_map(header, points, plan)
-    return Extension(header.path, header.layout, plan.layout, places, tuple(grown), line_grew)
+            longer.append((rule, value))
+    point_map = _stored_point_map(header, points, plan)
+    return Extension(header.path, header.layout, plan.layout, point_map, tuple(longer), has_longer_line)
 
 
 def _refuse_difference(header: ResultHeader, difference: str) -> None:
@@ -162,16 +164,20 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPo
         _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new.shape, (_positions_in_list(header, old, new),))
-    places = [_positions_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
+    positions = [_positions_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
     if plan.chains:
         axis = plan.chains.axis
-        places[axis] = _positions_before_first_change(places[axis], new.shape[axis], plan.chains.is_upward)
+        positions[axis] = _positions_before_first_change(
+            positions[axis], new.shape[axis], plan.chains.is_upward
+        )
     if plan.stretches:
         axis = plan.stretches.axis
-        before = stretches_along_longest_axis(old.shape, old.varying_parameters)
-        same = _is_stretch_unchanged(places[axis], new.shape[axis])
-        places[axis] = np.where(same & (before is not None and before.axis == axis), places[axis], -1)
-    return StoredPointMap(old.shape, new.shape, tuple(places))
+        old_stretches = stretches_along_longest_axis(old.shape, old.varying_parameters)
+        is_unchanged = _is_stretch_unchanged(positions[axis], new.shape[axis])
+        positions[axis] = np.where(
+            is_unchanged & (old_stretches is not None and old_stretches.axis == axis), positions[axis], -1
+        )
+    return StoredPointMap(old.shape, new.shape, tuple(positions))
 
 
 def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
@@ -179,51 +185,55 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
 
     Raises InputError for an old value that is not on the new axis. name: name of the axis.
     """
-    right = np.searchsorted(new, old).clip(max=len(new) - 1)
-    left = (right - 1).clip(min=0)
+    above = np.searchsorted(new, old).clip(max=len(new) - 1)
+    below = (above - 1).clip(min=0)
     with np.errstate(invalid="ignore"):
-        nearest = np.where(np.abs(new[left] - old) < np.abs(new[right] - old), left, right)
-        apart = np.abs(new[nearest] - old)
-        near = (new[nearest] == old) | (np.isfinite(apart) & (apart <= ROUNDING_TOLERANCE * np.abs(old)))
-    if not near.all():
+        nearest = np.where(np.abs(new[below] - old) < np.abs(new[above] - old), below, above)
+        distance = np.abs(new[nearest] - old)
+        is_equal = (new[nearest] == old) | (
+            np.isfinite(distance) & (distance <= ROUNDING_TOLERANCE * np.abs(old))
+        )
+    if not is_equal.all():
         _refuse_difference(
-            header, f"parameters.{name} = {old[~near][0]:.15g} is in the file and not in the config"
+            header, f"parameters.{name} = {old[~is_equal][0]:.15g} is in the file and not in the config"
         )
     return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
 
 
-def _positions_before_first_change(places: Indices, count: int, upward: bool) -> Indices:
-    """Positions `places` of the values along a chain, (n,), with -1 from the first changed position
+def _positions_before_first_change(positions: Indices, count: int, upward: bool) -> Indices:
+    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position
     of the chain on.
 
     count: number of values on the new axis. upward: direction of the chains.
     """
-    ahead = places if upward else np.where(places < 0, -1, count - 1 - places)[::-1]
-    stays = np.logical_and.accumulate(ahead == np.arange(len(ahead)))
-    return np.where(stays if upward else stays[::-1], places, -1)
+    forward_positions = positions if upward else np.where(positions < 0, -1, count - 1 - positions)[::-1]
+    is_kept = np.logical_and.accumulate(forward_positions == np.arange(len(forward_positions)))
+    return np.where(is_kept if upward else is_kept[::-1], positions, -1)
 
 
-def _is_stretch_unchanged(places: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old value, (n,), is unchanged on the new axis. places: new position of each
-    old value, (n,). count: number of values on the new axis.
+def _is_stretch_unchanged(positions: Indices, count: int) -> NDArray[np.bool_]:
+    """Whether the stretch of each old value, (n,), is unchanged on the new axis. positions: new position of
+    each old value, (n,). count: number of values on the new axis.
     """
-    at = np.arange(len(places))
-    first = at // STRETCH_POINTS * STRETCH_POINTS
-    same_length = np.minimum(first + STRETCH_POINTS, len(places)) == np.minimum(first + STRETCH_POINTS, count)
-    moved = np.logical_or.reduceat(places != at, np.arange(0, len(places), STRETCH_POINTS))
-    return same_length & ~moved[at // STRETCH_POINTS]
+    indices = np.arange(len(positions))
+    stretch_starts = indices // STRETCH_POINTS * STRETCH_POINTS
+    same_length = np.minimum(stretch_starts + STRETCH_POINTS, len(positions)) == np.minimum(
+        stretch_starts + STRETCH_POINTS, count
+    )
+    has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), STRETCH_POINTS))
+    return same_length & ~has_moved[indices // STRETCH_POINTS]
 
 
 def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:
     """Position of every old point in the new list, (n,); InputError for a point not in the new list."""
     # Adding 0.0 turns -0.0 into 0.0, so that equal rows have equal bytes.
     rows = [np.column_stack(points.columns) + 0.0 for points in (new, old)]
-    known: dict[bytes, int] = {}
+    index_by_row: dict[bytes, int] = {}
     for i, row in enumerate(rows[0]):
-        known.setdefault(row.tobytes(), i)
-    found = np.array([known.get(row.tobytes(), -1) for row in rows[1]], dtype=np.int64)
-    if (found < 0).any():
-        values = old.values(int(np.argmax(found < 0)))
-        where = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
-        _refuse_difference(header, f"the point {where} is in the file and not in the list")
-    return found
+        index_by_row.setdefault(row.tobytes(), i)
+    positions = np.array([index_by_row.get(row.tobytes(), -1) for row in rows[1]], dtype=np.int64)
+    if (positions < 0).any():
+        values = old.values(int(np.argmax(positions < 0)))
+        point_text = ", ".join(f"{name} = {value:.15g}" for name, value in values.items())
+        _refuse_difference(header, f"the point {point_text} is in the file and not in the list")
+    return positions

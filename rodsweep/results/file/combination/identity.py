@@ -25,10 +25,10 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
 
     columns: `Points.identifying_arrays`, (n,) each. Raises ValueError for an invalid config.
     """
-    asked = config_from_resolved(config)
-    identity = {"meaning": asked.settings_of_results, "grid": not asked.parameters.is_list}
-    if asked.parameters.arm_axes:
-        identity["over"] = asked.parameters.arm_axes
+    parsed = config_from_resolved(config)
+    identity = {"meaning": parsed.settings_of_results, "grid": not parsed.parameters.is_list}
+    if parsed.parameters.arm_axes:
+        identity["over"] = parsed.parameters.arm_axes
     digest = sha256(json.dumps(identity, sort_keys=True).encode())
     for column in columns:
         digest.update(len(column).to_bytes(8, "little"))
@@ -37,19 +37,23 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
     return digest.hexdigest()
 
 
-def config_change_text(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
-    """Text on the difference of two resolved configs with different fingerprints. theirs: config of the file.
-    ours: config of the run.
+def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
+    """Text on the difference of two resolved configs with different fingerprints. stored: config of the file.
+    given: config of the run.
     """
-    if theirs["task"] != ours["task"]:
-        return config_difference(theirs["task"], ours["task"], "task")
-    configs = config_from_resolved(theirs), config_from_resolved(ours)
+    if stored["task"] != given["task"]:
+        return config_difference(stored["task"], given["task"], "task")
+    configs = config_from_resolved(stored), config_from_resolved(given)
     axes = [config.parameters.axes for config in configs]
-    shared = axes[0].keys() & axes[1].keys()
-    same = {name for name in shared if np.array_equal(axes[0][name].array(), axes[1][name].array())}
+    common = axes[0].keys() & axes[1].keys()
+    equal = {name for name in common if np.array_equal(axes[0][name].array(), axes[1][name].array())}
     written = [
-        {name: value for name, value in config["parameters"].items() if name not in same and name != "points"}
-        for config in (theirs, ours)
+        {
+            name: value
+            for name, value in config["parameters"].items()
+            if name not in equal and name != "points"
+        }
+        for config in (stored, given)
     ]
     kinds = [_point_set_kind(config.parameters) for config in configs]
     return (
@@ -68,34 +72,34 @@ def _point_set_kind(parameters: Axes) -> str:
 
 
 def config_difference(
-    theirs: Any, ours: Any, key: str = "", places: tuple[str, str] = ("the file", "the config")
+    stored: Any, given: Any, key: str = "", origins: tuple[str, str] = ("the file", "the config")
 ) -> str:
     """Text with the first key in which two configs differ, and both values; empty for equal configs.
 
-    key: full name of the key of `theirs` and `ours`. places: names of the origins of `theirs` and `ours`.
+    key: full name of the key of `stored` and `given`. origins: names of the origins of `stored` and `given`.
     """
-    if isinstance(theirs, dict) and isinstance(ours, dict):
-        for name in [*ours, *(n for n in theirs if n not in ours)]:
-            inner = f"{key}.{name}" if key else name
-            found = config_difference(theirs.get(name), ours.get(name), inner, places)
-            if found:
-                return found
+    if isinstance(stored, dict) and isinstance(given, dict):
+        for name in [*given, *(n for n in stored if n not in given)]:
+            path = f"{key}.{name}" if key else name
+            difference = config_difference(stored.get(name), given.get(name), path, origins)
+            if difference:
+                return difference
         return ""
-    if theirs == ours:
+    if stored == given:
         return ""
-    texts = json.dumps(theirs), json.dumps(ours)
-    if isinstance(theirs, list) and isinstance(ours, list) and max(map(len, texts)) > LONGEST_VALUE:
-        return f"{key} has {_list_difference(theirs, ours, places)}"
-    shown = [f"{text[:LONGEST_VALUE]} in {place}" for text, place in zip(texts, places, strict=True)]
-    return f"{key} is {shown[0]} and {shown[1]}"
+    texts = json.dumps(stored), json.dumps(given)
+    if isinstance(stored, list) and isinstance(given, list) and max(map(len, texts)) > LONGEST_VALUE:
+        return f"{key} has {_list_difference(stored, given, origins)}"
+    value_texts = [f"{text[:LONGEST_VALUE]} in {origin}" for text, origin in zip(texts, origins, strict=True)]
+    return f"{key} is {value_texts[0]} and {value_texts[1]}"
 
 
-def _list_difference(theirs: list[Any], ours: list[Any], places: tuple[str, str]) -> str:
+def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
     """Difference of two lists that are too long to show: their lengths, and the first pair that differs.
-    places: names of the origins of `theirs` and `ours`.
+    origins: names of the origins of `stored` and `given`.
     """
-    sizes = f"{len(theirs)} values in {places[0]} and {len(ours)} in {places[1]}"
-    pairs = enumerate(zip_longest(theirs, ours), 1)
+    sizes = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
+    pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])
-    first, second = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
-    return f"{sizes}; value {number} is {first} in {places[0]} and {second} in {places[1]}"
+    stored_text, requested_text = ("missing" if v is None else json.dumps(v)[:LONGEST_VALUE] for v in values)
+    return f"{sizes}; value {number} is {stored_text} in {origins[0]} and {requested_text} in {origins[1]}"

@@ -55,9 +55,9 @@ class JoinedFile:
         Raises InputError if the values of a point in two sources differ by more than rounding errors.
         """
         owner = np.full(self.plan.points.count, -1, np.int32)
-        for number, (source, places) in enumerate(zip(self.sources, self.point_maps, strict=True)):
+        for number, (source, point_map) in enumerate(zip(self.sources, self.point_maps, strict=True)):
             for records in stored_records(source.path, source.layout):
-                records["index"] = places(records["index"])
+                records["index"] = point_map(records["index"])
                 is_new = owner[records["index"]] < 0
                 self._compare(path, records[~is_new], owner, number)
                 write_records(path, [records[is_new]], self.plan.layout)
@@ -74,36 +74,34 @@ class JoinedFile:
             return
         stored = records_at(path, records["index"], self.plan.layout)
         for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
-            first = stored[name]
-            second = records[name]
-            same = (first == second) | (np.isnan(first) & np.isnan(second))
-            differs = ~same.reshape(len(same), -1).all(axis=1)
-            for i in np.flatnonzero(differs):
+            old = stored[name]
+            new = records[name]
+            is_equal = (old == new) | (np.isnan(old) & np.isnan(new))
+            is_different = ~is_equal.reshape(len(is_equal), -1).all(axis=1)
+            for i in np.flatnonzero(is_different):
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
                 if not self._is_rounding_error(name, stored[i][name], records[i][name], pair):
-                    where = _point_text(self.plan.points, index)
-                    both = " and ".join(str(source.path) for source in pair)
-                    raise InputError(f"{both} disagree about the point {where}: the values of {name} differ")
+                    text = _point_text(self.plan.points, index)
+                    paths = " and ".join(str(source.path) for source in pair)
+                    raise InputError(f"{paths} disagree about the point {text}: the values of {name} differ")
 
-    def _is_rounding_error(
-        self, name: str, first: Any, second: Any, sources: tuple[ResultHeader, ResultHeader]
-    ) -> bool:
+    def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
         """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
 
         Always True for error estimates and values that are not floating-point; always False for `status`, and
-        without stretches if one BLAS kernel computed all points. first, second: the values. sources: headers
+        without stretches if one BLAS kernel computed all points. a, b: the values. sources: headers
         of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
             return False
         # Rounding changes the size of an error estimate, and the cost of a solve, by any factor.
-        if np.asarray(first).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
+        if np.asarray(a).dtype.kind != "f" or name.endswith(("error", "error_estimate")):
             return True
         tolerance = ROUNDING_FACTOR * float(self.plan.config["accuracy"])
-        scale = np.nanmax(np.abs([first, second]), initial=0.0)
-        return bool(np.allclose(first, second, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
+        scale = np.nanmax(np.abs([a, b]), initial=0.0)
+        return bool(np.allclose(a, b, rtol=tolerance, atol=tolerance * scale, equal_nan=True))
 
 
 def _point_text(points: Points, index: int) -> str:
@@ -116,16 +114,15 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> Joine
     first, *others = sources
     settings = config_from_resolved(first.config).settings_of_results
     grids = [points_of_file(source.path, source.layout) for source in sources]
-    for other, points in zip(others, grids[1:], strict=True):
-        theirs = config_from_resolved(other.config).settings_of_results
-        apart = config_difference(
-            settings | {"together": None}, theirs | {"together": None}, "", (first.path.name, other.path.name)
-        )
-        if apart:
-            raise InputError(f"{other.path} was made from another config than {first.path} ({apart})")
+    for header, points in zip(others, grids[1:], strict=True):
+        other = config_from_resolved(header.config).settings_of_results | {"together": None}
+        names = (first.path.name, header.path.name)
+        difference = config_difference(settings | {"together": None}, other, "", names)
+        if difference:
+            raise InputError(f"{header.path} was made from another config than {first.path} ({difference})")
         if points.is_grid != grids[0].is_grid:
             raise InputError(
-                f"{first.path} and {other.path} cannot be merged: one has a grid of points, the other a list"
+                f"{first.path} and {header.path} cannot be merged: one has a grid of points, the other a list"
             )
     if "arm" in settings:
         raise InputError(
@@ -133,13 +130,13 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> Joine
             "config; run --extend adds points to the file"
         )
     if grids[0].is_grid:
-        points, places = _joined_grid(grids)
+        points, point_maps = _joined_grid(grids)
     else:
-        points, places = _joined_list(grids)
+        points, point_maps = _joined_list(grids)
     config = _joined_config(first, settings, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
-    return JoinedFile(_with_attributes(plan, first, config), sources, places)
+    return JoinedFile(_with_attributes(plan, first, config), sources, point_maps)
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
@@ -158,51 +155,50 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
                 f"the files have {name} = {values}, which differ by rounding only; make these values equal"
             )
         axes.append(axis)
-    whole = Points(grids[0].names, tuple(axes), is_grid=True)
-    covered = np.zeros(whole.shape, bool)
-    places = []
+    joined = Points(grids[0].names, tuple(axes), is_grid=True)
+    covered = np.zeros(joined.shape, bool)
+    maps = []
     for grid in grids:
-        each = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
-        covered[np.ix_(*each)] = True
-        places.append(StoredPointMap(grid.shape, whole.shape, tuple(each)))
+        positions = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
+        covered[np.ix_(*positions)] = True
+        maps.append(StoredPointMap(grid.shape, joined.shape, tuple(positions)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
-            f"points are in no file, the first at {_point_text(whole, int(np.argmin(covered)))}; compute "
+            f"points are in no file, the first at {_point_text(joined, int(np.argmin(covered)))}; compute "
             "these points into a separate file, or merge fewer files"
         )
-    return whole, places
+    return joined, maps
 
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
     """Returns (joined list, map from each list to the joined list). The joined list has the points of all
     lists without repetition.
     """
-    known: dict[bytes, int] = {}
+    numbers: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
-    places = [np.array([known.setdefault(row.tobytes(), len(known)) for row in each]) for each in rows]
-    whole = np.empty((len(known), rows[0].shape[1]))
-    for place, each in zip(places, rows, strict=True):
-        whole[place] = each
-    joined = Points(lists[0].names, tuple(np.ascontiguousarray(whole.T)), is_grid=False)
+    maps = [np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in table]) for table in rows]
+    all_rows = np.empty((len(numbers), rows[0].shape[1]))
+    for point_map, table in zip(maps, rows, strict=True):
+        all_rows[point_map] = table
+    joined = Points(lists[0].names, tuple(np.ascontiguousarray(all_rows.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return joined, [
-        StoredPointMap(shape, joined.shape, (p,)) for shape, p in zip(shapes, places, strict=True)
-    ]
+    return joined, [StoredPointMap(shape, joined.shape, (p,)) for shape, p in zip(shapes, maps, strict=True)]
 
 
-def _joined_config(first: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
+def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
     """Config of the joined file: the config of the first file, for a grid with the axes of the joined points.
     settings: `Config.settings_of_results` of this config; its options of the task without effect have their
     default values. Derived entries, such as the gamma1 of a diagram, are left out."""
-    task = first.config["task"]
-    parameters = dict(first.config["parameters"])
+    task = header.config["task"]
+    parameters = dict(header.config["parameters"])
     if points.is_grid:
-        own = config_from_resolved(first.config).parameters.axes
-        axes = {name: _axis_from_values(own[name], column) for name, column in points.columns_by_name.items()}
+        own_axes = config_from_resolved(header.config).parameters.axes
+        columns = points.columns_by_name
+        axes = {name: _axis_from_values(own_axes[name], column) for name, column in columns.items()}
         parameters |= {name: axis.model_dump(mode="json", exclude_none=True) for name, axis in axes.items()}
-    options = {name: settings[task][name] for name in first.config[task] if name in settings[task]}
-    return config_from_resolved(first.config | {"parameters": parameters, task: options})
+    options = {name: settings[task][name] for name in header.config[task] if name in settings[task]}
+    return config_from_resolved(header.config | {"parameters": parameters, task: options})
 
 
 def _axis_from_values(own: Axis, values: Array) -> Axis:
@@ -234,17 +230,17 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
             )
 
 
-def _with_attributes(plan: Plan, first: ResultHeader, config: Config) -> Plan:
+def _with_attributes(plan: Plan, header: ResultHeader, config: Config) -> Plan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config."""
     text = config_yaml(config)
-    resolved = resolved_config(config)
-    if max(len(text), len(str(resolved))) > MAX_ATTRIBUTE_LENGTH:
+    tree = resolved_config(config)
+    if max(len(text), len(str(tree))) > MAX_ATTRIBUTE_LENGTH:
         raise InputError(
             "the axes of the merged grid are too long to be listed; compute the grid with `run` from ranges"
         )
-    with h5py.File(first.path, "r") as file:
+    with h5py.File(header.path, "r") as file:
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
-    kept = {name: value for name, value in first.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
+    kept = {name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
     return replace(plan, attributes=kept | {"config": text}, flags=flags)

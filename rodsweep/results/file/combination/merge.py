@@ -61,40 +61,39 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
 
 def _merge(replacement: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
-    first = sources[0]
-    plan = planner(config_from_resolved(first.config), points_of_file(first.path, first.layout))
-    with replacement.replacing(first.path) as copy:
-        gave = [first]
+    layout = sources[0].layout
+    plan = planner(config_from_resolved(sources[0].config), points_of_file(sources[0].path, layout))
+    with replacement.replacing(sources[0].path) as copy:
+        used = [sources[0]]
         for source in sources[1:]:
-            if write_records(copy, records_to_add(copy, source.path, first.layout), first.layout):
-                gave.append(source)
-        return _finish_merge(copy, plan, gave)
+            if write_records(copy, records_to_add(copy, source.path, layout), layout):
+                used.append(source)
+        return _finish_merge(copy, plan, used)
 
 
 def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> MergeResult:
     """Replaces the output by the planned joined file and writes the points of all sources into it."""
     with replacement.replacing(None) as copy:
         create_file(copy, joined.plan)
-        gave = joined.write(copy)
-        return _finish_merge(copy, joined.plan, gave or joined.sources[:1])
+        used = joined.write(copy)
+        return _finish_merge(copy, joined.plan, used or joined.sources[:1])
 
 
-def _finish_merge(copy: Path, plan: Plan, gave: Sequence[ResultHeader]) -> MergeResult:
+def _finish_merge(copy: Path, plan: Plan, used: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
-    returns the outcome of the merge. copy: path of the merged file. gave: sources of the stored points.
+    returns the outcome of the merge. copy: path of the merged file. used: sources of the stored points.
     """
-    left = missing_ranges(copy)
-    finished = not left and not plan.layout.needs_all_points
-    history = merged_history([source.attributes for source in gave])
+    missing = missing_ranges(copy)
+    finished = not missing and not plan.layout.needs_all_points
+    history = merged_history([source.attributes for source in used])
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
             add_variables(file, plan.variables_from_points(file))
             file.attrs["finished"] = utc_time()
         file.attrs.update(history)
         points = file["status"].size
-    return MergeResult(
-        points - index_count(left), index_count(left), finished, kernels_sentence(history[KERNELS_ATTRIBUTE])
-    )
+    count = index_count(missing)
+    return MergeResult(points - count, count, finished, kernels_sentence(history[KERNELS_ATTRIBUTE]))
 
 
 def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
@@ -110,13 +109,13 @@ def _read_headers(paths: Sequence[Path]) -> list[ResultHeader]:
     return files
 
 
-def _has_same_fingerprint(first: ResultHeader, other: ResultHeader) -> bool:
+def _has_same_fingerprint(header: ResultHeader, other: ResultHeader) -> bool:
     """Whether two files have the same fingerprint; raises InputError if only the layouts differ."""
-    if first.fingerprint != other.fingerprint:
+    if header.fingerprint != other.fingerprint:
         return False
-    if (first.layout.record_dtype, first.points) != (other.layout.record_dtype, other.points):
+    if (header.layout.record_dtype, header.points) != (other.layout.record_dtype, other.points):
         raise InputError(
-            f"{other.path} was written by another version of rodsweep than {first.path}; repeat the run of "
+            f"{other.path} was written by another version of rodsweep than {header.path}; repeat the run of "
             "one file with the version of the other"
         )
     return True

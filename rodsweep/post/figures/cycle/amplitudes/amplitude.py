@@ -29,38 +29,40 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 """Look of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
 
-def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure, str]:
+def draw_amplitude(views: Sequence[View], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
     power against a parameter.
 
-    A straight arm has amplitude 0 and no period. narrow: whether the panels are stacked. Raises InputError
+    A straight arm has amplitude 0 and no period. is_narrow: whether the panels are stacked. Raises InputError
     for too many lines.
     """
-    first = views[0]
-    name = abscissa_parameter(first)
+    first_view = views[0]
+    name = abscissa_parameter(first_view)
     units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [branch for view, drawn_in in pairs for branch in amplitude_branches(view, name, drawn_in)]
+    branches = [
+        branch for view, units_of_view in pairs for branch in amplitude_branches(view, name, units_of_view)
+    ]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
-            f"{first.path} gives {len(branches)} lines over {name}, and a figure has room for "
+            f"{first_view.path} gives {len(branches)} lines over {name}, and a figure has room for "
             f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
     style.require_content(
-        first, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude"
+        first_view, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude"
     )
-    figure = Figure(figsize=(4.4, 8.4) if narrow else (8.6, 5.6), layout="constrained")
-    panels = figure.subplots(*((4, 1) if narrow else (2, 2)), sharex=True).T.ravel()
-    shared, own = _common_and_own_texts(branches, name)
-    handles = _draw_branches(panels, branches, own, _legend_entries_of_files(views, name))
+    figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
+    panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
+    common_text, branch_texts = _common_and_own_texts(branches, name)
+    handles = _draw_branches(panels, branches, branch_texts, _legend_entries_of_files(views, name))
     colours = (colour for colour, _ in BRANCH_LOOKS)
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
     handles += draw_square_root_laws(
         panels[1],
-        [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)],
+        [law for branch in branches for law in square_root_laws(branch.x, branch.amplitude_y, branch.hopf)],
         units[0].names[0] * units[0].in_si,
     )
     _label_axes(panels, name, units[0].panel_labels)
@@ -68,36 +70,36 @@ def draw_amplitude(views: Sequence[View], narrow: bool = False) -> tuple[Figure,
         style.scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
         style.legend_below(figure, legend, columns=min(2, len(legend)))
-    figure.suptitle(style.heading_text(first, shared))
-    left_out = [left_out_clause(view.point_columns, [name]) for view in views]
-    return figure, f"amplitudes of the tip, period and power against {name}{max(left_out, key=len)}"
+    figure.suptitle(style.heading_text(first_view, common_text))
+    omissions = [left_out_clause(view.point_columns, [name]) for view in views]
+    return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"
 
 
 def _draw_branches(
     panels: Sequence[Axes],
     branches: Sequence[AmplitudeBranch],
     texts: Sequence[str],
-    words: dict[int, tuple[str, bool | None]],
+    direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line. words: result
-    of `_legend_entries_of_files`.
+    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line.
+    direction_labels: result of `_legend_entries_of_files`.
     """
     handles = []
-    lost = set[str]()
+    unknown_statuses = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
-        look: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
+        keywords: dict[str, Any] = {"color": colour, "marker": marker, "lw": 1.2, "ms": 3.5}
         # Open, larger markers do not hide the markers of the first file.
         if branch.view is not branches[0].view:
-            look |= {"mfc": "none", "ms": 6.5, "ls": "--"}
-        word, upward = words[id(branch.view)]
-        handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **look))
-        lost |= _draw_branch(panels, branch, look)
+            keywords |= {"mfc": "none", "ms": 6.5, "ls": "--"}
+        word, upward = direction_labels[id(branch.view)]
+        handles.append(Line2D([], [], label=", ".join(filter(None, (word, text))), **keywords))
+        unknown_statuses |= _draw_branch(panels, branch, keywords)
         if upward is not None:
             _show_direction(panels, branch, upward, colour)
     if any("unstable" in branch.status_names for branch in branches):
         handles.append(Line2D([], [], color="0.3", marker="o", label="unstable cycle", **UNSTABLE_LOOK))
-    if lost:
-        label = ", ".join(sorted(lost)) + " (at the top)"
+    if unknown_statuses:
+        label = ", ".join(sorted(unknown_statuses)) + " (at the top)"
         handles.append(Line2D([], [], color="0.3", marker="x", ls="", ms=5, label=label))
     return handles
 
@@ -119,9 +121,9 @@ def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tupl
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
         return {id(view): (style.escape_dollar_signs(view.path.stem), None) for view in views}
-    words = {"up": f"${style.SYMBOLS[name]}$ rising", "down": f"${style.SYMBOLS[name]}$ falling"}
+    direction_texts = {"up": f"${style.SYMBOLS[name]}$ rising", "down": f"${style.SYMBOLS[name]}$ falling"}
     return {
-        id(view): (words[direction], direction == "up")
+        id(view): (direction_texts[direction], direction == "up")
         for view, direction in zip(views, directions, strict=True)
     }
 
@@ -132,14 +134,14 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
     """
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
-        known = np.flatnonzero(np.isfinite(values))
-        if len(known) < MIN_ARROW_POINTS:
+        finite_indices = np.flatnonzero(np.isfinite(values))
+        if len(finite_indices) < MIN_ARROW_POINTS:
             continue
-        ends = known[len(known) * 3 // 4 - 1], known[len(known) * 3 // 4]
+        ends = finite_indices[len(finite_indices) * 3 // 4 - 1], finite_indices[len(finite_indices) * 3 // 4]
         start, end = ends if upward else ends[::-1]
-        tip = branch.x[end], values[end]
+        head = branch.x[end], values[end]
         tail = branch.x[start], values[start]
-        axes.annotate("", tip, tail, arrowprops=arrow, zorder=4)
+        axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
 def _common_and_own_texts(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
@@ -149,8 +151,11 @@ def _common_and_own_texts(branches: Sequence[AmplitudeBranch], name: str) -> tup
     """
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
-        along = {name, *(quantity for quantity, moved in CHANGED_PARAMETER.items() if moved == name)}
-        return shared_and_own_of_arms(view, [branch.first_number for branch in branches], along)
+        names = {
+            name,
+            *(quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name),
+        }
+        return shared_and_own_of_arms(view, [branch.first_number for branch in branches], names)
     return shared_and_own_texts([branch.parameters for branch in branches])
 
 
@@ -171,24 +176,24 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
             axes.set_xlabel(style.LABELS[name])
 
 
-def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, look: dict[str, Any]) -> set[str]:
+def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
-    without a known amplitude. look: keywords for matplotlib.
+    without a known amplitude. keywords: keywords for matplotlib.
     """
     unstable = branch.status_names == "unstable"
-    lost: set[str] = set()
+    unknown_statuses: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
-        axes.plot(*branch.with_gap_at_onset(values), **look)
+        axes.plot(*branch.with_gap_at_onset(values), **keywords)
         if unstable.any():
-            axes.plot(branch.x[unstable], values[unstable], **look | UNSTABLE_LOOK)
-        lost |= _mark_unknown_amplitudes(axes, branch, look["color"])
-    return lost
+            axes.plot(branch.x[unstable], values[unstable], **keywords | UNSTABLE_LOOK)
+        unknown_statuses |= _mark_unknown_amplitudes(axes, branch, keywords["color"])
+    return unknown_statuses
 
 
 def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
     """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
     statuses of these points. Points with status missing are not marked."""
-    lost = ~np.isin(branch.status_names, (*CYCLE_STATUSES, "straight", "missing"))
-    for x in branch.x[lost]:
+    is_unknown = ~np.isin(branch.status_names, (*CYCLE_STATUSES, "straight", "missing"))
+    for x in branch.x[is_unknown]:
         axes.plot(x, 1.0, "x", color=colour, ms=5, clip_on=False, transform=axes.get_xaxis_transform())
-    return {str(word).replace("_", " ") for word in branch.status_names[lost]}
+    return {str(word).replace("_", " ") for word in branch.status_names[is_unknown]}

@@ -70,14 +70,14 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """
-    words = view.status_names
+    statuses = view.status_names
     v = view.variables
-    straight = words == "straight"
-    cycle = np.isin(words, CYCLE_STATUSES)
-    reach = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
-    along_x, along_y = (
+    straight = statuses == "straight"
+    cycle = np.isin(statuses, CYCLE_STATUSES)
+    x_amplitudes = (v["tip_x_max"] - v["tip_x_min"]).ravel() / 2
+    x_values, y_values = (
         units.length * np.where(straight, 0.0, np.where(cycle, values, np.nan))
-        for values in (reach, v["tip_y_max"].ravel())
+        for values in (x_amplitudes, v["tip_y_max"].ravel())
     )
     period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
@@ -85,8 +85,8 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
     stored = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):
         changes = stored.thresholds_on(line) if name == "F" else []
-        at = line.indices
-        hopf = [
+        indices = line.indices
+        hopf_points = [
             change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability
         ]
         branches.append(
@@ -94,14 +94,14 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
                 view=view,
                 parameters=line.parameters,
                 x=line.x,
-                amplitude_x=along_x[at],
-                amplitude_y=along_y[at],
-                period=period[at],
-                power=power[at],
-                status_names=words[at],
-                hopf=hopf,
+                amplitude_x=x_values[indices],
+                amplitude_y=y_values[indices],
+                period=period[indices],
+                power=power[indices],
+                status_names=statuses[indices],
+                hopf=hopf_points,
                 units=units,
-                first_number=int(at[0]) + 1,
+                first_number=int(indices[0]) + 1,
             )
         )
     return branches

@@ -38,23 +38,25 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThresh
     """
     handles = []
     for kind, word in HOPF_WORDS.items():
-        own = [mark for mark in marks if mark[0].kind == kind]
-        places: list[tuple[LocatedThreshold, set[str]]] = []
-        for point, colour in own:
-            same = next((colours for other, colours in places if other.equals_within_errors(point)), None)
-            if same is None:
-                places.append((point, {colour}))
+        marks_of_kind = [mark for mark in marks if mark[0].kind == kind]
+        points: list[tuple[LocatedThreshold, set[str]]] = []
+        for point, colour in marks_of_kind:
+            colours_here = next(
+                (colours for other, colours in points if other.equals_within_errors(point)), None
+            )
+            if colours_here is None:
+                points.append((point, {colour}))
             else:
-                same.add(colour)
-        for point, colours in places:
+                colours_here.add(colour)
+        for point, colours in points:
             colour = colours.pop() if len(colours) == 1 else SHARED_POINT_COLOUR
             for axes in panels:
                 axes.axvline(point.position, color=colour, zorder=0.5, **HOPF_LINE_LOOK)
-        if len(places) == 1:
-            equals = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
-            label = f"{equals}{places[0][0].position:.{HOPF_DIGITS}g}"
+        if len(points) == 1:
+            load_prefix = f"{word} = " if kind == "hopf" else rf"{word} at $\tilde F$ = "
+            label = f"{load_prefix}{points[0][0].position:.{HOPF_DIGITS}g}"
             handles.append(Line2D([], [], color=colour, label=label, **HOPF_LINE_LOOK))
-        elif places:
+        elif points:
             handles.append(Line2D([], [], color=SHARED_POINT_COLOUR, label=word, **HOPF_LINE_LOOK))
     return handles
 
@@ -64,26 +66,25 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
     unit of the amplitude; empty for amplitudes in L.
     """
     handles = []
-    for above in (True, False):
-        on_side = [law for law in laws if law.above == above]
-        if not on_side:
+    for is_above in (True, False):
+        chosen_laws = [law for law in laws if law.above == is_above]
+        if not chosen_laws:
             continue
-        look: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
-        for law in on_side:
-            axes.plot(*law.curve(), zorder=1.5, **look)
-        difference = rf"\tilde F - {HOPF_SYMBOL}" if above else rf"{HOPF_SYMBOL} - \tilde F"
-        formula = (
-            rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, $a$ = {_coefficients_text(on_side)} {unit}".rstrip()
-        )
-        handles.append(Line2D([], [], label=formula, **look))
+        keywords: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}
+        for law in chosen_laws:
+            axes.plot(*law.curve(), zorder=1.5, **keywords)
+        difference = rf"\tilde F - {HOPF_SYMBOL}" if is_above else rf"{HOPF_SYMBOL} - \tilde F"
+        coefficients = f"$a$ = {_coefficients_text(chosen_laws)} {unit}".rstrip()
+        formula = rf"$a\sqrt{{({difference})/{HOPF_SYMBOL}}}$, {coefficients}"
+        handles.append(Line2D([], [], label=formula, **keywords))
     return handles
 
 
 def _coefficients_text(laws: Sequence[SquareRootLaw]) -> str:
     """Distinct coefficients of the laws as text; the range if there are more than MAX_COEFFICIENTS."""
-    ordered = sorted(laws, key=lambda law: law.coefficient)
-    each = {law: rounded_text(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
-    texts = list(dict.fromkeys(each.values()))
+    sorted_laws = sorted(laws, key=lambda law: law.coefficient)
+    coefficient_texts = {law: rounded_text(law.coefficient, law.error, COEFFICIENT_DIGITS) for law in laws}
+    texts = list(dict.fromkeys(coefficient_texts.values()))
     if len(texts) > MAX_COEFFICIENTS:
-        return f"{each[ordered[0]]} to {each[ordered[-1]]}"
+        return f"{coefficient_texts[sorted_laws[0]]} to {coefficient_texts[sorted_laws[-1]]}"
     return ", ".join(texts)

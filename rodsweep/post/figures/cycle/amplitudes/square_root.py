@@ -68,33 +68,35 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     distance = side * (F - point.position) / abs(point.position)
     # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
-    distance, first = np.unique(distance[order], return_index=True)
-    size = amplitude[order][first]
+    distance, indices = np.unique(distance[order], return_index=True)
+    size = amplitude[order][indices]
     is_certain = distance > MIN_ERRORS_AWAY * point.error / abs(point.position)
     distance = distance[is_certain]
     size = size[is_certain]
-    gap = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
-    distance = distance[: gap[0] if gap.size else None]
-    size = size[: gap[0] if gap.size else None]
+    zero_indices = np.flatnonzero(~(size > 0))  # another branch begins behind a gap
+    distance = distance[: zero_indices[0] if zero_indices.size else None]
+    size = size[: zero_indices[0] if zero_indices.size else None]
     if len(size) < 2 or distance[1] > MAX_FITTED_DISTANCE:
         return None
-    q = size[:2] ** 2 / distance[:2]
-    square = q[0] - distance[0] * (q[1] - q[0]) / (distance[1] - distance[0])
-    if square <= 0:
+    square_over_distance = size[:2] ** 2 / distance[:2]
+    coefficient_square = square_over_distance[0] - distance[0] * (
+        square_over_distance[1] - square_over_distance[0]
+    ) / (distance[1] - distance[0])
+    if coefficient_square <= 0:
         return None
-    follows = np.abs(np.sqrt(square * distance) / size - 1) <= MAX_LAW_DEVIATION
-    if not follows[:2].all():
+    is_on_law = np.abs(np.sqrt(coefficient_square * distance) / size - 1) <= MAX_LAW_DEVIATION
+    if not is_on_law[:2].all():
         return None
-    last = len(size) if follows.all() else int(np.argmin(follows))
-    end = point.position + side * abs(point.position) * float(distance[last - 1])
-    third = size[:3] ** 2 / distance[:3]
-    better = (
-        _parabola_at_zero(distance[:3], third)
-        if len(third) > 2 and distance[2] <= MAX_FITTED_DISTANCE
-        else q[0]
+    law_end = len(size) if is_on_law.all() else int(np.argmin(is_on_law))
+    end = point.position + side * abs(point.position) * float(distance[law_end - 1])
+    three_quotients = size[:3] ** 2 / distance[:3]
+    extrapolated_square = (
+        _parabola_at_zero(distance[:3], three_quotients)
+        if len(three_quotients) > 2 and distance[2] <= MAX_FITTED_DISTANCE
+        else square_over_distance[0]
     )
-    error = ERROR_SAFETY_FACTOR * abs(sqrt(max(better, 0.0)) - sqrt(square))
-    return SquareRootLaw(point.position, sqrt(square), side > 0, end, error)
+    error = ERROR_SAFETY_FACTOR * abs(sqrt(max(extrapolated_square, 0.0)) - sqrt(coefficient_square))
+    return SquareRootLaw(point.position, sqrt(coefficient_square), side > 0, end, error)
 
 
 def _parabola_at_zero(x: Array, values: Array) -> float:
