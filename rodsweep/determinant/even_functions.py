@@ -62,16 +62,16 @@ class EvenFunctions(NamedTuple):
 @compiled
 def _noise_by_roots(
     squares: tuple[complex, complex, complex, complex],
-    apart: complex,
-    of_u: HyperbolicFunctions,
-    of_v: HyperbolicFunctions,
+    difference: complex,
+    functions_of_u: HyperbolicFunctions,
+    functions_of_v: HyperbolicFunctions,
     results: tuple[complex, complex],
     roundings: tuple[float, float, float],
 ) -> tuple[float, float]:
     """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order.
 
-    squares: (M, P^2, u, v). apart: u - v. of_u, of_v: hyperbolic functions of sqrt(u) and sqrt(v). results:
-    (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2).
+    squares: (M, P^2, u, v). difference: u - v. functions_of_u, functions_of_v: hyperbolic functions of
+    sqrt(u) and sqrt(v). results: (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2).
     """
     M = modulus(squares[0])
     square = modulus(squares[1])
@@ -79,27 +79,27 @@ def _noise_by_roots(
     v = modulus(squares[3])
     s = modulus(results[0])
     d = modulus(results[1])
-    one, rounding_M, rounding_square = roundings
-    c1 = modulus(of_u.cosh)
-    f1 = modulus(of_u.sinhc)
-    g1 = modulus(of_u.sinhc_slope)
-    c2 = modulus(of_v.cosh)
-    f2 = modulus(of_v.sinhc)
-    g2 = modulus(of_v.sinhc_slope)
-    per_root = 1 / modulus(apart)
+    scaled_one, rounding_M, rounding_square = roundings
+    c1 = modulus(functions_of_u.cosh)
+    f1 = modulus(functions_of_u.sinhc)
+    g1 = modulus(functions_of_u.sinhc_slope)
+    c2 = modulus(functions_of_v.cosh)
+    f2 = modulus(functions_of_v.sinhc)
+    g2 = modulus(functions_of_v.sinhc_slope)
+    per_root = 1 / modulus(difference)
     rounding_u = (u * rounding_M + rounding_square) * per_root + u
     rounding_v = (v * rounding_M + rounding_square) * per_root + v
-    C = c1 * c2 + one
+    C = c1 * c2 + scaled_one
     H = f1 * f2
     rounding_C = (f1 * c2 * rounding_u + c1 * f2 * rounding_v) / 2 + C
     rounding_H = (g1 * f2 * rounding_u + f1 * g2 * rounding_v) / 2 + H
     rounding_R = 2 * M * (rounding_M + M) + 4 * (rounding_square + square)
-    noise_s = (
+    error_of_s = (
         2 * (rounding_M * C + M * rounding_C + 2 * (rounding_square * H + square * rounding_H))
         + s * rounding_R
     )
-    noise_d = (rounding_M * H + M * rounding_H) / 2 + rounding_C + d * rounding_R
-    return noise_s * per_root * per_root, noise_d * per_root * per_root
+    error_of_d = (rounding_M * H + M * rounding_H) / 2 + rounding_C + d * rounding_R
+    return error_of_s * per_root * per_root, error_of_d * per_root * per_root
 
 
 @compiled
@@ -116,39 +116,41 @@ def even_functions_by_roots(
         s = 2 (M C - 2 P^2 H)/R,   d = (M H/2 - C)/R.
     """
     R = M * M - 4 * square
-    apart = cmath.sqrt(R)
+    difference = cmath.sqrt(R)
     # The sign without cancellation in M + apart; the smaller root follows from the product.
-    if (M.conjugate() * apart).real < 0:
-        apart = -apart
-    u = (M + apart) / 2
+    if (M.conjugate() * difference).real < 0:
+        difference = -difference
+    u = (M + difference) / 2
     v = square / u
     q1 = cmath.sqrt(u)
     q2 = cmath.sqrt(v)
     S = q1.real + q2.real
     # The 1 that is subtracted from cosh q1 cosh q2, scaled by exp(-S) like the product.
-    one = math.exp(-S)
-    of_u = hyperbolic_functions(u, q1)
-    of_v = hyperbolic_functions(v, q2)
-    cosh1, first1, second1 = of_u
-    cosh2, first2, second2 = of_v
+    scaled_one = math.exp(-S)
+    functions_of_u = hyperbolic_functions(u, q1)
+    functions_of_v = hyperbolic_functions(v, q2)
+    cosh1, first1, second1 = functions_of_u
+    cosh2, first2, second2 = functions_of_v
     # With z+- = (q1 +- q2)^2 the even functions of P are symmetric functions of q1^2 and q2^2.
-    C = cosh1 * cosh2 - one
+    C = cosh1 * cosh2 - scaled_one
     H = first1 * first2
     per_R = 1 / R
-    half = 1 / (2 * apart)
-    C_M = (first1 * cosh2 * u - cosh1 * first2 * v) * half
-    H_M = (second1 * first2 * u - first1 * second2 * v) * half
-    C_square = (cosh1 * first2 - first1 * cosh2) * half
-    H_square = (first1 * second2 - second1 * first2) * half
+    half_inverse = 1 / (2 * difference)
+    C_M = (first1 * cosh2 * u - cosh1 * first2 * v) * half_inverse
+    H_M = (second1 * first2 * u - first1 * second2 * v) * half_inverse
+    C_square = (cosh1 * first2 - first1 * cosh2) * half_inverse
+    H_square = (first1 * second2 - second1 * first2) * half_inverse
     s = 2 * (M * C - 2 * square * H) * per_R
     d = (M * H / 2 - C) * per_R
     s1 = 2 * (C + M * (C_M - s) - 2 * square * H_M) * per_R
     d1 = (H / 2 + M * (H_M / 2 - 2 * d) - C_M) * per_R
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
     squares = (M, square, u, v)
-    roundings = (one, rounding_M, rounding_square)
-    noise_s, noise_d = _noise_by_roots(squares, apart, of_u, of_v, (s, d), roundings)
-    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
+    roundings = (scaled_one, rounding_M, rounding_square)
+    error_of_s, error_of_d = _noise_by_roots(
+        squares, difference, functions_of_u, functions_of_v, (s, d), roundings
+    )
+    return EvenFunctions(S, s, d, s1, d1, dd), error_of_s, error_of_d
 
 
 @compiled
@@ -172,26 +174,26 @@ def even_functions_by_series(
     power_plus = 1 + 0j
     power_minus = 1 + 0j
     # Complete homogeneous symmetric polynomials, without factorials.
-    pair = 1 + 0j  # of (z+, z-), degree n - 1
-    last = 0j  # of (z+, z-), degree n - 2
-    three = 0j  # of (z+, z+, z-)
-    four = 0j  # of (z+, z+, z-, z-)
+    pair_sum = 1 + 0j  # of (z+, z-), degree n - 1
+    previous_pair_sum = 0j  # of (z+, z-), degree n - 2
+    triple_sum = 0j  # of (z+, z+, z-)
+    quadruple_sum = 0j  # of (z+, z+, z-, z-)
     factor = size / 2
     for n in range(1, EVEN_FUNCTION_SETTINGS.series_terms):
         # 1/(2n + 2)!, updated from term to term.
         factor /= (2 * n + 1) * (2 * n + 2)
         s1 += n * factor * (power_plus + power_minus)
-        d += factor * pair
-        d1 += n * factor * last
-        dd += factor * four
-        three = plus * three + last
-        four = minus * four + three
-        last = pair
+        d += factor * pair_sum
+        d1 += n * factor * previous_pair_sum
+        dd += factor * quadruple_sum
+        triple_sum = plus * triple_sum + previous_pair_sum
+        quadruple_sum = minus * quadruple_sum + triple_sum
+        previous_pair_sum = pair_sum
         power_plus = plus * power_plus
         power_minus = minus * power_minus
-        pair = minus * pair + power_plus
+        pair_sum = minus * pair_sum + power_plus
         s += factor * (power_plus + power_minus)
     # Bounds of the first terms of the series, times the rounding errors of M and P^2.
-    noise_s = size * (1 + rounding_M / 10 + rounding_square / 80)
-    noise_d = size * (0.1 + rounding_M / 300 + rounding_square / 8000)
-    return EvenFunctions(S, s, d, s1, d1, dd), noise_s, noise_d
+    error_of_s = size * (1 + rounding_M / 10 + rounding_square / 80)
+    error_of_d = size * (0.1 + rounding_M / 300 + rounding_square / 8000)
+    return EvenFunctions(S, s, d, s1, d1, dd), error_of_s, error_of_d

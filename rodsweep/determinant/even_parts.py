@@ -50,28 +50,28 @@ def _noise_by_squares(
     rounding_M, rounding_square = roundings
     S = max(roots[0].real, roots[1].real)
     soft = abs(g) + abs(F) * c2 / 2
-    unlike = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
-    large = max(modulus(roots[0]), modulus(roots[1])) ** 2
+    contrast = abs(c2 - gamma3) * (abs(c2 - gamma3) + c2 / 2)
+    max_z = max(modulus(roots[0]), modulus(roots[1])) ** 2
     rounding_P = rounding_square / size_P
     rounding_large = rounding_M + 2 * rounding_P
-    rounding_product = unlike * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
-    steepest = T + (nu * soft + 2 * X * size) / size_P * (1 + rounding_P / size_P / 2)
-    noise = 0.0
+    rounding_product = contrast * size * size + 2 * soft * size * (T * abs(F) + 2 * nu) + (F * soft) ** 2
+    max_slope = T + (nu * soft + 2 * X * size) / size_P * (1 + rounding_P / size_P / 2)
+    error = 0.0
     for i in range(2):
         root = roots[i]
         slope = slopes[i]
         q = modulus(root)
         z = q * q
-        rounding = rounding_large
-        steep = modulus(slope)
-        rounding_slope = steepest
-        if z < large / 2:
-            rounding = (rounding_product + z * rounding_large) / large
-            rounding_slope = 2 * unlike * size + 2 * soft * (T * abs(F) + 2 * nu) + z * steepest
-            rounding_slope = rounding_slope / large + steep * rounding_large / large
+        error_of_z = rounding_large
+        dz = modulus(slope)
+        rounding_slope = max_slope
+        if z < max_z / 2:
+            error_of_z = (rounding_product + z * rounding_large) / max_z
+            rounding_slope = 2 * contrast * size + 2 * soft * (T * abs(F) + 2 * nu) + z * max_slope
+            rounding_slope = rounding_slope / max_z + dz * rounding_large / max_z
         bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENT_SETTINGS.least_divisor))
-        noise += bound * (rounding_slope + steep * (1 + q / 4 + rounding / 2 / max(1.0, q)))
-    return noise
+        error += bound * (rounding_slope + dz * (1 + q / 4 + error_of_z / 2 / max(1.0, q)))
+    return error
 
 
 @compiled
@@ -90,9 +90,9 @@ def even_sum_by_squares(
     g = nu + F * c2
     T = c2 + gamma3
     X = c2 * gamma3
-    turn = (g * nu + 2 * X * w) / P
-    slope_plus = T + turn
-    slope_minus = T - turn
+    slope_difference = (g * nu + 2 * X * w) / P
+    slope_plus = T + slope_difference
+    slope_minus = T - slope_difference
     product_slope = 2 * (c2 - gamma3) ** 2 * w - 2 * g * (T * F + 2 * nu)
     if modulus(plus) < modulus(minus):
         # d(z+ z-)/dw is a polynomial in w; T - 2 P' or T + 2 P' would cancel for the smaller z.
@@ -113,8 +113,8 @@ def even_sum_by_squares(
     sizes = (modulus(w), modulus(P))
     roots = (root_plus, root_minus)
     slopes = (slope_plus, slope_minus)
-    noise = _noise_by_squares(sizes, coefficients, roots, slopes, (rounding_M, rounding_square))
-    return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, noise
+    rounding_error = _noise_by_squares(sizes, coefficients, roots, slopes, (rounding_M, rounding_square))
+    return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, rounding_error
 
 
 @compiled
@@ -141,19 +141,19 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     # Three formulas: a series for small z+ and z-, the roots q if neither z+ nor z- is small, else z+ and z-.
     size_M = modulus(M)
     size_square = modulus(square)
-    small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.series_below
-    close = EVEN_FUNCTION_SETTINGS.squares_below * (size_M * size_M + 4 * size_square)
-    if small or modulus(M * M - 4 * square) > close:
-        if small:
-            even, noise_s, noise_d = even_functions_by_series(
+    is_small = size_M + 2 * math.sqrt(size_square) < EVEN_FUNCTION_SETTINGS.series_below
+    max_discriminant = EVEN_FUNCTION_SETTINGS.squares_below * (size_M * size_M + 4 * size_square)
+    if is_small or modulus(M * M - 4 * square) > max_discriminant:
+        if is_small:
+            even, error_of_s, error_of_d = even_functions_by_series(
                 M, cmath.sqrt(square), rounding_M, rounding_square
             )
         else:
-            even, noise_s, noise_d = even_functions_by_roots(M, square, rounding_M, rounding_square)
+            even, error_of_s, error_of_d = even_functions_by_roots(M, square, rounding_M, rounding_square)
         total = T * even.s + 4 * N * even.d
-        noise = T * noise_s + 4 * (stiffness + X * size) * noise_d
+        rounding_error = T * error_of_s + 4 * (stiffness + X * size) * error_of_d
     else:
-        even, total, noise = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
-    beyond = even.S - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
-    scale_noise = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * beyond)
-    return even, total, NOISE_UNIT * (scale_noise * math.exp(-even.S) + size / 2 * noise)
+        even, total, rounding_error = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
+    excess = even.S - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
+    scale_error = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * excess)
+    return even, total, NOISE_UNIT * (scale_error * math.exp(-even.S) + size / 2 * rounding_error)

@@ -89,9 +89,9 @@ def entire_cosh(z: complex, root: complex, scale: float) -> tuple[complex, compl
         return size * (0.5 + z / 24 * value), size * (1 + z / 15 * slope) / 24
     # cosh q - 1 = 2 sinh^2(q/2): no cancellation for moderate q.
     grow = cmath.exp((root - scale) / 2)
-    decay = cmath.exp((-root - scale) / 2)
-    value = (grow - decay) ** 2 / (2 * z)
-    return value, ((grow**2 - decay**2) / (4 * root) - value) / z
+    small_factor = cmath.exp((-root - scale) / 2)
+    value = (grow - small_factor) ** 2 / (2 * z)
+    return value, ((grow**2 - small_factor**2) / (4 * root) - value) / z
 
 
 @compiled
@@ -99,16 +99,16 @@ def hyperbolic_functions(v: complex, root: complex) -> HyperbolicFunctions:
     """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, times exp(-Re q), for q = `root`; v: q^2."""
     if modulus(v) < EXPONENT_SETTINGS.sinh_series_below:
         first = 1 + v / 6 * (1 + v / 20 * (1 + v / 42 * (1 + v / 72 * (1 + v / 110 * (1 + v / 156)))))
-        second = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
-        second = (1 + v / 10 * second) / 3
+        series_sum = 1 + v / 28 * (1 + v / 54 * (1 + v / 88 * (1 + v / 130 * (1 + v / 180))))
+        series_sum = (1 + v / 10 * series_sum) / 3
         size = math.exp(-root.real)
-        return HyperbolicFunctions(size * (first + v * second), size * first, size * second)
+        return HyperbolicFunctions(size * (first + v * series_sum), size * first, size * series_sum)
     # cosh and sinh times exp(-Re q), which cannot overflow.
-    decay = math.exp(-2 * root.real)
-    even = (1 + decay) / 2
-    odd = (1 - decay) / 2
+    squared_decay = math.exp(-2 * root.real)
+    even = (1 + squared_decay) / 2
+    half_difference = (1 - squared_decay) / 2
     cosine = math.cos(root.imag)
     sine = math.sin(root.imag)
-    cosh = complex(even * cosine, odd * sine)
-    first = complex(odd * cosine, even * sine) / root
+    cosh = complex(even * cosine, half_difference * sine)
+    first = complex(half_difference * cosine, even * sine) / root
     return HyperbolicFunctions(cosh, first, (cosh - first) / v)

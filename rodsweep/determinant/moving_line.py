@@ -73,68 +73,76 @@ class UnprovedStrip(NamedTuple):
 
 
 @compiled
-def interpolate_ends(share: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
-    """p, coefficients and line interpolated linearly between `first` (share = 0) and `last` (share = 1).
+def interpolate_ends(fraction: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
+    """p, coefficients and line interpolated linearly between `first` (fraction = 0) and `last` (fraction =
+    1).
 
     The interpolation has no cancellation.
     """
-    a = 1 - share
-    b = share
+    a = 1 - fraction
+    b = fraction
     F, nu, c2, gamma3 = first.coefficients
     F_last, nu_last, c2_last, gamma3_last = last.coefficients
-    between = Coefficients(
+    coefficients = Coefficients(
         a * F + b * F_last, a * nu + b * nu_last, a * c2 + b * c2_last, a * gamma3 + b * gamma3_last
     )
-    return IntervalEnd(a * first.p + b * last.p, between, a * first.line + b * last.line)
+    return IntervalEnd(a * first.p + b * last.p, coefficients, a * first.line + b * last.line)
 
 
 @compiled
 def examine_rectangle(
-    at: IntervalEnd, y: float, direction: Coefficients, half: tuple[float, float], tilt: float
+    centre_end: IntervalEnd,
+    y: float,
+    direction: Coefficients,
+    half_widths: tuple[float, float],
+    line_slope: float,
 ) -> tuple[bool, float, float]:
     """Returns (proved, cost in y, cost in p). proved: whether D is proved to have no zero on the rectangle
     about w = l(p) + i y; cost: see `covering.examine_box`.
 
-    at: p, coefficients and line at the centre. direction: d(F, nu, c2, gamma3)/dp. half: half-widths of the
-    rectangle in y and in p. tilt: dl/dp. Raises ValueError for a half-width that is not positive.
+    centre_end: p, coefficients and line at the centre. direction: d(F, nu, c2, gamma3)/dp. half_widths:
+    half-widths of the rectangle in y and in p. line_slope: dl/dp. Raises ValueError for a half-width that is
+    not positive.
     """
-    half_y, half_p = half
+    half_y, half_p = half_widths
     if not (half_y > 0 and half_p > 0):  # negative half-widths would pass the tests and prove nothing
         raise ValueError("the half-widths of a rectangle must be above 0")
-    w = complex(at.line, y)
-    D, D_w, D_p, S, noise = determinant_along_path(w, at.coefficients, direction)
-    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
-    centre = bidisc_centre(w, at.coefficients, coefficient_derivatives(at.coefficients, direction), S)
-    radii = (math.hypot(half_y, tilt * half_p), half_p)
+    w = complex(centre_end.line, y)
+    D, D_w, D_p, S, rounding_error = determinant_along_path(w, centre_end.coefficients, direction)
+    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
+    centre = bidisc_centre(
+        w, centre_end.coefficients, coefficient_derivatives(centre_end.coefficients, direction), S
+    )
+    radii = (math.hypot(half_y, line_slope * half_p), half_p)
     if abs(D) > 2 * rounding:
         if is_remainder_below(
             centre, (D_w / D, D_p / D), radii, DISC_BOUND_SETTINGS.max_relative_change * abs(D) - rounding, 1
         ):
             return True, 0.0, 0.0
-        mean = mean_growth_rates(centre)
-        in_w = D_w - mean[0] * D
-        in_p = D_p - mean[1] * D
-        room = (
+        mean_rates = mean_growth_rates(centre)
+        w_slope = D_w - mean_rates[0] * D
+        p_slope = D_p - mean_rates[1] * D
+        max_remainder = (
             DISC_BOUND_SETTINGS.max_relative_change
-            * distance_from_zero_bound(D, 1j * in_w * half_y, (tilt * in_w + in_p) * half_p)
+            * distance_from_zero_bound(D, 1j * w_slope * half_y, (line_slope * w_slope + p_slope) * half_p)
             - rounding
         )
-        if room > 0 and is_remainder_below(centre, mean, radii, room, 1):
+        if max_remainder > 0 and is_remainder_below(centre, mean_rates, radii, max_remainder, 1):
             return True, 0.0, 0.0
-    cost_y, cost_p = exponent_changes(centre, half)
-    return False, cost_y, max(cost_p, exponent_changes(centre, (abs(tilt) * half_p, half_p))[0])
+    cost_y, cost_p = exponent_changes(centre, half_widths)
+    return False, cost_y, max(cost_p, exponent_changes(centre, (abs(line_slope) * half_p, half_p))[0])
 
 
 @compiled
 def proves_no_crossing(
-    first: IntervalEnd, last: IntervalEnd, direction: Coefficients, most: int
+    first: IntervalEnd, last: IntervalEnd, direction: Coefficients, max_count: int
 ) -> tuple[bool, int]:
     """Returns (proved, number of rectangles examined). proved: whether it is proved that no eigenvalue
     crosses the moving line.
 
-    first, last: ends of the interval, in either order. direction: d(F, nu, c2, gamma3)/dp. most: maximum
-    number of rectangles. The proof fails if both ends have equal p, if the line is not left of the imaginary
-    axis, or if no a-priori bound on the eigenvalues exists.
+    first, last: ends of the interval, in either order. direction: d(F, nu, c2, gamma3)/dp. max_count:
+    maximum number of rectangles. The proof fails if both ends have equal p, if the line is not left of the
+    imaginary axis, or if no a-priori bound on the eigenvalues exists.
     """
     if first.p > last.p:
         first, last = last, first
@@ -146,26 +154,26 @@ def proves_no_crossing(
         return False, 0
     top = box_from_sqrt_bound(a, depth)[1]
     width = last.p - first.p
-    tilt = (last.line - first.line) / width
-    examined = 0
+    slope = (last.line - first.line) / width
+    count = 0
     stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
-        at = interpolate_ends((start + stop) / 2, first, last)
+        middle = interpolate_ends((start + stop) / 2, first, last)
         half_p = width * (stop - start) / 2
         while y < top:
-            smallest = MOVING_LINE_SETTINGS.min_fraction
-            if examined >= most or half_y < smallest * depth or stop - start < smallest:
-                return False, examined
-            examined += 1
+            min_fraction = MOVING_LINE_SETTINGS.min_fraction
+            if count >= max_count or half_y < min_fraction * depth or stop - start < min_fraction:
+                return False, count
+            count += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
-            middle = y + half_y if y > 0 else 0.0
+            centre_y = y + half_y if y > 0 else 0.0
             half = ((1 + MOVING_LINE_SETTINGS.overlap) * half_y, (1 + MOVING_LINE_SETTINGS.overlap) * half_p)
-            proved, cost_y, cost_p = examine_rectangle(at, middle, direction, half, tilt)
+            proved, cost_y, cost_p = examine_rectangle(middle, centre_y, direction, half, slope)
             if proved:
-                y = middle + half_y
-                largest = MOVING_LINE_SETTINGS.max_half_height * math.hypot(at.line, y)
-                half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, largest)
+                y = centre_y + half_y
+                max_half = MOVING_LINE_SETTINGS.max_half_height * math.hypot(middle.line, y)
+                half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, max_half)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.
                 stack.append(UnprovedStrip((start + stop) / 2, stop, y, half_y))
@@ -173,4 +181,4 @@ def proves_no_crossing(
                 break
             else:
                 half_y /= 2
-    return True, examined
+    return True, count

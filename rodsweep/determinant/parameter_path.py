@@ -125,13 +125,17 @@ def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients)
 
 @compiled
 def exponent_slopes(
-    w: complex, at: ExponentDerivatives, change: CoefficientDerivatives
+    w: complex, exponents: ExponentDerivatives, coefficient_derivatives: CoefficientDerivatives
 ) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. at: result of `exponent_derivatives` at w. change: derivatives by p."""
+    """(dz+/dp, dz-/dp) at w. exponents: result of `exponent_derivatives` at w. coefficient_derivatives:
+    derivatives by p."""
     P_p = 0j
-    if at.P != 0:
-        P_p = w * (change.G_p + change.X_p * w) / (2 * at.P)
-    return change.T_p * w - change.N_p + 2 * P_p, change.T_p * w - change.N_p - 2 * P_p
+    if exponents.P != 0:
+        P_p = w * (coefficient_derivatives.G_p + coefficient_derivatives.X_p * w) / (2 * exponents.P)
+    return (
+        coefficient_derivatives.T_p * w - coefficient_derivatives.N_p + 2 * P_p,
+        coefficient_derivatives.T_p * w - coefficient_derivatives.N_p - 2 * P_p,
+    )
 
 
 @compiled
@@ -143,13 +147,13 @@ def determinant_along_path(
     """
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)
-    D, D_w, S, noise = determinant_from_parts(w, coefficients, parts)
+    D, D_w, S, rounding_error = determinant_from_parts(w, coefficients, parts)
     even = parts[0]
     T_p, N_p, _, G_p, _, X_p, _ = coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
     N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
     M_p = T_p * w - N_p
     square_p = w * (G_p + X_p * w)
-    along = T_p * even.s + 4 * (G_p + 2 * X_p * w) * even.d
-    along += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (T * even.d_M + 4 * N * even.d_P)
-    return PathDeterminantValue(D, D_w, w / 2 * along, S, noise)
+    p_derivative = T_p * even.s + 4 * (G_p + 2 * X_p * w) * even.d
+    p_derivative += M_p * (T * even.s_M + 4 * N * even.d_M) + 4 * square_p * (T * even.d_M + 4 * N * even.d_P)
+    return PathDeterminantValue(D, D_w, w / 2 * p_derivative, S, rounding_error)

@@ -73,8 +73,8 @@ class PlaneAxis:
         """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
         parameter.
         """
-        along = self.parameter_per_coordinate(value)
-        return -along / value**2 if PARAMETERS[self.name].has_inverse_coordinate else along
+        parameter_rate = self.parameter_per_coordinate(value)
+        return -parameter_rate / value**2 if PARAMETERS[self.name].has_inverse_coordinate else parameter_rate
 
 
 class ValueOnPlane(NamedTuple):
@@ -106,18 +106,18 @@ class Plane:
     def rod_at(self, x: float, y: float) -> Rod:
         """The rod at scaled coordinates (x, y). Raises ValueError if the rod is invalid, for example
         crushed."""
-        first, second = self.axes
-        return self.rod.with_values(**{first.name: first.value(x), second.name: second.value(y)})
+        first, D_ww = self.axes
+        return self.rod.with_values(**{first.name: first.value(x), D_ww.name: D_ww.value(y)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
         if not self.are_rods_uniform_and_linear:
             return self._determinant_of_arms(w, x, y)
-        (D, D_w, _, S, noise), D_x = self._determinant_along_axis(w, rod, self.axes[0])
+        (D, D_w, _, S, rounding_error), D_x = self._determinant_along_axis(w, rod, self.axes[0])
         _, D_y = self._determinant_along_axis(w, rod, self.axes[1])
         # The rounding errors of w, x and y add to the rounding error of D.
-        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
@@ -130,32 +130,32 @@ class Plane:
         )
 
     def difference_stencil(
-        self, x: float, y: float, which: int
+        self, x: float, y: float, axis_index: int
     ) -> tuple[tuple[tuple[float, float], ...], float]:
-        """Returns (stencil, step) of a difference along axis number `which`, 0 or 1, at scaled coordinates
-        (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
+        """Returns (stencil, step) of a difference along axis number `axis_index`, 0 or 1, at scaled
+        coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
         """
-        h = self.difference_step_at(x, y, which, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
-        back = (x - 2 * h, y) if which == 0 else (x, y - 2 * h)
-        return (CENTRAL_STENCIL if self.is_valid_at(*back) else ONE_SIDED_STENCIL), h
+        h = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
+        two_steps_back = (x - 2 * h, y) if axis_index == 0 else (x, y - 2 * h)
+        return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), h
 
     def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
         differences.
         """
-        D, D_w, S, noise = self.determinant_value(w, x, y)
+        D, D_w, S, rounding_error = self.determinant_value(w, x, y)
         slopes = []
-        for which in range(2):
-            stencil, h = self.difference_stencil(x, y, which)
+        for axis_index in range(2):
+            stencil, h = self.difference_stencil(x, y, axis_index)
             slope = 0j
             for offset, weight in stencil:
                 neighbour = self.determinant_value(
-                    w, *((x + offset * h, y) if which == 0 else (x, y + offset * h))
+                    w, *((x + offset * h, y) if axis_index == 0 else (x, y + offset * h))
                 )
                 slope += weight * neighbour.D * exp(neighbour.S - S) / h
             slopes.append(slope)
         D_x, D_y = slopes
-        rounding = noise + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
+        rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))
         return ValueOnPlane(D, D_w, D_x, D_y, S, rounding)
 
     @staticmethod
@@ -168,21 +168,21 @@ class Plane:
         value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
         return value, value.D_p * axis.path_variable_per_coordinate(getattr(rod, axis.name))
 
-    def difference_step_at(self, x: float, y: float, which: int, largest: float) -> float:
-        """A difference step along axis number `which` at (x, y): the smaller of `largest` and the fraction
-        `max_step_over_crushing_distance` of the distance to a crushed rod. The step is `largest` if no value
-        on the axis crushes the rod.
+    def difference_step_at(self, x: float, y: float, axis_index: int, max_step: float) -> float:
+        """A difference step along axis number `axis_index` at (x, y): the smaller of `max_step` and the
+        fraction `max_step_over_crushing_distance` of the distance to a crushed rod. The step is `max_step` if
+        no value on the axis crushes the rod.
         """
         rod = self.rod_at(x, y)
-        axis = self.axes[which]
+        axis = self.axes[axis_index]
         force = rod.crushing_force
         if force == inf or axis.name not in (*CRUSHING_PARAMETERS, "taper"):
-            return largest
+            return max_step
         # The crushing force is proportional to k1 and quadratic in the taper, like the area.
         rate = {"F": 1.0, "k1": force / rod.k1}.get(axis.name, 2 * force / rod.taper)
         slope = rate * axis.parameter_per_coordinate(getattr(rod, axis.name))
         return min(
-            largest, PLANE_DIFFERENCE_SETTINGS.max_step_over_crushing_distance * (force - rod.F) / slope
+            max_step, PLANE_DIFFERENCE_SETTINGS.max_step_over_crushing_distance * (force - rod.F) / slope
         )
 
     def is_valid_at(self, x: float, y: float) -> bool:

@@ -88,32 +88,32 @@ class Boundary:
         `residual_and_jacobian`.
         """
         v = guess.copy()
-        last = math.inf
+        previous_size = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):
             try:
                 residual, jacobian, rounding = self.residual_and_jacobian(v)
             except (ValueError, ArithmeticError):
                 return None
             matrix = np.vstack([jacobian, normal])
-            right = np.append(-residual, -normal @ (v - guess))
+            right_side = np.append(-residual, -normal @ (v - guess))
             if (
                 not np.isfinite(matrix).all()
                 or abs(np.linalg.det(matrix)) < BOUNDARY_POINT_SETTINGS.min_jacobian_determinant
             ):
                 return None
             inverse = np.linalg.inv(matrix)
-            step = inverse @ right
+            step = inverse @ right_side
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
             size = float(np.abs(step).max())
             v = v + step
             if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
                 size < BOUNDARY_POINT_SETTINGS.stagnant_step
-                and size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * last
+                and size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
             ):
                 return BoundarySolution(v, jacobian, max(error, size))
             if size > BOUNDARY_POINT_SETTINGS.max_step or not np.isfinite(v).all():
                 return None
-            last = size
+            previous_size = size
         return None
 
     def _hopf_equations(self, v: Array) -> tuple[Array, Array, float]:
@@ -129,10 +129,10 @@ class Boundary:
         """`residual_and_jacobian` of double eigenvalues at v = (x, y, h): D = 0 and w D_w = 0 at the real w =
         sign exp(h)."""
         w = self._real_eigenvalue(v)
-        here = self.plane.determinant(w, v[0], v[1])
-        slope = (w * here.D_w).real  # w D_w = dD/dh
+        value = self.plane.determinant(w, v[0], v[1])
+        slope = (w * value.D_w).real  # w D_w = dD/dh
         jacobian = np.empty((2, 3))
-        jacobian[0] = here.D_x.real, here.D_y.real, slope
+        jacobian[0] = value.D_x.real, value.D_y.real, slope
         for i in range(3):
             stencil, h = (
                 self.plane.difference_stencil(v[0], v[1], i)
@@ -146,10 +146,10 @@ class Boundary:
                 shifted = v + step
                 w = self._real_eigenvalue(shifted)
                 neighbour = self.plane.determinant_value(w, shifted[0], shifted[1])
-                jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - here.S) / h
+                jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - value.S) / h
         scale = np.abs(jacobian).max(axis=1)
-        residual = np.array([here.D.real, slope]) / scale
-        return residual, jacobian / scale[:, None], float(here.rounding_error / scale.min())
+        residual = np.array([value.D.real, slope]) / scale
+        return residual, jacobian / scale[:, None], float(value.rounding_error / scale.min())
 
     def _real_eigenvalue(self, v: Array) -> complex:
         """The real eigenvalue w = sign exp(h) at v = (x, y, h)."""

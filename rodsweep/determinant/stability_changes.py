@@ -51,22 +51,22 @@ CoefficientsAlongForce = tuple[Coefficients, Coefficients]
 
 
 def onset_between(
-    rods: CoefficientsAlongForce, ends: tuple[float, float], before: Complex, after: Complex
+    rods: CoefficientsAlongForce, ends: tuple[float, float], before_w: Complex, after_w: Complex
 ) -> StabilityChange | None:
     """The double real eigenvalue between the two forces `ends`; None if Newton's method does not find it.
 
-    before, after: leading eigenvalues at the first and second force, (modes,). The two leading eigenvalues
-    are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost linear in F; Newton's
-    method starts at its zero.
+    before_w, after_w: leading eigenvalues at the first and second force, (modes,). The
+    two leading eigenvalues are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost
+    linear in F; Newton's method starts at its zero.
     """
     low, high = ends
-    first = before[0].item()  # Python's numbers, for speed
-    second = before[1].item()
-    pair = after[0].item()
-    gap = ((first.real - second.real) / 2) ** 2
-    rise = pair.imag**2
-    guess = low + (high - low) * gap / (gap + rise)
-    centre = ((first.real + second.real) / 2 + pair.real) / 2
+    first_w = before_w[0].item()  # Python's numbers, for speed
+    second_w = before_w[1].item()
+    complex_w = after_w[0].item()
+    squared_half_gap = ((first_w.real - second_w.real) / 2) ** 2
+    squared_frequency = complex_w.imag**2
+    guess = low + (high - low) * squared_half_gap / (squared_half_gap + squared_frequency)
+    centre = ((first_w.real + second_w.real) / 2 + complex_w.real) / 2
     zero = double_eigenvalue_newton(centre, guess, *rods, high - low)
     if not low <= zero.p <= high:
         return None
@@ -74,40 +74,51 @@ def onset_between(
 
 
 def stability_change_between(
-    rods: CoefficientsAlongForce, ends: tuple[float, float], before: Complex, after: Complex, unstable: int
+    rods: CoefficientsAlongForce,
+    ends: tuple[float, float],
+    before_w: Complex,
+    after_w: Complex,
+    unstable_count: int,
 ) -> StabilityChange | None:
     """The loss or return of stability between the two forces `ends`: the first crossing if stability is lost,
     the last crossing if stability returns.
 
-    before, after: leading eigenvalues at the first and second force, (modes,). unstable: number of growing
-    modes at the unstable force. Returns None unless the number of crossings found is unstable/2.
+    before_w, after_w: leading eigenvalues at the first and second force, (modes,).
+    unstable_count: number of growing modes at the unstable force. Returns None unless the number of crossings
+    found is unstable_count/2.
     """
-    zeros = sorted(crossings_between(*ends, before, after, *rods).tolist())
-    if not zeros or 2 * len(zeros) != unstable:
+    zeros = sorted(crossings_between(*ends, before_w, after_w, *rods).tolist())
+    if not zeros or 2 * len(zeros) != unstable_count:
         return None
-    destabilises = after[0].real > 0
-    F, eta, error = zeros[0 if destabilises else -1]
-    return StabilityChange("hopf" if destabilises else "restabilization", F, error, 0.0, eta)
+    loses_stability = after_w[0].real > 0
+    F, eta, error = zeros[0 if loses_stability else -1]
+    return StabilityChange("hopf" if loses_stability else "restabilization", F, error, 0.0, eta)
 
 
 @compiled
 def crossings_between(
-    low: float, high: float, before: Complex, after: Complex, origin: Coefficients, direction: Coefficients
+    low: float,
+    high: float,
+    before_w: Complex,
+    after_w: Complex,
+    origin: Coefficients,
+    direction: Coefficients,
 ) -> Array:
     """Array of (F, frequency, error of F), (n, 3), of all distinct zeros of D(i eta; F) that Newton's method
     finds.
 
-    before, after: eigenvalues at the forces `low` and `high`, (modes,). origin, direction: coefficients at
-    F = 0 and their derivative by F. Newton's method starts from all frequencies of these eigenvalues at three
-    forces: `low`, `high`, and the zero of the linear interpolant of the leading growth rate.
+    before_w, after_w: eigenvalues at the forces `low` and `high`, (modes,). origin,
+    direction: coefficients at F = 0 and their derivative by F. Newton's method starts from all frequencies of
+    these eigenvalues at three forces: `low`, `high`, and the zero of the linear interpolant of the leading
+    growth rate.
     """
-    a = before[0].real
-    b = after[0].real
-    chord = low + (high - low) * a / (a - b)
-    found = np.empty((3 * (len(before) + len(after)), 3))
+    first_growth = before_w[0].real
+    last_growth = after_w[0].real
+    interpolated_F = low + (high - low) * first_growth / (first_growth - last_growth)
+    crossings = np.empty((3 * (len(before_w) + len(after_w)), 3))
     n = 0
-    for F in (chord, low, high):
-        for eigenvalues in (before, after):
+    for F in (interpolated_F, low, high):
+        for eigenvalues in (before_w, after_w):
             for w in eigenvalues:
                 if not w.imag > 0:
                     continue
@@ -116,14 +127,14 @@ def crossings_between(
                     continue
                 is_new = True
                 for i in range(n):
-                    same_F = abs(zero.p - found[i, 0]) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (
-                        1 + abs(found[i, 0])
-                    )
+                    same_F = abs(
+                        zero.p - crossings[i, 0]
+                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(crossings[i, 0]))
                     same_eta = abs(
-                        zero.eta_or_x - found[i, 1]
-                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(found[i, 1]))
+                        zero.eta_or_x - crossings[i, 1]
+                    ) <= STABILITY_CHANGE_SETTINGS.same_crossing_distance * (1 + abs(crossings[i, 1]))
                     is_new = is_new and not (same_F and same_eta)
                 if is_new:
-                    found[n] = zero.p, zero.eta_or_x, zero.error_of_p
+                    crossings[n] = zero.p, zero.eta_or_x, zero.error_of_p
                     n += 1
-    return found[:n]
+    return crossings[:n]

@@ -94,31 +94,38 @@ def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantVal
 @compiled
 def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSum) -> DeterminantValue:
     """D and dD/dw times exp(-S) at w. parts: result of `even_parts` at w."""
-    even, total, noise = parts
+    even, even_sum, rounding_error = parts
     F, nu, c2, gamma3 = coefficients
     T = c2 + gamma3
     X = c2 * gamma3
     # d(P^2)/dw.
     N = (nu + F * c2) * nu + 2 * X * w
     slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
-    return DeterminantValue(math.exp(-even.S) + w / 2 * total, (total + w * slope) / 2, even.S, noise)
+    return DeterminantValue(
+        math.exp(-even.S) + w / 2 * even_sum, (even_sum + w * slope) / 2, even.S, rounding_error
+    )
 
 
 @compiled
-def second_difference(after: DeterminantValue, before: DeterminantValue, S: float, h: float) -> complex:
-    """D'' exp(-S) by the central difference of D' between w + h (`after`) and w - h (`before`)."""
+def second_difference(
+    value_after: DeterminantValue, value_before: DeterminantValue, S: float, h: float
+) -> complex:
+    """D'' exp(-S) by the central difference of D' between w + h (`value_after`) and w - h
+    (`value_before`)."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
-    return (after.D_w * math.exp(after.S - S) - before.D_w * math.exp(before.S - S)) / (2 * h)
+    return (
+        value_after.D_w * math.exp(value_after.S - S) - value_before.D_w * math.exp(value_before.S - S)
+    ) / (2 * h)
 
 
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
     h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
-    after = scaled_determinant(w + h, coefficients)
-    before = scaled_determinant(w - h, coefficients)
-    second = second_difference(after, before, S, h)
-    return complex(second.real, 0.0) if w.imag == 0 else second
+    value_after = scaled_determinant(w + h, coefficients)
+    value_before = scaled_determinant(w - h, coefficients)
+    D_ww = second_difference(value_after, value_before, S, h)
+    return complex(D_ww.real, 0.0) if w.imag == 0 else D_ww
 
 
 @compiled
@@ -127,11 +134,11 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
 
     The estimate is accurate if the two eigenvalues are close.
     """
-    here = scaled_determinant(w, coefficients)
+    value = scaled_determinant(w, coefficients)
     return (
         2
-        * abs(here.D_w)
-        / max(abs(second_derivative(w, here.S, coefficients)), EXPONENT_SETTINGS.least_divisor)
+        * abs(value.D_w)
+        / max(abs(second_derivative(w, value.S, coefficients)), EXPONENT_SETTINGS.least_divisor)
     )
 
 
@@ -144,9 +151,9 @@ def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tupl
     which an exponent of D changes by 1; `error` is valid only well below `length`. wave number: bound, in
     1/L, of |q| in the exponentials exp(+-q u) of an eigenfunction at w (Sec. VI).
     """
-    value, slope, _, noise = scaled_determinant(w, coefficients)
+    value, slope, _, rounding_error = scaled_determinant(w, coefficients)
     # |D| far below its rounding error is accidental and does not mean a smaller error of w.
-    error = max(abs(value), DETERMINANT_SETTINGS.typical_noise * noise) / max(
+    error = max(abs(value), DETERMINANT_SETTINGS.typical_noise * rounding_error) / max(
         abs(slope), EXPONENT_SETTINGS.least_divisor
     )
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
@@ -155,5 +162,5 @@ def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tupl
     drag = coefficients.c2 + coefficients.gamma3
     # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
-    fast = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
-    return error, 2 / max(fast, EXPONENT_SETTINGS.least_divisor), (root_plus + root_minus) / 2
+    max_rate = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
+    return error, 2 / max(max_rate, EXPONENT_SETTINGS.least_divisor), (root_plus + root_minus) / 2

@@ -99,9 +99,9 @@ class ArmAlongPath:
             # Near a double eigenvalue the interpolation errors of the family are magnified.
             if error <= ROOT_SETTINGS.double_root_correction * abs(w):
                 return w, slope, error
-        here = self.determinant(p)
-        w, error = refine_eigenvalue_and_error(guess, here)
-        value = here.value(w)
+        determinant = self.determinant(p)
+        w, error = refine_eigenvalue_and_error(guess, determinant)
+        value = determinant.value(w)
         return w, -self.derivative_by_p(w, p, value.S) / value.D_w, error
 
     def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
@@ -113,12 +113,12 @@ class ArmAlongPath:
             slope += weight * neighbour.D * math.exp(neighbour.S - S)
         return slope / h
 
-    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        reach: expected distance of p from the guess. Returns `FAILED_ZERO` if p moves by more than twice
-        `reach` or to no valid arm, if the sign of x changes, if the Jacobian is singular, or without
-        convergence.
+        expected_distance: expected distance of p from the guess. Returns `FAILED_ZERO` if p moves by more
+        than twice `expected_distance` or to no valid arm, if the sign of x changes, if the Jacobian is
+        singular, or without convergence.
         """
         start = x
         first = p
@@ -128,12 +128,12 @@ class ArmAlongPath:
         for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
             family = self._usable_family(x, p) if uses_families else None
             if uses_families or jacobian is None:
-                jacobian = self._jacobian(x, p, reach)
+                jacobian = self._jacobian(x, p, expected_distance)
             step = self._newton_step(x, p, jacobian, family)
             x += step.in_x
             p += step.in_p
             # Negated comparisons are also true for NaN.
-            if not abs(p - first) <= 2 * reach or not x * start > 0 or not self._is_valid_at(p):
+            if not abs(p - first) <= 2 * expected_distance or not x * start > 0 or not self._is_valid_at(p):
                 return FAILED_ZERO
             if step.is_converged(last):
                 if family is None:
@@ -144,12 +144,13 @@ class ArmAlongPath:
             last = abs(step.in_x)
         return FAILED_ZERO
 
-    def _jacobian(self, x: float, p: float, reach: float) -> _DoubleEigenvalueJacobian:
-        """Derivatives of D and D_w at real w = x and p, by differences; reach: see `double_eigenvalue`."""
+    def _jacobian(self, x: float, p: float, expected_distance: float) -> _DoubleEigenvalueJacobian:
+        """Derivatives of D and D_w at real w = x and p, by differences; expected_distance: see
+        `double_eigenvalue`."""
         S = self._determinant_value(x, p).S
         h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
         D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
-        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * reach)
+        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * expected_distance)
         samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
         D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
         return _DoubleEigenvalueJacobian(S, D_p, D_ww, D_wp)
@@ -174,10 +175,10 @@ class ArmAlongPath:
         rounding = rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
         total_rounding = rounding + ROUND_OFF * abs(p * D_p)
         rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
-        in_x = (D_p * D_w - D_wp * D) / cross
-        in_p = (D_ww * D - D_w * D_w) / cross
+        x_step = (D_p * D_w - D_wp * D) / cross
+        p_step = (D_ww * D - D_w * D_w) / cross
         e_x = (total_rounding * abs(D_wp) + rounding_of_slope * abs(D_p)) / abs(cross)
-        return _DoubleEigenvalueStep(in_x, in_p, e_x, total_rounding * abs(D_ww) / abs(cross))
+        return _DoubleEigenvalueStep(x_step, p_step, e_x, total_rounding * abs(D_ww) / abs(cross))
 
     def _usable_family(self, x: float, p: float) -> ArmFamily | None:
         """The family of arms that contains p, if it is valid at w = x; else None."""
@@ -197,14 +198,14 @@ class ArmAlongPath:
         scale = math.exp(value.S - S)
         return value.D.real * scale, value.D_w.real * scale
 
-    def _difference_stencil(self, p: float, largest: float) -> tuple[tuple[tuple[int, float], ...], float]:
+    def _difference_stencil(self, p: float, max_step: float) -> tuple[tuple[tuple[int, float], ...], float]:
         """Returns (stencil, step) of a difference by p. stencil: pairs (offset in steps, weight times step).
-        step: at most `largest`.
+        step: at most `max_step`.
 
         The step is shortened, at most `max_step_divisions` times, until both neighbouring arms are valid: not
         crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
         """
-        step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), largest)
+        step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), max_step)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE_STENCIL, step
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_step_divisions):

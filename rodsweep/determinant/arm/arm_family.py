@@ -73,23 +73,23 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
     """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are
     not smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm,
     and FloatingPointError if no elements resolve an arm."""
-    for number, share in ARM_FAMILY_SETTINGS.trials():
-        scale = share * (high - low)
-        arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, number).tolist()]
+    for node_count, tail_fraction in ARM_FAMILY_SETTINGS.trials():
+        scale = tail_fraction * (high - low)
+        arms = [path.rod_at(value) for value in _interpolation_points(low, high, scale, node_count).tolist()]
         samples = coefficient_samples(arms)
         # What the coefficients along the arm do not resolve, the propagators made of them cannot.
         if not _series_converges(samples):
             continue
-        found = elements_for(arms, samples, W)
-        entries = len(found.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
+        elements = elements_for(arms, samples, W)
+        entries = len(elements.lengths) * ARM_ELEMENT_SETTINGS.max_terms * PADDED
         if entries > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
-        values = element_propagators([rod.F for rod in arms], found.local, found.lengths, W)
+        values = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
         if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
-            coefficients = np.tensordot(_chebyshev_coefficient_matrix(number), values, 1)
+            coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), values, 1)
             # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
-            largest = np.abs(values).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
-            sizes = np.stack([largest[:, 0], largest[:, 1:].sum(axis=1)], axis=1)
+            largest_entry = np.abs(values).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
+            sizes = np.stack([largest_entry[:, 0], largest_entry[:, 1:].sum(axis=1)], axis=1)
             return ArmFamily(low, high, scale, W, np.ascontiguousarray(coefficients), sizes)
     return None
 
@@ -97,8 +97,8 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
 def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm."""
-    for number, share in reversed(ARM_FAMILY_SETTINGS.trials()):
-        p = _interpolation_points(low, high, share * (high - low), number)
+    for node_count, tail_fraction in reversed(ARM_FAMILY_SETTINGS.trials()):
+        p = _interpolation_points(low, high, tail_fraction * (high - low), node_count)
         if _series_converges(coefficient_samples([path.rod_at(value) for value in p.tolist()])):
             return True
     return False
@@ -106,13 +106,13 @@ def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
 
 def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    tail = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail
-    return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tail)
+    tolerance = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail
+    return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
 
 
-def _interpolation_points(low: float, high: float, scale: float, number: int) -> Array:
-    """Increasing values of p, low to high, of the interpolated arms, (number,); scale: see `ArmFamily`."""
-    t = (chebyshev_points(number) + 1) / 2
+def _interpolation_points(low: float, high: float, scale: float, count: int) -> Array:
+    """Increasing values of p, low to high, of the interpolated arms, (count,); scale: see `ArmFamily`."""
+    t = (chebyshev_points(count) + 1) / 2
     if scale < LINEAR_SCALE:
         t = np.expm1(t * math.log1p((high - low) / scale)) * scale / (high - low)
     # Beyond the interval, by rounding, the model may have no arm.
@@ -123,10 +123,10 @@ def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
     """Whether the last two Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:,
     i]|.
     """
-    others = tuple(range(2, values.ndim))
+    other_dimensions = tuple(range(2, values.ndim))
     last = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
-    size = np.abs(values).max(axis=(0, *others))
-    return bool((np.abs(last).max(axis=(0, *others)) <= tolerance * size).all())
+    size = np.abs(values).max(axis=(0, *other_dimensions))
+    return bool((np.abs(last).max(axis=(0, *other_dimensions)) <= tolerance * size).all())
 
 
 @cache

@@ -82,30 +82,29 @@ class Remainder(NamedTuple):
 
 
 def prove_complete(
-    line: float, known: Complex, error: Array, determinant: ArmDeterminant, hull: EigenvalueHull
+    line: float, known: Complex, errors: Array, determinant: ArmDeterminant, hull: EigenvalueHull
 ) -> tuple[bool, int]:
     """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    line: if positive, or if no hull exists, nothing is proved. known, error: known eigenvalues and their
-    absolute errors, (n,) each. Complex eigenvalues without their conjugate in `known` are treated as unknown.
-    Raises FloatingPointError if no elements resolve the arm.
+    line: if positive, or if no hull exists, nothing is proved. known, errors: known eigenvalues and their
+    absolute errors, (n,) each. Eigenvalues whose conjugate is not in `known` are treated as unknown. Raises
+    FloatingPointError if no elements resolve the arm.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
     # R must be real: an eigenvalue without its conjugate stays among the unknown ones.
     pairs = has_conjugate(known)
-    largest = float(np.abs(known).max())
-    examined = 0
-    for k, farthest in COMPLETENESS_SETTINGS.proof_trials():
+    largest_w = float(np.abs(known).max())
+    examined_count = 0
+    for k, max_ratio in COMPLETENESS_SETTINGS.proof_trials():
         points = points_right_of_hull(line, hull.a, hull.c, k)
-        if _last_proof_point(points) <= farthest * largest:
-            found = remainder_of_sum(
-                line, known[pairs], error[pairs], hull, points, determinant.propagators_for(points[-1])
-            )
-            examined += k
-            if proves_completeness(found):
-                return True, examined
-    return False, examined
+        if _last_proof_point(points) <= max_ratio * largest_w:
+            propagators = determinant.propagators_for(points[-1])
+            remainder = remainder_of_sum(line, known[pairs], errors[pairs], hull, points, propagators)
+            examined_count += k
+            if proves_completeness(remainder):
+                return True, examined_count
+    return False, examined_count
 
 
 def has_conjugate(known: Complex) -> Array:
@@ -118,10 +117,11 @@ def largest_w_of_proof(line: float, hull: EigenvalueHull, known: Complex) -> flo
     """Largest |w| at which the first possible trial of `prove_complete` evaluates D; inf if no trial is
     possible. line: Re w of the vertical line. known: known eigenvalues, (n,).
     """
-    largest = float(np.abs(known).max())
-    trials = COMPLETENESS_SETTINGS.proof_trials()
-    tried = ((_last_proof_point(points_right_of_hull(line, hull.a, hull.c, k)), most) for k, most in trials)
-    return next((last for last, most in tried if last <= most * largest), math.inf)
+    largest_w = float(np.abs(known).max())
+    for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
+        if (last := _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))) <= ratio * largest_w:
+            return last
+    return math.inf
 
 
 def cheapest_proof(line: float, hull: EigenvalueHull, known: Complex, modes: int) -> tuple[int, float]:
@@ -130,16 +130,16 @@ def cheapest_proof(line: float, hull: EigenvalueHull, known: Complex, modes: int
     line: Re w of the vertical line. known: approximate eigenvalues, (n,), leading first. The cheapest proof
     has the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible.
     """
-    best = 0, math.inf
+    cheapest = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known)).tolist()
-    whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
-    for k, farthest in COMPLETENESS_SETTINGS.proof_trials():
+    ends_whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
+    for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         last = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
-        for number in range(modes, len(sizes) + 1):
-            largest = sizes[number - 1]
-            if last <= farthest * largest and max(last, largest) < best[1] and whole[number - 1]:
-                best = number, max(last, largest)
-    return best
+        for count in range(modes, len(sizes) + 1):
+            largest_w = sizes[count - 1]
+            if last <= ratio * largest_w and max(last, largest_w) < cheapest[1] and ends_whole[count - 1]:
+                cheapest = count, max(last, largest_w)
+    return cheapest
 
 
 def _last_proof_point(points: Array) -> float:
@@ -148,13 +148,13 @@ def _last_proof_point(points: Array) -> float:
 
 
 @compiled
-def proves_completeness(found: Remainder) -> bool:
+def proves_completeness(remainder: Remainder) -> bool:
     """Whether R excludes an unknown eigenvalue right of the line.
 
     False also if R is far below 0: some known eigenvalue is then not a root of D.
     """
-    allowed = COMPLETENESS_SETTINGS.max_remainder * found.least_contribution
-    return found.R + found.rounding < allowed and -allowed < found.R
+    max_remainder = COMPLETENESS_SETTINGS.max_remainder * remainder.least_contribution
+    return remainder.R + remainder.rounding < max_remainder and -max_remainder < remainder.R
 
 
 @compiled
@@ -230,21 +230,21 @@ def remainder_of_sum(
 def _least_term_right_of(line: float, points: Array, a: float, c: float) -> float:
     """Lower bound of Re phi at real w, and of 2 Re phi at complex w, in the hull (a, c) right of the line."""
     b = 1 - c
-    right = max(a * a / (4 * b), line)
-    least = 1.0
+    rightmost = max(a * a / (4 * b), line)
+    lower_bound = 1.0
     for x in points:
-        least /= x - line
+        lower_bound /= x - line
     for i in range(COMPLETENESS_SETTINGS.strip_count):
-        start = line + (right - line) * i / COMPLETENESS_SETTINGS.strip_count
-        stop = line + (right - line) * (i + 1) / COMPLETENESS_SETTINGS.strip_count
+        start = line + (rightmost - line) * i / COMPLETENESS_SETTINGS.strip_count
+        stop = line + (rightmost - line) * (i + 1) / COMPLETENESS_SETTINGS.strip_count
         depth = max(-start, 0.0)
         n = (a + math.sqrt(a * a + 4 * b * depth)) / (2 * b)
         height = a * n + c * n * n
-        size = 1.0
-        turn = 0.0
+        modulus = 1.0
+        angle_sum = 0.0
         for x in points:
-            size /= math.hypot(x - start, height)
-            turn += math.atan2(height, x - stop)
+            modulus /= math.hypot(x - start, height)
+            angle_sum += math.atan2(height, x - stop)
         # Off the real axis both eigenvalues of a conjugate pair contribute.
-        least = min(least, 2 * size * math.cos(turn) if turn < math.pi / 2 else 0.0)
-    return least
+        lower_bound = min(lower_bound, 2 * modulus * math.cos(angle_sum) if angle_sum < math.pi / 2 else 0.0)
+    return lower_bound

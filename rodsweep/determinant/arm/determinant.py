@@ -33,13 +33,15 @@ class ArmDeterminant:
     elements do not resolve the arm.
     """
 
-    def __init__(self, rod: Rod, known: PropagatorsUpToW | None = None):
+    def __init__(self, rod: Rod, propagator_set: PropagatorsUpToW | None = None):
         self.rod = rod
-        self._known_propagators: list[PropagatorsUpToW] = [] if known is None else [known]
-        points, weights, local = sampled_arm(rod)
-        self.samples = arm_samples(float(rod.F), local, weights)
-        each = LocalCoefficients(*(x[None] for x in local))
-        self._coefficient_samples = CoefficientSamples(points, each, self.samples.squares[:, None])
+        self._known_propagators: list[PropagatorsUpToW] = [] if propagator_set is None else [propagator_set]
+        points, weights, coefficients = sampled_arm(rod)
+        self.samples = arm_samples(float(rod.F), coefficients, weights)
+        with_arm_dimension = LocalCoefficients(*(x[None] for x in coefficients))
+        self._coefficient_samples = CoefficientSamples(
+            points, with_arm_dimension, self.samples.squares[:, None]
+        )
 
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
@@ -68,29 +70,31 @@ class ArmDeterminant:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
         lengths = np.diff(self.rod.build.breaks)[:, None]
-        local = self.rod.local_coefficients((self.rod.build.breaks[:-1, None] + lengths * points).ravel())
-        return arm_samples(float(self.rod.F), local, (lengths * weights).ravel())
+        coefficients = self.rod.local_coefficients(
+            (self.rod.build.breaks[:-1, None] + lengths * points).ravel()
+        )
+        return arm_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
 
-    def propagators_for(self, size: float, highest: float | None = None) -> PropagatorsUpToW:
-        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= size.
+    def propagators_for(self, min_W: float, max_ratio: float | None = None) -> PropagatorsUpToW:
+        """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= min_W.
 
-        Existing propagators with the smallest such W are reused if W <= highest * size; otherwise new
-        propagators are made. highest: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
+        Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise new
+        propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
         """
-        highest = ARM_ELEMENT_SETTINGS.max_reuse_ratio if highest is None else highest
-        size = max(size, ARM_ELEMENT_SETTINGS.min_W)
+        max_ratio = ARM_ELEMENT_SETTINGS.max_reuse_ratio if max_ratio is None else max_ratio
+        min_W = max(min_W, ARM_ELEMENT_SETTINGS.min_W)
         for level in self._known_propagators:
-            if size <= level[0] <= highest * size:
+            if min_W <= level[0] <= max_ratio * min_W:
                 return level
-        W = ARM_ELEMENT_SETTINGS.W_reserve_factor * size
-        made = W, self._propagators(W)
-        self._known_propagators = sorted([*self._known_propagators, made], key=itemgetter(0))
-        return made
+        W = ARM_ELEMENT_SETTINGS.W_reserve_factor * min_W
+        propagator_set = W, self._propagators(W)
+        self._known_propagators = sorted([*self._known_propagators, propagator_set], key=itemgetter(0))
+        return propagator_set
 
     def _propagators(self, W: float) -> Array:
         """Propagators that are valid for |w| <= W, (elements, terms, PADDED), computed anew."""
-        found = elements_for([self.rod], self._coefficient_samples, W)
-        return element_propagators([self.rod.F], found.local, found.lengths, W)[0]
+        elements = elements_for([self.rod], self._coefficient_samples, W)
+        return element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
 
 
 class CoefficientSamples(NamedTuple):
@@ -117,9 +121,9 @@ class PropagatorElements(NamedTuple):
 def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
     """Samples of the arms `rods`, whose profiles have equal breaks."""
     points, weights, _ = sampled_arm(rods[0])
-    local = Rod.local_coefficients_of_rods(rods, points)
+    coefficients = Rod.local_coefficients_of_rods(rods, points)
     forces = np.array([[rod.F] for rod in rods])
-    return CoefficientSamples(points, local, arm_samples(forces, local, weights).squares)
+    return CoefficientSamples(points, coefficients, arm_samples(forces, coefficients, weights).squares)
 
 
 def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:
@@ -134,13 +138,17 @@ def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> Prop
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:
             break
         lengths = edges[1:] - edges[:-1]
-        local = np.array(Rod.local_coefficients_of_rods(rods, edges[:-1, None] + lengths[:, None] * points))
-        finer = halved_where_coarse(edges, local)
-        if finer is edges:
-            return PropagatorElements(lengths, local)
-        edges = finer
-    most = ARM_ELEMENT_SETTINGS.max_elements
-    raise FloatingPointError(f"D of this arm at |w| = {W:g} needs more than the maximum of {most} elements")
+        coefficients = np.array(
+            Rod.local_coefficients_of_rods(rods, edges[:-1, None] + lengths[:, None] * points)
+        )
+        halved_edges = halved_where_coarse(edges, coefficients)
+        if halved_edges is edges:
+            return PropagatorElements(lengths, coefficients)
+        edges = halved_edges
+    max_elements = ARM_ELEMENT_SETTINGS.max_elements
+    raise FloatingPointError(
+        f"D of this arm at |w| = {W:g} needs more than the maximum of {max_elements} elements"
+    )
 
 
 @lru_cache(maxsize=ARM_ELEMENT_SETTINGS.max_cached_arms)

@@ -19,37 +19,37 @@ from .value import determinant_along_chain, path_value_by_chain
 
 
 @compiled
-def write_propagators(family: ArmFamily, p: float, polynomials: Array, changes: Array) -> None:
+def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivatives: Array) -> None:
     """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
     (elements, terms, PADDED).
     """
     half = (family.p_high - family.p_low) / 2
     t = (p - (family.p_low + family.p_high) / 2) / half
     if family.scale < LINEAR_SCALE:
-        whole = math.log1p(2 * half / family.scale)
-        t = 2 * math.log1p((p - family.p_low) / family.scale) / whole - 1
-        half = (p - family.p_low + family.scale) * whole / 2
+        log_width = math.log1p(2 * half / family.scale)
+        t = 2 * math.log1p((p - family.p_low) / family.scale) / log_width - 1
+        half = (p - family.p_low + family.scale) * log_width / 2
     nodes = len(family.coefficients)
     T = np.empty(nodes)
     rates = np.empty(nodes)
     # T_0 and T_(-1), as T_(-1) = T_1
-    here = 1.0
-    before = t
+    polynomial = 1.0
+    previous_polynomial = t
     rate = 0.0
-    rate_before = -1.0
+    previous_rate = -1.0
     for k in range(nodes):
-        T[k] = here
+        T[k] = polynomial
         rates[k] = rate / half
         if k == 0:
-            here = t
-            before = 1.0
+            polynomial = t
+            previous_polynomial = 1.0
             rate = 1.0
-            rate_before = 0.0
+            previous_rate = 0.0
         else:
-            rate, rate_before = 2 * here + 2 * t * rate - rate_before, rate
-            here, before = 2 * t * here - before, here
+            rate, previous_rate = 2 * polynomial + 2 * t * rate - previous_rate, rate
+            polynomial, previous_polynomial = 2 * t * polynomial - previous_polynomial, polynomial
     series = family.coefficients.reshape(nodes, -1)
-    _sum_series(series, T, rates, polynomials.reshape(-1), changes.reshape(-1))
+    _sum_series(series, T, rates, polynomials.reshape(-1), p_derivatives.reshape(-1))
 
 
 @compiled_for_vectors
@@ -89,8 +89,8 @@ def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> Determ
     """D and dD/dw times exp(-S) of the arm at p of a family; |w| <= W."""
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
-    changes = np.empty(shape)
-    write_propagators(family, p, polynomials, changes)
+    p_derivatives = np.empty(shape)
+    write_propagators(family, p, polynomials, p_derivatives)
     return determinant_along_chain(w, family.largest_w, polynomials)
 
 
@@ -101,21 +101,24 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     double eigenvalues.
     """
     polynomials = np.empty(family.coefficients.shape[1:])
-    changes = np.empty_like(polynomials)
-    write_propagators(family, p, polynomials, changes)
+    p_derivatives = np.empty_like(polynomials)
+    write_propagators(family, p, polynomials, p_derivatives)
     w = guess
-    last = math.inf
+    previous_step = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = determinant_along_chain(w, family.largest_w, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
             step = complex(step.real, 0.0)
-        if not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * last or abs(w) > family.largest_w:
+        if (
+            not abs(step) < ROOT_NEWTON_SETTINGS.converging_step_ratio * previous_step
+            or abs(w) > family.largest_w
+        ):
             break
-        last = abs(step)
+        previous_step = abs(step)
         w -= step
     W = family.largest_w
-    D, D_w, D_p, S, _ = path_value_by_chain(w, W, polynomials, changes)
+    D, D_w, D_p, S, _ = path_value_by_chain(w, W, polynomials, p_derivatives)
     size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:

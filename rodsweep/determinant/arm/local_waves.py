@@ -28,15 +28,17 @@ class ArmSamples(NamedTuple):
     weights: Array
 
 
-def arm_samples(F: float | Array, local: LocalCoefficients, weights: Array) -> ArmSamples:
+def arm_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ArmSamples:
     """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,).
 
     For n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points).
     """
-    nu, c2, c3, gamma2, gamma3, g = local
+    nu, c2, c3, gamma2, gamma3, g = coefficients
     shear = c2 * gamma2
-    turn = c3 * gamma3
-    return ArmSamples(np.array([shear + turn, F * c3 * g, g * nu * gamma2 * c3, shear * turn]), weights)
+    rotation = c3 * gamma3
+    return ArmSamples(
+        np.array([shear + rotation, F * c3 * g, g * nu * gamma2 * c3, shear * rotation]), weights
+    )
 
 
 @compiled_for_vectors
@@ -58,39 +60,42 @@ def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float
     """Returns (wave number, scale of w) at w. wave number: (|sqrt z+| + |sqrt z-|)/2, a bound of |q|,
     averaged along the arm. scale of w: change of w over which an exponent of D changes by about one,
     1/(average along the arm of the larger |d sqrt(z+-)/dw|)."""
-    number = 0.0
-    fast = 0.0
+    wave_number = 0.0
+    rate_sum = 0.0
     a = w.real
     b = w.imag
     for i in range(len(samples.weights)):
-        drag, load, rate, bend = samples.squares[:, i]
-        x, y = sqrt_in_upper_half_plane(a * (rate + bend * a) - bend * b * b, b * (rate + 2 * bend * a))
-        P = modulus_of_parts(x, y)
-        first = math.sqrt(modulus_of_parts(drag * a - load + 2 * x, drag * b + 2 * y))
-        second = math.sqrt(modulus_of_parts(drag * a - load - 2 * x, drag * b - 2 * y))
-        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-        share = 1 / (max(P, EXPONENT_SETTINGS.least_divisor) * max(P, 1.0, first, second))
-        slope = rate + 2 * bend * a
-        turn = share * (slope * x + 2 * bend * b * y)
-        side = share * (2 * bend * b * x - slope * y)
-        rates = (
-            modulus_of_parts(drag + turn, side) / max(1.0, first),
-            modulus_of_parts(drag - turn, side) / max(1.0, second),
+        linear, constant, square_linear, square_quadratic = samples.squares[:, i]
+        x, y = sqrt_in_upper_half_plane(
+            a * (square_linear + square_quadratic * a) - square_quadratic * b * b,
+            b * (square_linear + 2 * square_quadratic * a),
         )
-        number += samples.weights[i] * (first + second) / 2
-        fast += samples.weights[i] * max(rates[0], rates[1]) / 2
-    return number, 1 / max(fast, EXPONENT_SETTINGS.least_divisor)
+        P = modulus_of_parts(x, y)
+        first_root = math.sqrt(modulus_of_parts(linear * a - constant + 2 * x, linear * b + 2 * y))
+        second_root = math.sqrt(modulus_of_parts(linear * a - constant - 2 * x, linear * b - 2 * y))
+        # Where both squares are close D depends on P^2, which has no branch point, and not on P.
+        inverse_scale = 1 / (max(P, EXPONENT_SETTINGS.least_divisor) * max(P, 1.0, first_root, second_root))
+        slope = square_linear + 2 * square_quadratic * a
+        real_rate = inverse_scale * (slope * x + 2 * square_quadratic * b * y)
+        imag_rate = inverse_scale * (2 * square_quadratic * b * x - slope * y)
+        rates = (
+            modulus_of_parts(linear + real_rate, imag_rate) / max(1.0, first_root),
+            modulus_of_parts(linear - real_rate, imag_rate) / max(1.0, second_root),
+        )
+        wave_number += samples.weights[i] * (first_root + second_root) / 2
+        rate_sum += samples.weights[i] * max(rates[0], rates[1]) / 2
+    return wave_number, 1 / max(rate_sum, EXPONENT_SETTINGS.least_divisor)
 
 
 @compiled
 def mean_wave_numbers_and_w_scales(w: Complex, samples: ArmSamples) -> Array:
     """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as an array, (2,
     n)."""
-    found = np.empty((2, len(w)))
+    results = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.
         if n > 0 and w[n] == w[n - 1].conjugate():
-            found[:, n] = found[:, n - 1]
+            results[:, n] = results[:, n - 1]
         else:
-            found[:, n] = mean_wave_number_and_w_scale(w[n], samples)
-    return found
+            results[:, n] = mean_wave_number_and_w_scale(w[n], samples)
+    return results

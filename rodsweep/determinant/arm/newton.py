@@ -36,10 +36,10 @@ ARM_ROOT_SETTINGS = ArmRootSettings()
 def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
     h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
-    after = determinant_along_chain(w + h, level[0], level[1])
-    before = determinant_along_chain(w - h, level[0], level[1])
-    second = second_difference(after, before, S, h)
-    return complex(second.real, 0.0) if w.imag == 0 else second
+    value_after = determinant_along_chain(w + h, level[0], level[1])
+    value_before = determinant_along_chain(w - h, level[0], level[1])
+    D_ww = second_difference(value_after, value_before, S, h)
+    return complex(D_ww.real, 0.0) if w.imag == 0 else D_ww
 
 
 @compiled
@@ -51,10 +51,10 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: Propagato
     error = e / max(size, EXPONENT_SETTINGS.least_divisor)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
-        second = abs(_second_derivative(w, value.S, level))
-        if size**2 < ROOT_SETTINGS.min_squared_slope * e * second:
-            spread = math.sqrt(2 * e / second)
-            error = min(max(error, spread), size / second + spread)
+        D_ww = abs(_second_derivative(w, value.S, level))
+        if size**2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+            root_distance = math.sqrt(2 * e / D_ww)
+            error = min(max(error, root_distance), size / D_ww + root_distance)
     return error + ROUND_OFF * abs(w)
 
 
@@ -115,16 +115,16 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
 
 
 def refine_eigenvalue_and_error(
-    w: complex, determinant: ArmDeterminant, farthest: float = math.inf
+    w: complex, determinant: ArmDeterminant, max_first_step: float = math.inf
 ) -> tuple[complex, float]:
     """Returns (eigenvalue of an arm near w, error), by Newton's method until rounding error stops the
     convergence.
 
-    A real guess w gives a real eigenvalue. farthest: if the first Newton step is at least this long, w is
-    returned unchanged.
+    A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least this long, w
+    is returned unchanged.
     """
     error = -1.0
-    last = 2 * farthest
+    last = 2 * max_first_step
     while error < 0:
         w, error, last = _newton_from_guess(complex(w), _propagators_at(w, determinant), last)
     return w, error

@@ -31,51 +31,52 @@ T = TypeVar("T")
 
 
 def refine_mesh_eigenvalues(
-    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest: float = 0.0
+    raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest_w: float = 0.0
 ) -> Roots:
-    """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
+    """Roots of an arm's D refined from those eigenvalues `raw` of a mesh, (n,), that approximate
+    a root of D.
 
-    max_q: largest wave number |q| that the mesh resolves. largest: |w| at which D will be needed
+    max_q: largest wave number |q| that the mesh resolves. largest_w: |w| at which D will be needed
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
     have too large a |q|, or are far from every root.
     """
-    first = [
+    guesses = [
         w.real + 0j if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w) else w
         for w in raw.tolist()
     ]
-    inside = [i for i, w in enumerate(first) if _is_in_eigenvalue_box(w, hull)]
+    in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
     waves, w_scales = mean_wave_numbers_and_w_scales(
-        np.array([first[i] for i in inside], complex), determinant.samples
+        np.array([guesses[i] for i in in_box], complex), determinant.samples
     )
-    scale = dict(zip(inside, w_scales.tolist(), strict=True))
-    resolved = [i for i, number in zip(inside, waves.tolist(), strict=True) if number <= max_q]
-    start = [first[i] for i in resolved]
-    _prepare_elements(determinant, max(map(abs, start), default=0.0), largest)
-    errors = dict(zip(resolved, _values_at_roots(start, lambda w: root_error(w, determinant)), strict=True))
-    chosen = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction * scale[i]]
-    close = [errors[i] for i in chosen]
+    scale = dict(zip(in_box, w_scales.tolist(), strict=True))
+    resolved = [i for i, number in zip(in_box, waves.tolist(), strict=True) if number <= max_q]
+    starts = [guesses[i] for i in resolved]
+    _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
+    errors = dict(zip(resolved, _values_at_roots(starts, lambda w: root_error(w, determinant)), strict=True))
+    near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction * scale[i]]
+    near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    moved, reach = _separate_close_roots([first[i] for i in chosen], close, determinant)
-    stands = [
+    starts_of_near, radii = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
+    refined = [
         k
-        for k, i in enumerate(chosen)
-        if reach[k] < math.inf or close[k] <= ROOT_SETTINGS.max_correction * scale[i]
+        for k, i in enumerate(near)
+        if radii[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction * scale[i]
     ]
-    found = _refine_guesses([(moved[k], reach[k]) for k in stands], determinant)
-    found.sort(key=lambda root: (-root.w.real, -root.w.imag))
-    kept = np.array([chosen[stands[root.guess_index]] for root in found], np.int64)
-    w: Complex = np.array([root.w for root in found], complex)
+    located = _refine_guesses([(starts_of_near[k], radii[k]) for k in refined], determinant)
+    located.sort(key=lambda root: (-root.w.real, -root.w.imag))
+    mesh_indices = np.array([near[refined[root.guess_index]] for root in located], np.int64)
+    w: Complex = np.array([root.w for root in located], complex)
     wave = mean_wave_numbers_and_w_scales(w, determinant.samples)[0]
-    error = _errors_of_located_roots(found, determinant)
-    length: Array = np.array([scale[i] for i in kept.tolist()], float)
-    displacement = np.abs(w - np.array(first, complex)[kept]) / np.maximum(np.abs(w), length)
-    axis = np.abs(w.real) <= np.maximum(
+    error = _errors_of_located_roots(located, determinant)
+    lengths: Array = np.array([scale[i] for i in mesh_indices.tolist()], float)
+    displacement = np.abs(w - np.array(guesses, complex)[mesh_indices]) / np.maximum(np.abs(w), lengths)
+    is_on_axis = np.abs(w.real) <= np.maximum(
         ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
-    leader = w[0].real if len(w) else -math.inf
+    leading_growth = w[0].real if len(w) else -math.inf
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
-    ahead = sum(raw[i].real > leader for i in inside if i not in chosen)
-    return Roots(kept, w, error, displacement, wave, axis, ahead)
+    spurious_count = sum(raw[i].real > leading_growth for i in in_box if i not in near)
+    return Roots(mesh_indices, w, error, displacement, wave, is_on_axis, spurious_count)
 
 
 def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list[T]:
@@ -87,13 +88,13 @@ def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list
     return values
 
 
-def _prepare_elements(determinant: ArmDeterminant, size: float, largest: float) -> None:
-    """Makes elements for all |w| up to `largest` if `largest` is at most `max_w_ratio` times `size`, else for
-    all |w| up to `size`."""
-    if size < largest <= ARM_ROOT_SETTINGS.max_w_ratio * size:
+def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
+    """Makes elements for all |w| up to `later_w` if `later_w` is at most `max_w_ratio` times `needed_w`, else
+    for all |w| up to `needed_w`."""
+    if needed_w < later_w <= ARM_ROOT_SETTINGS.max_w_ratio * needed_w:
         with suppress(FloatingPointError):  # too many elements: they are needed later, if at all
-            determinant.propagators_for(largest)
-    determinant.propagators_for(size)
+            determinant.propagators_for(later_w)
+    determinant.propagators_for(needed_w)
 
 
 def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
@@ -107,30 +108,32 @@ def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
 def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """Returns (w, reach), with every two eigenvalues closer than their errors moved to two roots of D.
+    """Returns (w, valid_radius), with every two eigenvalues closer than their errors moved to two roots of D.
 
-    error: errors of w. reach: half the distance of an eigenvalue from its partner; inf if it was not moved.
+    error: errors of w. half_distance: half the distance of an eigenvalue from its partner; inf if it was not
+    moved.
     """
     w = w.copy()
-    reach = [math.inf] * len(w)
-    each = zip(w, error, strict=True)
+    half_distance = [math.inf] * len(w)
+    eigenvalues_and_errors = zip(w, error, strict=True)
     if not any(
-        abs(a - b) <= ROOT_SETTINGS.pair_distance * (e + f) for (a, e), (b, f) in combinations(each, 2)
+        abs(a - b) <= ROOT_SETTINGS.pair_distance * (e + f)
+        for (a, e), (b, f) in combinations(eigenvalues_and_errors, 2)
     ):
-        return w, reach
+        return w, half_distance
     for i in range(len(w)):
-        others = [j for j in range(len(w)) if j != i and reach[j] == math.inf]
-        if reach[i] < math.inf or not others:
+        unpaired = [j for j in range(len(w)) if j != i and half_distance[j] == math.inf]
+        if half_distance[i] < math.inf or not unpaired:
             continue
-        partner = min(others, key=lambda j: abs(w[j] - w[i]))
+        partner = min(unpaired, key=lambda j: abs(w[j] - w[i]))
         if abs(w[partner] - w[i]) <= ROOT_SETTINGS.pair_distance * (error[i] + error[partner]):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
                 middle = (w[i] + w[partner]) / 2
                 if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
                     middle = complex(middle.real, 0.0)
                 w[i], w[partner] = taylor_parabola_roots(middle, determinant)
-            reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
-    return w, reach
+            half_distance[i] = half_distance[partner] = abs(w[i] - w[partner]) / 2
+    return w, half_distance
 
 
 class _LocatedRoot(NamedTuple):
@@ -142,30 +145,30 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root of D near each guess (w, reach), a pair of results of `_separate_close_roots`. For conjugate
-    guesses only the first is refined.
+    """The root of D near each guess (w, valid_radius), a pair of results of `_separate_close_roots`. For
+    conjugate guesses only the first is refined.
     """
-    found: list[_LocatedRoot] = []
-    for place, (w, reach) in enumerate(guesses):
-        if place > 0 and w.imag != 0 and w == guesses[place - 1][0].conjugate():
-            found.append(_LocatedRoot(found[-1].w.conjugate(), found[-1].error, place))
+    roots: list[_LocatedRoot] = []
+    for index, (w, radius) in enumerate(guesses):
+        if index > 0 and w.imag != 0 and w == guesses[index - 1][0].conjugate():
+            roots.append(_LocatedRoot(roots[-1].w.conjugate(), roots[-1].error, index))
         else:
-            found.append(_LocatedRoot(*refine_eigenvalue_and_error(w, determinant, reach), place))
-    return found
+            roots.append(_LocatedRoot(*refine_eigenvalue_and_error(w, determinant, radius), index))
+    return roots
 
 
-def _errors_of_located_roots(found: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
-    """Errors of the roots `found`, (n,). For two entries that are the same root of D, the error is at least
+def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDeterminant) -> Array:
+    """Errors of the roots `roots`, (n,). For two entries that are the same root of D, the error is at least
     the distance 2 |D'/D''| of the next root."""
-    error = [root.error for root in found]
-    for i, one in enumerate(found):
-        for j in range(i + 1, len(found)):
-            apart = abs(one.w - found[j].w)
-            if apart <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
-                value = determinant.value(one.w)
-                second = abs(second_derivative(one.w, value.S, determinant))
-                next_root = 2 * abs(value.D_w) / max(second, EXPONENT_SETTINGS.least_divisor)
-                if apart < ROOT_SETTINGS.same_root_fraction * next_root:
+    error = [root.error for root in roots]
+    for i, first_root in enumerate(roots):
+        for j in range(i + 1, len(roots)):
+            distance = abs(first_root.w - roots[j].w)
+            if distance <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
+                value = determinant.value(first_root.w)
+                D_ww = abs(second_derivative(first_root.w, value.S, determinant))
+                next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.least_divisor)
+                if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)
     return np.array(error, float)

@@ -80,18 +80,18 @@ def error_of_interpolated_chain(
         fill_propagator_value(polynomials[e], powers, C[e])
         apply_propagator(C[e], x[e], x[e + 1])
         scale[e + 1] = scale[e] + divide_by_norm(x[e + 1])
-    after = np.zeros((2, MINORS))
-    after[0, SM] = 1.0
-    before = np.empty((2, MINORS))
+    next_moduli = np.zeros((2, MINORS))
+    next_moduli[0, SM] = 1.0
+    moduli = np.empty((2, MINORS))
     scale_after = -S
     total = 0.0
     for e in range(elements - 1, -1, -1):
-        errors = ARM_ROUNDING_SETTINGS.error_per_product * modulus_sum_of_form(after, C[e], x[e])
+        errors = ARM_ROUNDING_SETTINGS.error_per_product * modulus_sum_of_form(next_moduli, C[e], x[e])
         if len(entry_sizes):
-            sizes = modulus_sum_of_real_form(after, entry_sizes[e], abs(w / W), x[e])
+            sizes = modulus_sum_of_real_form(next_moduli, entry_sizes[e], abs(w / W), x[e])
             errors += ARM_ROUNDING_SETTINGS.error_per_interpolated_entry * sizes
         total += math.exp(scale[e] + scale_after) * errors
-        apply_transposed_propagator(C[e], after, before)
-        scale_after += divide_by_norm(before)
-        after, before = before, after
+        apply_transposed_propagator(C[e], next_moduli, moduli)
+        scale_after += divide_by_norm(moduli)
+        next_moduli, moduli = moduli, next_moduli
     return ROUND_OFF * total

@@ -83,70 +83,70 @@ def divide_by_norm(x: Array) -> float:
 
 @compiled
 def _multiply_along_chain(
-    z: complex, W: float, polynomials: Array, changes: Array
+    z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
-    """(D, dD/dw, dD/dp, S) of `path_value_by_chain` at w = z W; dD/dp is 0 if `changes` is empty.
+    """(D, dD/dw, dD/dp, S) of `path_value_by_chain` at w = z W; dD/dp is 0 if `p_derivatives` is empty.
 
-    polynomials, changes: propagators and their derivatives by p, (elements, terms, PADDED).
+    polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED).
     """
     elements, terms, _ = polynomials.shape
-    along = len(changes) > 0
+    has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
     C = np.empty((4, PADDED))
-    change = np.empty((2, PADDED))
+    C_p = np.empty((2, PADDED))
     # minors and their derivatives by w and p, here and at the end of the element
-    here = np.zeros((3, 2, MINORS))
-    ahead = np.zeros((3, 2, MINORS))
-    here[0, 0, SM] = 1.0
+    minors = np.zeros((3, 2, MINORS))
+    next_minors = np.zeros((3, 2, MINORS))
+    minors[0, 0, SM] = 1.0
     S = 0.0
     for e in range(elements):
         fill_propagator(polynomials[e], powers, C)
-        apply_propagator(C, here[0], ahead[0])
-        apply_propagator_with_change(C, here[1], C[2:], here[0], ahead[1])
-        if along:
-            fill_propagator_value(changes[e], powers, change)
-            apply_propagator_with_change(C, here[2], change, here[0], ahead[2])
-        size = _norm(ahead[0])
+        apply_propagator(C, minors[0], next_minors[0])
+        apply_propagator_with_change(C, minors[1], C[2:], minors[0], next_minors[1])
+        if has_p_derivative:
+            fill_propagator_value(p_derivatives[e], powers, C_p)
+            apply_propagator_with_change(C, minors[2], C_p, minors[0], next_minors[2])
+        size = _norm(next_minors[0])
         if e == elements - 1:
-            size = max(size, modulus_sum_of_products(C, here[0]))
+            size = max(size, modulus_sum_of_products(C, minors[0]))
         if _needs_rescaling(size) or e == elements - 1:
-            ahead /= size
+            next_minors /= size
             S += math.log(size)
-        here, ahead = ahead, here
-    D = complex(here[0, 0, SM], here[0, 1, SM])
-    D_w = complex(here[1, 0, SM], here[1, 1, SM]) / W
-    return D, D_w, complex(here[2, 0, SM], here[2, 1, SM]), S
+        minors, next_minors = next_minors, minors
+    D = complex(minors[0, 0, SM], minors[0, 1, SM])
+    D_w = complex(minors[1, 0, SM], minors[1, 1, SM]) / W
+    return D, D_w, complex(minors[2, 0, SM], minors[2, 1, SM]), S
 
 
 @compiled
 def _multiply_along_real_chain(
-    z: float, W: float, polynomials: Array, changes: Array
+    z: float, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
     """`_multiply_along_chain` at real z, where D and its derivatives are real."""
     elements, terms, _ = polynomials.shape
-    along = len(changes) > 0
+    has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(complex(z, 0.0), terms)
     C = np.empty((2, PADDED))
-    change = np.empty(PADDED)
-    here = np.zeros((3, MINORS))
-    ahead = np.zeros((3, MINORS))
-    here[0, SM] = 1.0
+    C_p = np.empty(PADDED)
+    minors = np.zeros((3, MINORS))
+    next_minors = np.zeros((3, MINORS))
+    minors[0, SM] = 1.0
     S = 0.0
     for e in range(elements):
         fill_real_propagator(polynomials[e], powers, C)
-        apply_real_propagator(C[0], here[0], ahead[0])
-        apply_real_propagator_with_change(C[0], here[1], C[1], here[0], ahead[1])
-        if along:
-            fill_real_propagator_value(changes[e], powers, change)
-            apply_real_propagator_with_change(C[0], here[2], change, here[0], ahead[2])
-        size = _real_norm(ahead[0])
+        apply_real_propagator(C[0], minors[0], next_minors[0])
+        apply_real_propagator_with_change(C[0], minors[1], C[1], minors[0], next_minors[1])
+        if has_p_derivative:
+            fill_real_propagator_value(p_derivatives[e], powers, C_p)
+            apply_real_propagator_with_change(C[0], minors[2], C_p, minors[0], next_minors[2])
+        size = _real_norm(next_minors[0])
         if e == elements - 1:
-            size = max(size, modulus_sum_of_real_products(C[0], here[0]))
+            size = max(size, modulus_sum_of_real_products(C[0], minors[0]))
         if _needs_rescaling(size) or e == elements - 1:
-            ahead /= size
+            next_minors /= size
             S += math.log(size)
-        here, ahead = ahead, here
-    return complex(here[0, SM]), complex(here[1, SM] / W), complex(here[2, SM]), S
+        minors, next_minors = next_minors, minors
+    return complex(minors[0, SM]), complex(minors[1, SM] / W), complex(minors[2, SM]), S
 
 
 @compiled
@@ -155,16 +155,16 @@ def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, floa
     PADDED)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
-    here = np.zeros((2, MINORS))
-    ahead = np.empty((2, MINORS))
-    here[0, SM] = 1.0
+    minors = np.zeros((2, MINORS))
+    next_minors = np.empty((2, MINORS))
+    minors[0, SM] = 1.0
     S = 0.0
     for e in range(len(polynomials)):
         fill_propagator_value(polynomials[e], powers, C)
-        apply_propagator(C, here, ahead)
-        S += divide_by_norm(ahead)
-        here, ahead = ahead, here
-    return complex(here[0, SM], here[1, SM]), S
+        apply_propagator(C, minors, next_minors)
+        S += divide_by_norm(next_minors)
+        minors, next_minors = next_minors, minors
+    return complex(minors[0, SM], minors[1, SM]), S
 
 
 @compiled
@@ -175,17 +175,19 @@ def log_modulus_by_chain(w: complex, W: float, polynomials: Array) -> float:
 
 
 @compiled
-def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array) -> PathDeterminantValue:
+def path_value_by_chain(
+    w: complex, W: float, polynomials: Array, p_derivatives: Array
+) -> PathDeterminantValue:
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
-    polynomials, changes: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
-    PADDED). dD/dp is 0 if `changes` is empty. noise: rounding error of the products at the tip; the bound of
-    the whole error is `rodsweep.determinant.arm.rounding.rounding_error_by_chain`.
+    polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
+    PADDED). dD/dp is 0 if `p_derivatives` is empty. noise: rounding error of the products at the tip; the
+    bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_by_chain`.
     """
     if w.imag == 0:
-        D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, changes)
+        D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)
     else:
-        D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, changes)
+        D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, p_derivatives)
     return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
 
 
@@ -193,5 +195,5 @@ def path_value_by_chain(w: complex, W: float, polynomials: Array, changes: Array
 def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and dD/dw at w, times exp(-S). polynomials: propagators valid for |w| <= W, (elements, terms,
     PADDED)."""
-    D, D_w, _, S, noise = path_value_by_chain(w, W, polynomials, polynomials[:0])
-    return DeterminantValue(D, D_w, S, noise)
+    D, D_w, _, S, rounding_error = path_value_by_chain(w, W, polynomials, polynomials[:0])
+    return DeterminantValue(D, D_w, S, rounding_error)

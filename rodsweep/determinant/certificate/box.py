@@ -67,8 +67,10 @@ def box_from_sqrt_bound(a: float, depth: float) -> tuple[float, float]:
     """
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    pad = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
-    return (1 + BOX_SETTINGS.bound_excess) * a * a / 4 + pad, (1 + BOX_SETTINGS.bound_excess) * a * n + pad
+    padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
+    return (1 + BOX_SETTINGS.bound_excess) * a * a / 4 + padding, (
+        1 + BOX_SETTINGS.bound_excess
+    ) * a * n + padding
 
 
 @lru_cache(maxsize=1)
@@ -110,64 +112,66 @@ def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> flo
     load = max(abs(first.F), abs(last.F))
     # F passes 0 between loads of opposite signs.
     least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
-    weak = 1.0
+    weak_weight = 1.0
     for rod in (first, last):
         if rod.c2 > 0:
             # The weight rho = 1 gives this bound; it needs no sign of g, but rotational drag.
-            weak = max(weak, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
+            weak_weight = max(weak_weight, rod.c2 / rod.gamma3 if rod.gamma3 > 0 else inf)
     g_first = first.nu + first.F * first.c2
     g_last = last.nu + last.F * last.c2
     root_of_drag = min(sqrt(first.c2 * first.gamma3), sqrt(last.c2 * last.gamma3))
     denominator = min(first.nu, last.nu) + least_load * root_of_drag
-    strong = inf
+    strong_weight = inf
     if min(g_first, g_last) >= 0 and denominator > 0:
-        strong = max(g_first, g_last) / denominator
-    least = min(weak, strong)
-    return load**2 * least if least < inf else inf
+        strong_weight = max(g_first, g_last) / denominator
+    bound = min(weak_weight, strong_weight)
+    return load**2 * bound if bound < inf else inf
 
 
-def zero_free_radius(path: Path, start: float, stop: float, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
+def zero_free_radius(path: Path, start: float, stop: float, max_radius: float) -> float:
+    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
     stop; 0 if r underflows.
     """
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
-    bends = [coefficient_derivatives(c, path.direction) for c in ends]
+    derivatives = [coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
-    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G_pp) for b in bends)
-    pull = max(max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N_pp) for b in bends), 0.0)
+    G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G_pp) for b in derivatives)
+    max_pull = max(
+        max(-F * (nu + F * c2) for F, nu, c2, _ in ends) + span * max(abs(b.N_pp) for b in derivatives), 0.0
+    )
     if all(F >= 0 and nu + F * c2 >= 0 for F, nu, c2, _ in ends):
-        pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
-    return _zero_free_radius(largest, T, X, G, pull)
+        max_pull = 0.0  # -F g is negative at the ends, and F and g are linear in p or constant
+    return _zero_free_radius(max_radius, T, X, G, max_pull)
 
 
-def zero_free_radius_of_rod(coefficients: Coefficients, largest: float) -> float:
-    """A radius r <= largest with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod; 0 if r
+def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> float:
+    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod; 0 if r
     underflows."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
-    return _zero_free_radius(largest, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
+    return _zero_free_radius(max_radius, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))
 
 
-def _zero_free_radius(r: float, T: float, X: float, G: float, pull: float) -> float:
+def _zero_free_radius(r: float, T: float, X: float, G: float, max_pull: float) -> float:
     """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows.
 
-    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. pull: bound of -F g, at least 0.
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0.
     """
-    while _distance_from_one_bound(r, T, X, G, pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one:
+    while _distance_from_one_bound(r, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one:
         r /= 2
     return r
 
 
-def _distance_from_one_bound(r: float, T: float, X: float, G: float, pull: float) -> float:
+def _distance_from_one_bound(r: float, T: float, X: float, G: float, max_pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
 
-    T, X, G, pull: as in `_zero_free_radius`.
+    T, X, G, max_pull: as in `_zero_free_radius`.
     """
-    exponent = sqrt(pull + T * r + 2 * sqrt(r * (G + X * r)))
-    if exponent > 1 + sqrt(pull):
+    exponent = sqrt(max_pull + T * r + 2 * sqrt(r * (G + X * r)))
+    if exponent > 1 + sqrt(max_pull):
         return inf
     factor = (T * r + sqrt(r * G) + 2 * r * sqrt(X)) / 2
     return exp(min(exponent + log(factor), 1.0)) if factor > 0 else 0.0

@@ -82,14 +82,14 @@ class Box(NamedTuple):
 @compiled
 def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
     """A lower bound of |value + x a + y b| over all real x, y in [-1, 1]; 0 if no positive bound is found."""
-    best = 0.0
+    bound = 0.0
     # The set is a parallelogram; a separating line is parallel to a side, or across the value.
     for normal in (value, 1j * a, 1j * b):
         size = abs(normal)
         if size > 0:
             u = normal.conjugate() / size
-            best = max(best, abs((u * value).real) - abs((u * a).real) - abs((u * b).real))
-    return best
+            bound = max(bound, abs((u * value).real) - abs((u * a).real) - abs((u * b).real))
+    return bound
 
 
 @compiled
@@ -104,31 +104,31 @@ def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
     size_minus = math.exp(root_minus.real - centre.S)
     a = size_plus / (size_plus + size_minus)
     b = size_minus / (size_plus + size_minus)
-    in_w = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
-    return in_w, a * centre.slopes_plus[1] / (2 * root_plus) + b * centre.slopes_minus[1] / (2 * root_minus)
+    w_rate = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
+    return w_rate, a * centre.slopes_plus[1] / (2 * root_plus) + b * centre.slopes_minus[1] / (2 * root_minus)
 
 
 @compiled
 def is_remainder_below(
-    centre: BidiscCentre, rates: DerivativePair, half: tuple[float, float], room: float, power: int
+    centre: BidiscCentre, rates: DerivativePair, half: tuple[float, float], margin: float, power: int
 ) -> bool:
     """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
-    below `room`.
+    below `margin`.
 
     t: half-widths of the box divided by the radii of the bidisc on which M bounds the function; several t are
     tried. rates: (L, K). half: half-widths of the box.
     """
     t = BOX_PROOF_SETTINGS.first_radius_ratio
-    last = math.inf
+    previous_remainder = math.inf
     for _ in range(BOX_PROOF_SETTINGS.max_radius_ratios):
         M = bound_on_bidisc(centre, rates, (half[0] / t, half[1] / t))
-        rest = M * t * t / (1 - t) ** power
-        if rest < room:
+        remainder = M * t * t / (1 - t) ** power
+        if remainder < margin:
             return True
         # The bound has a single minimum in t.
-        if rest > last:
+        if remainder > previous_remainder:
             return False
-        last = rest
+        previous_remainder = remainder
         t *= BOX_PROOF_SETTINGS.radius_ratio_factor
     return False
 
@@ -143,17 +143,17 @@ def examine_box(
     of D across the box in this variable; the variable with the higher cost is divided. 0 for other boxes.
     coefficients, direction: coefficients at the centre and their derivative by p.
     """
-    D, D_w, D_p, S, noise = determinant_along_path(w, coefficients, direction)
+    D, D_w, D_p, S, rounding_error = determinant_along_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
     mean = mean_growth_rates(centre)
-    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * noise
+    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
             a = 1j * (D_w - rates[0] * D) * half[0]
             b = (D_p - rates[1] * D) * half[1]
-            room = DISC_BOUND_SETTINGS.max_relative_change * distance_from_zero_bound(D, a, b) - rounding
-            if room > 0 and is_remainder_below(centre, rates, half, room, 1):
+            margin = DISC_BOUND_SETTINGS.max_relative_change * distance_from_zero_bound(D, a, b) - rounding
+            if margin > 0 and is_remainder_below(centre, rates, half, margin, 1):
                 return EMPTY_BOX, 0.0, 0.0
     # In the doubled box each derivative of f changes by at most 3 M t^2/(1 - t)^2.
     a = 2j * (D_w - mean[0] * D) * half[0]
@@ -161,13 +161,13 @@ def examine_box(
     if abs(D) < 2 * (abs(a) + abs(b)):
         # The smallest singular value of the linear map is at least |det| over the sum of its columns: at most
         # one zero.
-        least = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
-        room = (DISC_BOUND_SETTINGS.max_relative_change * least - rounding) / 3
-        double = (2 * half[0], 2 * half[1])
-        if room > 0 and is_remainder_below(centre, mean, double, room, 2):
+        min_singular_value = abs((a * b.conjugate()).imag) / (abs(a) + abs(b))
+        margin = (DISC_BOUND_SETTINGS.max_relative_change * min_singular_value - rounding) / 3
+        doubled_half_widths = (2 * half[0], 2 * half[1])
+        if margin > 0 and is_remainder_below(centre, mean, doubled_half_widths, margin, 2):
             return REGULAR_BOX, 0.0, 0.0
-    in_eta, in_p = exponent_changes(centre, half)
-    return UNDECIDED_BOX, in_eta, in_p
+    cost_eta, cost_p = exponent_changes(centre, half)
+    return UNDECIDED_BOX, cost_eta, cost_p
 
 
 @compiled
@@ -179,13 +179,13 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     root_minus = math.sqrt(max(abs(centre.z_minus), 1.0))
     plus = centre.slopes_plus
     minus = centre.slopes_minus
-    in_w = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
-    in_p = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
+    w_change = max(abs(plus[0]) / root_plus, abs(minus[0]) / root_minus) * half[0] / 2
+    p_change = max(abs(plus[1]) / root_plus, abs(minus[1]) / root_minus) * half[1] / 2
     stiffness = abs((nu + F * c2) * nu) + c2 * gamma3 * size
     # The bounds on the bidisc also need a small change of the radicand of P.
     factor = abs(centre.derivatives.G_p) + abs(centre.derivatives.X_p) * size
-    return max(in_w, half[0] / size), max(
-        in_p, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.least_divisor)
+    return max(w_change, half[0] / size), max(
+        p_change, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.least_divisor)
     )
 
 
@@ -200,42 +200,42 @@ def cover_with_boxes(
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED_ZERO for _ in range(0)]
-    left = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
-    examined = 0
+    undecided = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
+    count = 0
     while len(stack) > 0:
         box = stack.pop()
         eta = (box.eta_from + box.eta_to) / 2
         p = (box.p_from + box.p_to) / 2
         half = (box.eta_to - box.eta_from) / 2, (box.p_to - box.p_from) / 2
-        examined += 1
+        count += 1
         coefficients = coefficients_at(p, origin, direction)
-        kind, cost_w, cost_p = examine_box(complex(0.0, eta), coefficients, direction, half)
-        if kind == EMPTY_BOX:
+        outcome, cost_eta, cost_p = examine_box(complex(0.0, eta), coefficients, direction, half)
+        if outcome == EMPTY_BOX:
             continue
-        if kind == REGULAR_BOX:
+        if outcome == REGULAR_BOX:
             zero = crossing_newton(eta, p, origin, direction, half)
-            away = _box_distance(zero, eta, p, half)
-            if away <= 2:  # false if Newton's method failed, which returns nan
+            distance = _box_distance(zero, eta, p, half)
+            if distance <= 2:  # false if Newton's method failed, which returns nan
                 # A zero outside the box is found from a neighbouring box too.
-                known = away > 1 + BOX_PROOF_SETTINGS.outside_distance
+                is_known = distance > 1 + BOX_PROOF_SETTINGS.outside_distance
                 for other in zeros:  # the doubled box contains at most one zero
-                    apart = _box_distance(other, eta, p, half)
-                    known = known or apart <= BOX_PROOF_SETTINGS.same_zero_distance
-                if not known:
+                    other_distance = _box_distance(other, eta, p, half)
+                    is_known = is_known or other_distance <= BOX_PROOF_SETTINGS.same_zero_distance
+                if not is_known:
                     zeros.append(zero)
                 continue
-        smallest = BOX_PROOF_SETTINGS.min_half_width
-        if examined > BOX_PROOF_SETTINGS.max_boxes or (
-            half[0] < smallest * eta and half[1] < smallest * abs(p)
+        min_half_width = BOX_PROOF_SETTINGS.min_half_width
+        if count > BOX_PROOF_SETTINGS.max_boxes or (
+            half[0] < min_half_width * eta and half[1] < min_half_width * abs(p)
         ):
-            left.append(box)
-        elif cost_w >= cost_p:
+            undecided.append(box)
+        elif cost_eta >= cost_p:
             stack.append(Box(box.eta_from, eta, box.p_from, box.p_to))
             stack.append(Box(eta, box.eta_to, box.p_from, box.p_to))
         else:
             stack.append(Box(box.eta_from, box.eta_to, box.p_from, p))
             stack.append(Box(box.eta_from, box.eta_to, p, box.p_to))
-    return zeros, left, examined
+    return zeros, undecided, count
 
 
 @compiled

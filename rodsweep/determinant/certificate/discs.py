@@ -68,56 +68,75 @@ class BidiscCentre(NamedTuple):
 
 @compiled
 def bidisc_centre(
-    w: complex, coefficients: Coefficients, change: CoefficientDerivatives, S: float
+    w: complex, coefficients: Coefficients, coefficient_derivatives: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
-    """The centre of a bidisc at w. change: derivatives by p of T, N, G and X. S: scale of D at w."""
-    at = exponent_derivatives(w, coefficients)
-    along_plus, along_minus = exponent_slopes(w, at, change)
+    """The centre of a bidisc at w. coefficient_derivatives: derivatives by p of T, N, G and X. S: scale of D
+    at w."""
+    exponents = exponent_derivatives(w, coefficients)
+    p_slope_plus, p_slope_minus = exponent_slopes(w, exponents, coefficient_derivatives)
     drag = coefficients.c2 + coefficients.gamma3
-    slopes_plus = (drag + 2 * at.P_w, along_plus)
-    slopes_minus = (drag - 2 * at.P_w, along_minus)
-    return BidiscCentre(w, coefficients, change, S, at.P, at.z_plus, at.z_minus, slopes_plus, slopes_minus)
+    slopes_plus = (drag + 2 * exponents.P_w, p_slope_plus)
+    slopes_minus = (drag - 2 * exponents.P_w, p_slope_minus)
+    return BidiscCentre(
+        w,
+        coefficients,
+        coefficient_derivatives,
+        S,
+        exponents.P,
+        exponents.z_plus,
+        exponents.z_minus,
+        slopes_plus,
+        slopes_minus,
+    )
 
 
 @compiled
-def nonlinear_root_bound(root: complex, bend: float, x: float) -> float:
+def nonlinear_root_bound(root: complex, nonlinear_change: float, x: float) -> float:
     """Bound of the nonlinear part of the change of sqrt(z) = `root`.
 
-    x: bound of the total change of z over |z|. bend: bound of the nonlinear part of the change of z.
+    x: bound of the total change of z over |z|. nonlinear_change: bound of the nonlinear part of the change of
+    z.
     """
-    return bend / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
+    return nonlinear_change / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
 @compiled
 def bounds_of_E_on_bidisc(
-    z: complex, slopes: DerivativePair, rates: DerivativePair, radii: BidiscRadii, bend: float, S: float
+    z: complex,
+    slopes: DerivativePair,
+    rates: DerivativePair,
+    radii: BidiscRadii,
+    nonlinear_change: float,
+    S: float,
 ) -> BidiscRadii:
     """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp). rates: (L, K). bend: bound of the nonlinear change of z. S: scale of D. The
-    exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from z = 0, by the Taylor
-    polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
+    slopes: (dz/dw, dz/dp). rates: (L, K). nonlinear_change: bound of the nonlinear change of z. S: scale of
+    D. The exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from z = 0, by the
+    Taylor polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
     cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
-    drift = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
-    change = abs(slopes[0]) * radii[0] + abs(slopes[1]) * radii[1] + bend
+    rate_change = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
+    change = abs(slopes[0]) * radii[0] + abs(slopes[1]) * radii[1] + nonlinear_change
     # Re sqrt(z) = sqrt((|z| + Re z)/2), which a change of z raises by no more than this.
-    crude = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + drift
-    grow = crude
-    decay = crude
+    simple_bound = math.sqrt(max((abs(z) + z.real) / 2 + change, 0.0)) + rate_change
+    growing_exponent = simple_bound
+    decaying_exponent = simple_bound
     if change < DISC_BOUND_SETTINGS.max_expansion_change * abs(z):
-        in_w = slopes[0] / (2 * root)
-        in_p = slopes[1] / (2 * root)
-        curve = nonlinear_root_bound(root, bend, change / abs(z))
-        with_rates = abs(in_w - rates[0]) * radii[0] + abs(in_p - rates[1]) * radii[1]
-        against = abs(in_w + rates[0]) * radii[0] + abs(in_p + rates[1]) * radii[1]
-        grow = min(grow, root.real + with_rates + curve)
-        decay = min(decay, -root.real + against + curve)
-    largest = EXPONENT_SETTINGS.max_exponent
-    exponentials = math.exp(min(grow - S, largest)) + math.exp(min(decay - S, largest))
+        w_slope = slopes[0] / (2 * root)
+        p_slope = slopes[1] / (2 * root)
+        nonlinear_root_change = nonlinear_root_bound(root, nonlinear_change, change / abs(z))
+        growing_change = abs(w_slope - rates[0]) * radii[0] + abs(p_slope - rates[1]) * radii[1]
+        decaying_change = abs(w_slope + rates[0]) * radii[0] + abs(p_slope + rates[1]) * radii[1]
+        growing_exponent = min(growing_exponent, root.real + growing_change + nonlinear_root_change)
+        decaying_exponent = min(decaying_exponent, -root.real + decaying_change + nonlinear_root_change)
+    max_exponent = EXPONENT_SETTINGS.max_exponent
+    exponentials = math.exp(min(growing_exponent - S, max_exponent)) + math.exp(
+        min(decaying_exponent - S, max_exponent)
+    )
     # The -1 of E = (cosh - 1)/z and its derivative.
-    exponentials += 2 * math.exp(min(drift - S, largest))
+    exponentials += 2 * math.exp(min(rate_change - S, max_exponent))
     # These bounds hold near z = 0 too, unlike bounds by 1/|z|: E(0) = 1/2 is an eighth of four exponentials.
     E = 1 / 8
     E1 = 1 / 48
@@ -139,26 +158,28 @@ def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii
     g = nu + F * c2
     X = c2 * gamma3
     T = c2 + gamma3
-    far = abs(w) + rho
+    max_w = abs(w) + rho
     dG = (abs(G_p) + abs(G_pp) / 2 * sigma) * sigma
     dX = (abs(X_p) + abs(X_pp) / 2 * sigma) * sigma
-    largest = far * (abs(g * nu + X * w) + dG + X * rho + dX * far)
-    bend = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma + 2 * math.sqrt(largest)
-    E, E1 = bounds_of_E_on_bidisc(T * w - F * g, (complex(T), T_p * w - N_p), rates, radii, bend, S)
-    drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
-    steep = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * far)
-    still = math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent))
-    return still + far * ((T + abs(T_p) * sigma) * E + 2 * steep * E1)
+    max_squared_P = max_w * (abs(g * nu + X * w) + dG + X * rho + dX * max_w)
+    nonlinear_change = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma + 2 * math.sqrt(max_squared_P)
+    E, E1 = bounds_of_E_on_bidisc(
+        T * w - F * g, (complex(T), T_p * w - N_p), rates, radii, nonlinear_change, S
+    )
+    rate_change = abs(rates[0]) * rho + abs(rates[1]) * sigma
+    slope_bound = abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * max_w)
+    constant_bound = math.exp(min(rate_change - S, EXPONENT_SETTINGS.max_exponent))
+    return constant_bound + max_w * ((T + abs(T_p) * sigma) * E + 2 * slope_bound * E1)
 
 
 @compiled
 def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """An upper bound of |D exp(-L dw - K dp)| exp(-S) over the bidisc about `centre`; rates: (L, K)."""
     F, nu, c2, _ = centre.coefficients
-    apart = bound_for_distinct_exponents(centre, rates, radii)
+    separate_bound = bound_for_distinct_exponents(centre, rates, radii)
     if F * (nu + F * c2) < 0:  # both exponentials grow at similar rates; separate bounds do not cancel
-        return min(apart, bound_for_equal_exponents(centre, rates, radii))
-    return apart
+        return min(separate_bound, bound_for_equal_exponents(centre, rates, radii))
+    return separate_bound
 
 
 @compiled
@@ -177,30 +198,33 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     rho, sigma = radii
     g = nu + F * c2
     X = c2 * gamma3
-    base = abs(g * nu + X * w)
+    modulus = abs(g * nu + X * w)
     dG = (abs(G_p) + abs(G_pp) / 2 * sigma) * sigma
     dX = (abs(X_p) + abs(X_pp) / 2 * sigma) * sigma
     # P = sqrt(w) sqrt(g nu + X w): relative changes of the two factors.
     e1 = rho / abs(w)
-    moved = dG + X * rho + dX * (abs(w) + rho)
-    e2 = moved / base if base > moved else 1.0
+    max_change = dG + X * rho + dX * (abs(w) + rho)
+    e2 = max_change / modulus if modulus > max_change else 1.0
     if e1 > DISC_BOUND_SETTINGS.max_factor_change or (
-        moved > 0 and e2 > DISC_BOUND_SETTINGS.max_factor_change
+        max_change > 0 and e2 > DISC_BOUND_SETTINGS.max_factor_change
     ):
         return math.inf
-    if moved == 0:
+    if max_change == 0:
         e2 = 0.0
-    bend = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma
-    steepest = c2 + gamma3 + abs(T_p) * sigma
+    nonlinear_change = abs(T_p) * sigma * rho + abs(N_pp) / 2 * sigma * sigma
+    slope_bound = c2 + gamma3 + abs(T_p) * sigma
     if P != 0:
-        second = abs(G_pp) / 2 * sigma + abs(X_pp) / 2 * sigma * (abs(w) + rho) + abs(X_p) * rho
+        second_order = abs(G_pp) / 2 * sigma + abs(X_pp) / 2 * sigma * (abs(w) + rho) + abs(X_p) * rho
         # 2 - sqrt(1 - e) has the Taylor coefficients of sqrt(1 + e) in modulus, hence bounds the nonlinear
         # part of P.
         majorant = (2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2
-        bend += 2 * abs(P) * (majorant + second * sigma / base / 2)
-        least = abs(P) * math.sqrt((1 - e1) * (1 - e2))
-        steepest += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / least
-    terms = bounds_of_E_on_bidisc(centre.z_plus, centre.slopes_plus, rates, radii, bend, S)[0]
-    terms += bounds_of_E_on_bidisc(centre.z_minus, centre.slopes_minus, rates, radii, bend, S)[0]
-    drift = abs(rates[0]) * rho + abs(rates[1]) * sigma
-    return math.exp(min(drift - S, EXPONENT_SETTINGS.max_exponent)) + (abs(w) + rho) / 2 * steepest * terms
+        nonlinear_change += 2 * abs(P) * (majorant + second_order * sigma / modulus / 2)
+        min_P = abs(P) * math.sqrt((1 - e1) * (1 - e2))
+        slope_bound += (abs(g * nu + 2 * X * w) + dG + 2 * (X * rho + dX * (abs(w) + rho))) / min_P
+    terms = bounds_of_E_on_bidisc(centre.z_plus, centre.slopes_plus, rates, radii, nonlinear_change, S)[0]
+    terms += bounds_of_E_on_bidisc(centre.z_minus, centre.slopes_minus, rates, radii, nonlinear_change, S)[0]
+    rate_change = abs(rates[0]) * rho + abs(rates[1]) * sigma
+    return (
+        math.exp(min(rate_change - S, EXPONENT_SETTINGS.max_exponent))
+        + (abs(w) + rho) / 2 * slope_bound * terms
+    )

@@ -60,11 +60,11 @@ def _dominant_and_recessive(w: complex, coefficients: Coefficients) -> tuple[com
     """(P, dominant exponent, recessive exponent) at w; the dominant exponent has the larger Re sqrt(z)."""
     P, P_w, _, plus, minus = exponent_derivatives(w, coefficients)
     drag = coefficients.c2 + coefficients.gamma3
-    of_plus = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
-    of_minus = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
-    if of_plus.root.real >= of_minus.root.real:
-        return P, of_plus, of_minus
-    return P, of_minus, of_plus
+    plus_exponent = Exponent(plus, drag + 2 * P_w, cmath.sqrt(plus))
+    minus_exponent = Exponent(minus, drag - 2 * P_w, cmath.sqrt(minus))
+    if plus_exponent.root.real >= minus_exponent.root.real:
+        return P, plus_exponent, minus_exponent
+    return P, minus_exponent, plus_exponent
 
 
 @compiled
@@ -85,10 +85,10 @@ def _nonlinearity_bounds(
         e2 = X * rho / abs(gn + X * w)
     if e1 > DOMINANCE_SETTINGS.largest_factor_change or e2 > DOMINANCE_SETTINGS.largest_factor_change:
         return math.inf, math.inf
-    least = math.sqrt((1 - e1) * (1 - e2))
+    min_factor = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
-    bend = 2 * abs(P) * ((2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2)
-    return bend, ((numerator + 2 * X * rho) / least - numerator) / abs(P)
+    nonlinear_change = 2 * abs(P) * ((2 - math.sqrt(1 - e1)) * (2 - math.sqrt(1 - e2)) - 1 - (e1 + e2) / 2)
+    return nonlinear_change, ((numerator + 2 * X * rho) / min_factor - numerator) / abs(P)
 
 
 @compiled
@@ -99,38 +99,39 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
-    bend, turn = _nonlinearity_bounds(w, rho, P, coefficients)
-    change = abs(slope) * rho + bend
-    x = change / abs(z)
-    if x > DOMINANCE_SETTINGS.largest_factor_change or turn > DOMINANCE_SETTINGS.largest_factor_change * abs(
-        slope
+    nonlinear_change, slope_change = _nonlinearity_bounds(w, rho, P, coefficients)
+    total_change = abs(slope) * rho + nonlinear_change
+    x = total_change / abs(z)
+    if (
+        x > DOMINANCE_SETTINGS.largest_factor_change
+        or slope_change > DOMINANCE_SETTINGS.largest_factor_change * abs(slope)
     ):
         return False
     L = slope / (2 * root)
-    drift = abs(L) * rho
-    curve = nonlinear_root_bound(root, bend, x)
+    change_by_L = abs(L) * rho
+    curvature = nonlinear_root_bound(root, nonlinear_change, x)
     # Exponents are compared by their rates if the recessive exponent changes little, otherwise by extremes.
-    lowest = root.real - drift - curve
-    change_other = abs(slope_other) * rho + bend
-    highest = math.sqrt(max((abs(z_other) + z_other.real) / 2 + change_other, 0.0))
-    if change_other < DOMINANCE_SETTINGS.largest_factor_change * abs(z_other):
-        curve_other = nonlinear_root_bound(root_other, bend, change_other / abs(z_other))
-        together = abs(slope_other / (2 * root_other) - L) * rho + curve_other
-        if not root.real - curve > root_other.real + together:
+    lowest_dominant = root.real - change_by_L - curvature
+    other_change = abs(slope_other) * rho + nonlinear_change
+    highest_recessive = math.sqrt(max((abs(z_other) + z_other.real) / 2 + other_change, 0.0))
+    if other_change < DOMINANCE_SETTINGS.largest_factor_change * abs(z_other):
+        other_root_change = nonlinear_root_bound(root_other, nonlinear_change, other_change / abs(z_other))
+        relative_change = abs(slope_other / (2 * root_other) - L) * rho + other_root_change
+        if not root.real - curvature > root_other.real + relative_change:
             return False
-    elif not lowest > highest:
+    elif not lowest_dominant > highest_recessive:
         return False
     # D = A (1 + e) with A the part of the dominant exponential; |e| < 1 turns the phase of D into that of A.
     S = root.real
-    far = abs(w) + rho
-    A = (abs(w) - rho) * (abs(slope) - turn) / (4 * (abs(z) + change)) * math.exp(-curve)
-    still = math.exp(drift - S)
-    rest = still + far * (abs(slope) + turn) / (4 * (abs(z) - change)) * (
-        2 * still + math.exp(2 * drift + curve - 2 * S)
+    max_w = abs(w) + rho
+    A = (abs(w) - rho) * (abs(slope) - slope_change) / (4 * (abs(z) + total_change)) * math.exp(-curvature)
+    constant_bound = math.exp(change_by_L - S)
+    remainder = constant_bound + max_w * (abs(slope) + slope_change) / (4 * (abs(z) - total_change)) * (
+        2 * constant_bound + math.exp(2 * change_by_L + curvature - 2 * S)
     )
-    E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), bend, S)[0]
-    rest += far / 2 * (abs(slope_other) + turn) * E
-    return rest < DISC_BOUND_SETTINGS.max_relative_change * A
+    E = bounds_of_E_on_bidisc(z_other, (slope_other, 0j), (L, 0j), (rho, 0.0), nonlinear_change, S)[0]
+    remainder += max_w / 2 * (abs(slope_other) + slope_change) * E
+    return remainder < DISC_BOUND_SETTINGS.max_relative_change * A
 
 
 @compiled
@@ -155,8 +156,8 @@ def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coeffic
 def phase_over_dominated_segment(
     start: complex, direction: complex, length: float, coefficients: Coefficients
 ) -> tuple[float, float, int]:
-    """Returns (length, change, discs). length: length of the segment from `start` on which dominance is
-    proved, at most the argument `length`. change: change of arg D over this segment. discs: number of
+    """Returns (length, change, disc count). length: length of the segment from `start` on which dominance is
+    proved, at most the argument `length`. change: change of arg D over this segment. disc_count: number of
     examined discs.
 
     direction: unit vector of the segment.
@@ -166,37 +167,37 @@ def phase_over_dominated_segment(
     gn = (nu + F * c2) * nu
     w = start
     t = 0.0
-    total = 0.0
-    discs = 0
-    here = (0j, 0j)
-    first = (0j, 0j)
+    change = 0.0
+    disc_count = 0
+    wave = (0j, 0j)
+    first_wave = (0j, 0j)
     while t < length:
         rho = DOMINANCE_SETTINGS.first_radius * abs(w)
         if X > 0:
             rho = min(rho, DOMINANCE_SETTINGS.first_radius * abs(gn + X * w) / X)
         # A disc covers the step with its diameter.
         rho = min(rho, (length - t) / 2)
-        found = False
+        proved = False
         for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
-            discs += 1
+            disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
             if is_dominated(w + direction * rho, (1 + DOMINANCE_SETTINGS.overlap) * rho, coefficients):
-                found = True
+                proved = True
                 break
             rho /= 2
-        if not found:
+        if not proved:
             break
         if t == 0.0:
-            here = dominant_prefactor_and_exponent(w, coefficients)
-            first = here
+            wave = dominant_prefactor_and_exponent(w, coefficients)
+            first_wave = wave
         t = length if t + 2 * rho >= length * (1 - DOMINANCE_SETTINGS.end_rounding) else t + 2 * rho
         w = start + direction * t
-        after = dominant_prefactor_and_exponent(w, coefficients)
+        next_wave = dominant_prefactor_and_exponent(w, coefficients)
         # The change of arg A over the step, in closed form; it may exceed 2 pi.
-        total += (after[1] - here[1]).imag + cmath.phase(after[0] / here[0])
-        here = after
+        change += (next_wave[1] - wave[1]).imag + cmath.phase(next_wave[0] / wave[0])
+        wave = next_wave
     if t > 0.0:
-        total += _phase_beyond_dominant(w, here, coefficients) - _phase_beyond_dominant(
-            start, first, coefficients
+        change += _phase_beyond_dominant(w, wave, coefficients) - _phase_beyond_dominant(
+            start, first_wave, coefficients
         )
-    return t, total, discs
+    return t, change, disc_count

@@ -69,10 +69,10 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
         ) + COVERING_SETTINGS.padding
         if not math.isfinite(top):
             return None
-        low = zero_free_radius(path, a, b, top)
-        if low == 0.0:
+        min_eta = zero_free_radius(path, a, b, top)
+        if min_eta == 0.0:
             return None
-        count = max(1, math.ceil(math.log(top / low) / math.log(COVERING_SETTINGS.max_eta_ratio)))
-        edges = np.geomspace(low, top, count + 1)
+        count = max(1, math.ceil(math.log(top / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
+        edges = np.geomspace(min_eta, top, count + 1)
         boxes += [(edges[i], edges[i + 1], a, b) for i in range(count)]
     return np.array(boxes).reshape(-1, 4)

@@ -89,27 +89,27 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     direction = (end - start) / length
     t = 0.0
     total = 0.0
-    nodes = 0
-    patience = WINDING_SETTINGS.walk_length
+    node_count = 0
+    node_walk_length = WINDING_SETTINGS.walk_length
     while t < length:
         w = start + direction * t
-        ahead, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
+        dominated_length, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
         total += change
-        nodes += discs
+        node_count += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        patience = WINDING_SETTINGS.walk_length if ahead > 0 else 2 * patience
-        t = length if ahead == length - t else t + ahead
+        node_walk_length = WINDING_SETTINGS.walk_length if dominated_length > 0 else 2 * node_walk_length
+        t = length if dominated_length == length - t else t + dominated_length
         if t < length:
             w = start + direction * t
-            goal = min(length, t + patience * abs(w))
-            to = end if goal == length else start + direction * goal
-            change, used = phase_change_by_nodes(w, to, coefficients)
-            nodes += abs(used)
-            if used < 0 or nodes > WINDING_SETTINGS.max_edge_nodes:
-                return 0.0, -nodes
+            walk_end = min(length, t + node_walk_length * abs(w))
+            walk_end_w = end if walk_end == length else start + direction * walk_end
+            change, used_count = phase_change_by_nodes(w, walk_end_w, coefficients)
+            node_count += abs(used_count)
+            if used_count < 0 or node_count > WINDING_SETTINGS.max_edge_nodes:
+                return 0.0, -node_count
             total += change
-            t = goal
-    return total, nodes
+            t = walk_end
+    return total, node_count
 
 
 @compiled
@@ -123,54 +123,57 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     direction = (end - start) / length
     t = 0.0
     total = 0.0
-    nodes = 1
-    here = zero_free_disc_at(start, coefficients)
+    node_count = 1
+    node = zero_free_disc_at(start, coefficients)
     while t < length:
         if (
-            not here.reach > WINDING_SETTINGS.min_reach * abs(here.w)
-            or nodes > WINDING_SETTINGS.max_edge_nodes
+            not node.reach > WINDING_SETTINGS.min_reach * abs(node.w)
+            or node_count > WINDING_SETTINGS.max_edge_nodes
         ):
-            return 0.0, -nodes
+            return 0.0, -node_count
         # The next node may lie beyond the reach of this node if its own reach covers the step.
-        ahead = min(WINDING_SETTINGS.max_step * here.reach, length - t)
+        distance = min(WINDING_SETTINGS.max_step * node.reach, length - t)
         while True:
-            inside = ahead < here.reach
-            there = zero_free_disc_at(
-                start + direction * (t + ahead) if ahead < length - t else end, coefficients
+            is_in_disc = distance < node.reach
+            next_node = zero_free_disc_at(
+                start + direction * (t + distance) if distance < length - t else end, coefficients
             )
-            nodes += 1
-            if inside or abs(there.w - here.w) < max(here.reach, there.reach):
+            node_count += 1
+            if is_in_disc or abs(next_node.w - node.w) < max(node.reach, next_node.reach):
                 break
-            ahead = WINDING_SETTINGS.safe_step * here.reach
+            distance = WINDING_SETTINGS.safe_step * node.reach
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
-        turn = ((here.L if here.reach >= there.reach else there.L) * (there.w - here.w)).imag
-        total += turn + cmath.phase(there.D / here.D * cmath.exp(complex(0.0, -turn)))
-        t = length if there.w == end else t + ahead
-        here = there
-    return total, nodes
+        linear_change = (
+            (node.L if node.reach >= next_node.reach else next_node.L) * (next_node.w - node.w)
+        ).imag
+        total += linear_change + cmath.phase(next_node.D / node.D * cmath.exp(complex(0.0, -linear_change)))
+        t = length if next_node.w == end else t + distance
+        node = next_node
+    return total, node_count
 
 
 @compiled
 def contour_phase_change(
-    line: float, foot: float, corner: complex, coefficients: Coefficients
+    line: float, start_height: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
     """Returns (change of arg D along the upper half of the box, number of nodes and discs).
 
-    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height `foot`.
-    The number is negative, and the returned change meaningless, if the change could not be proved.
+    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height
+    `start_height`. The number is negative, and the returned change meaningless, if the change could not be
+    proved.
     """
     top = complex(line, corner.imag)
-    right, nodes = phase_change(complex(corner.real, 0.0), corner, coefficients)
-    if nodes < 0:
-        return 0.0, nodes
-    above, used = phase_change(corner, top, coefficients)
-    nodes += abs(used)
-    if used < 0 or foot == corner.imag:  # in the latter case D is near 1 on the whole line
-        return right + above, nodes if used > 0 else -nodes
+    right_change, node_count = phase_change(complex(corner.real, 0.0), corner, coefficients)
+    if node_count < 0:
+        return 0.0, node_count
+    top_change, used_count = phase_change(corner, top, coefficients)
+    node_count += abs(used_count)
+    if used_count < 0 or start_height == corner.imag:  # in the latter case D is near 1 on the whole line
+        return right_change + top_change, node_count if used_count > 0 else -node_count
     # The line is walked upwards, because a sum from the top could not resolve a small foot.
-    left, used = phase_change(complex(line, foot), top, coefficients)
-    nodes += abs(used)
-    return right + above - left, nodes if used > 0 else -nodes
+    left_change, used_count = phase_change(complex(line, start_height), top, coefficients)
+    node_count += abs(used_count)
+    return right_change + top_change - left_change, node_count if used_count > 0 else -node_count
 
 
 def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
@@ -181,30 +184,30 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
-        where = f"at F = {rod.F:g}"
-        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {where}")
+        place = f"at F = {rod.F:g}"
+        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")
     if line >= real:
         return EigenvalueCount(0, 0)
-    foot = 0.0
+    start_height = 0.0
     total = 0.0
     if line == 0.0:  # D(0) = 1, and D is near 1 up to `foot`, so this part of the line needs no nodes
-        foot = zero_free_radius_of_rod(rod.coefficients, imag)
-        if foot == 0.0:
+        start_height = zero_free_radius_of_rod(rod.coefficients, imag)
+        if start_height == 0.0:
             return EigenvalueCount(
                 None, 0, f"the pull F = {rod.F:g} is so strong that floating-point numbers underflow"
             )
         # Downwards from the foot to w = 0, where D = 1 is real, arg D changes by minus its value at the foot.
-        total = -cmath.phase(scaled_determinant(complex(0.0, foot), rod.coefficients)[0])
+        total = -cmath.phase(scaled_determinant(complex(0.0, start_height), rod.coefficients)[0])
     corner = upper_contour_corner(line, (real, imag))
-    change, nodes = contour_phase_change(line, foot, corner, rod.coefficients)
-    if nodes < 0:
-        return EigenvalueCount(None, -nodes, PHASE_LOST_MESSAGE)
+    change, node_count = contour_phase_change(line, start_height, corner, rod.coefficients)
+    if node_count < 0:
+        return EigenvalueCount(None, -node_count, PHASE_LOST_MESSAGE)
     total += change
     # Half the box has half the winding number: 2 pi times the count over both halves.
     number = round(total / math.pi)
     if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
-        return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
-    return EigenvalueCount(number, nodes)
+        return EigenvalueCount(None, node_count, NO_INTEGER_MESSAGE)
+    return EigenvalueCount(number, node_count)
 
 
 def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:

@@ -70,7 +70,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
         root = cmath.sqrt(z)
-        slack = S - root.real + 1
+        recessive_distance = S - root.real + 1
         rho = min(
             rho,
             NODE_DISC_SETTINGS.factor_change
@@ -79,8 +79,8 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
         )
         if abs(z) > NODE_DISC_SETTINGS.min_root_modulus:
             rate = slope / (2 * root)
-            rho = min(rho, slack / max(abs(rate - L), EXPONENT_SETTINGS.least_divisor))
-            rho = min(rho, math.sqrt(2 * slack * abs(root) / (abs(P2) + abs(rate) ** 2)))
+            rho = min(rho, recessive_distance / max(abs(rate - L), EXPONENT_SETTINGS.least_divisor))
+            rho = min(rho, math.sqrt(2 * recessive_distance * abs(root) / (abs(P2) + abs(rate) ** 2)))
     return rho
 
 
@@ -89,20 +89,23 @@ def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNod
     """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
     less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
     """
-    D, D_w, S, noise = scaled_determinant(w, coefficients)
-    room = DISC_BOUND_SETTINGS.max_relative_change * abs(D) - DISC_BOUND_SETTINGS.rounding_over_noise * noise
+    D, D_w, S, rounding_error = scaled_determinant(w, coefficients)
+    max_remainder = (
+        DISC_BOUND_SETTINGS.max_relative_change * abs(D)
+        - DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
+    )
     # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
-    if not room > 0:
+    if not max_remainder > 0:
         return ZeroFreeDiscNode(w, D, 0j, 0.0)
     L = D_w / D
     centre = bidisc_centre(w, coefficients, NO_COEFFICIENT_CHANGE, S)
-    best = 0.0
+    valid_radius = 0.0
     rho = trial_radius(w, coefficients, L, S)
     for _ in range(2):
         M = bound_on_bidisc(centre, (L, 0j), (rho, 0.0))
-        q = room / M
+        q = max_remainder / M
         # The largest r with M r^2/(rho (rho - r)) < room, from Cauchy's estimate of the remainder on the
         # disc.
-        best = max(best, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
+        valid_radius = max(valid_radius, rho * (math.sqrt(q * q + 4 * q) - q) / 2)
         rho /= 2
-    return ZeroFreeDiscNode(w, D, L, best)
+    return ZeroFreeDiscNode(w, D, L, valid_radius)

@@ -47,81 +47,81 @@ def crossing_newton(
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
-        D, D_w, D_p, _, noise = determinant_along_path(complex(0.0, eta), coefficients, direction)
+        D, D_w, D_p, _, rounding_error = determinant_along_path(complex(0.0, eta), coefficients, direction)
         # D is complex, the unknowns eta and p are real: d/d(eta) of D(i eta) is i D_w.
         a = 1j * D_w
         # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
         cross = (a * D_p.conjugate()).imag
         if cross == 0:
             return FAILED_ZERO
-        in_eta = -(D * D_p.conjugate()).imag / cross
-        in_p = (D * a.conjugate()).imag / cross
+        eta_step = -(D * D_p.conjugate()).imag / cross
+        p_step = (D * a.conjugate()).imag / cross
         # The rounding errors of p and eta add to the rounding error of D.
-        rounding = noise + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
+        rounding = rounding_error + ROUND_OFF * (abs(p * D_p) + abs(eta * D_w))
         e_eta = rounding * abs(D_p) / abs(cross)
         e_p = rounding * abs(a) / abs(cross)
-        step = max(abs(in_eta) / scale[0], abs(in_p) / scale[1])
+        step = max(abs(eta_step) / scale[0], abs(p_step) / scale[1])
         # Negated comparisons are also true for NaN.
-        if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + in_eta > 0:
+        if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + eta_step > 0:
             return FAILED_ZERO
-        eta += in_eta
-        p += in_p
+        eta += eta_step
+        p += p_step
         if (
-            abs(in_eta) <= ROOT_NEWTON_SETTINGS.converged_step * e_eta
-            and abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
+            abs(eta_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_eta
+            and abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
         ) or (
             step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
             and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)
         ):
-            return LocatedZero(eta, p, max(e_eta, abs(in_eta)), max(e_p, abs(in_p)))
+            return LocatedZero(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
         last = step
     return FAILED_ZERO
 
 
 @compiled
 def double_eigenvalue_newton(
-    x: float, p: float, origin: Coefficients, direction: Coefficients, reach: float
+    x: float, p: float, origin: Coefficients, direction: Coefficients, expected_distance: float
 ) -> LocatedZero:
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
 
-    origin, direction: coefficients at p = 0 and their derivative by p. reach: expected distance of p from the
-    guess. Returns `FAILED_ZERO` if p moves by more than twice `reach`, if the sign of x changes, if the
-    Jacobian is singular, or without convergence.
+    origin, direction: coefficients at p = 0 and their derivative by p. expected_distance: expected distance
+    of p from the guess. Returns `FAILED_ZERO` if p moves by more than twice `expected_distance`, if the sign
+    of x changes, if the Jacobian is singular, or without convergence.
     """
     start = x
     first = p
     last = math.inf
     for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
-        D, D_w, D_p, S, noise = _real_determinant(x, p, origin, direction)
+        D, D_w, D_p, S, rounding_error = _real_determinant(x, p, origin, direction)
         h = ROOT_NEWTON_SETTINGS.jacobian_step * abs(x)
-        k = ROOT_NEWTON_SETTINGS.jacobian_step * reach
-        _, right, _, S_right, _ = _real_determinant(x + h, p, origin, direction)
-        _, left, _, S_left, _ = _real_determinant(x - h, p, origin, direction)
+        k = ROOT_NEWTON_SETTINGS.jacobian_step * expected_distance
+        _, D_w_right, _, S_right, _ = _real_determinant(x + h, p, origin, direction)
+        _, D_w_left, _, S_left, _ = _real_determinant(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real_determinant(x, p + k, origin, direction)
-        _, before, _, S_before, _ = _real_determinant(x, p - k, origin, direction)
-        D_ww = (right * math.exp(S_right - S) - left * math.exp(S_left - S)) / (2 * h)
-        D_wp = (after * math.exp(S_after - S) - before * math.exp(S_before - S)) / (2 * k)
+        _, D_w_before, _, S_before, _ = _real_determinant(x, p - k, origin, direction)
+        D_ww = (D_w_right * math.exp(S_right - S) - D_w_left * math.exp(S_left - S)) / (2 * h)
+        D_wp = (after * math.exp(S_after - S) - D_w_before * math.exp(S_before - S)) / (2 * k)
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
             return FAILED_ZERO
-        in_x = (D_p * D_w - D_wp * D) / cross
-        in_p = (D_ww * D - D_w * D_w) / cross
-        rounding = noise + ROUND_OFF * abs(p * D_p)
+        x_step = (D_p * D_w - D_wp * D) / cross
+        p_step = (D_ww * D - D_w * D_w) / cross
+        rounding = rounding_error + ROUND_OFF * abs(p * D_p)
         e_p = rounding * abs(D_ww) / abs(cross)
-        e_x = (rounding * abs(D_wp) + noise / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)) / abs(
-            cross
-        )
-        x += in_x
-        p += in_p
+        e_x = (
+            rounding * abs(D_wp) + rounding_error / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)
+        ) / abs(cross)
+        x += x_step
+        p += p_step
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
-        if not abs(p - first) <= 2 * reach or not x * start > 0:
+        if not abs(p - first) <= 2 * expected_distance or not x * start > 0:
             return FAILED_ZERO
-        if abs(in_p) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
-            abs(in_x) <= ROOT_NEWTON_SETTINGS.converged_step * e_x
-            or abs(in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
+        if abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
+            abs(x_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_x
+            or abs(x_step) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
         ):
-            return LocatedZero(x, p, max(e_x, abs(in_x)), max(e_p, abs(in_p)))
-        last = abs(in_x)
+            return LocatedZero(x, p, max(e_x, abs(x_step)), max(e_p, abs(p_step)))
+        last = abs(x_step)
     return FAILED_ZERO
 
 
@@ -132,19 +132,19 @@ def _real_determinant(
     """D, D_w, D_p, S and the rounding error of D at real w = x and p, where D and its derivatives are
     real."""
     coefficients = coefficients_at(p, origin, direction)
-    D, D_w, D_p, S, noise = determinant_along_path(complex(x, 0.0), coefficients, direction)
-    return D.real, D_w.real, D_p.real, S, noise
+    D, D_w, D_p, S, rounding_error = determinant_along_path(complex(x, 0.0), coefficients, direction)
+    return D.real, D_w.real, D_p.real, S, rounding_error
 
 
 @compiled
-def refine_eigenvalue(w: complex, coefficients: Coefficients, farthest: float = math.inf) -> complex:
+def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: float = math.inf) -> complex:
     """The eigenvalue of a uniform rod near w, by Newton's method until rounding error stops the convergence.
 
-    A real guess w gives a real eigenvalue. farthest: if the first Newton step is at least this long, w is
-    returned unchanged.
+    A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least this long, w
+    is returned unchanged.
     """
     real = w.imag == 0
-    last = 2 * farthest
+    last = 2 * max_first_step
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
         value = scaled_determinant(w, coefficients)
         if value.D_w == 0:

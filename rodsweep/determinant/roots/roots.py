@@ -59,13 +59,13 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     """
     error, length, wave = newton_correction_and_scales(w, coefficients)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
-        D, D1, S, noise = scaled_determinant(w, coefficients)
-        e = max(abs(D), DETERMINANT_SETTINGS.typical_noise * noise)
-        second = abs(second_derivative(w, S, coefficients))
+        D, D1, S, rounding_error = scaled_determinant(w, coefficients)
+        e = max(abs(D), DETERMINANT_SETTINGS.typical_noise * rounding_error)
+        D_ww = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
-        if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * second:
-            spread = math.sqrt(2 * e / second)
-            error = min(max(error, spread), abs(D1) / second + spread)
+        if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
+            root_distance = math.sqrt(2 * e / D_ww)
+            error = min(max(error, root_distance), abs(D1) / D_ww + root_distance)
     return error, length, wave
 
 
@@ -100,25 +100,27 @@ def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) 
     w, error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its
     partner, (n,); inf if the eigenvalue was not moved.
     """
-    reach = np.full(len(w), math.inf)
+    half_distances = np.full(len(w), math.inf)
     for i in range(len(w)):
-        if reach[i] < math.inf:
+        if half_distances[i] < math.inf:
             continue
-        partner = -1
-        least = math.inf
+        nearest_index = -1
+        min_distance = math.inf
         for j in range(len(w)):
-            if j != i and reach[j] == math.inf and abs(w[j] - w[i]) < least:
-                partner = j
-                least = abs(w[j] - w[i])
-        if partner >= 0 and least <= ROOT_SETTINGS.pair_distance * (error[i] + error[partner]):
+            if j != i and half_distances[j] == math.inf and abs(w[j] - w[i]) < min_distance:
+                nearest_index = j
+                min_distance = abs(w[j] - w[i])
+        if nearest_index >= 0 and min_distance <= ROOT_SETTINGS.pair_distance * (
+            error[i] + error[nearest_index]
+        ):
             for _ in range(ROOT_SETTINGS.parabolas_per_pair):
-                middle = (w[i] + w[partner]) / 2
+                middle = (w[i] + w[nearest_index]) / 2
                 # The pair's centre is exactly real, and must stay so: its two roots are real or conjugate.
-                if w[partner] == w[i].conjugate() or (w[i].imag == 0 and w[partner].imag == 0):
+                if w[nearest_index] == w[i].conjugate() or (w[i].imag == 0 and w[nearest_index].imag == 0):
                     middle = complex(middle.real, 0.0)
-                w[i], w[partner] = taylor_parabola_roots(middle, coefficients)
-            reach[i] = reach[partner] = abs(w[i] - w[partner]) / 2
-    return reach
+                w[i], w[nearest_index] = taylor_parabola_roots(middle, coefficients)
+            half_distances[i] = half_distances[nearest_index] = abs(w[i] - w[nearest_index]) / 2
+    return half_distances
 
 
 @compiled
@@ -138,20 +140,21 @@ def sort_descending(w: Complex, order: NDArray) -> None:
     """
     for m in range(1, len(order)):
         i = order[m]
-        at = m
+        position = m
         # Insertion sort: the lists are short and nearly sorted.
-        while at > 0:
-            j = order[at - 1]
+        while position > 0:
+            j = order[position - 1]
             if w[j].real > w[i].real or (w[j].real == w[i].real and w[j].imag >= w[i].imag):
                 break
-            order[at] = j
-            at -= 1
-        order[at] = i
+            order[position] = j
+            position -= 1
+        order[position] = i
 
 
 @compiled
 def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, max_q: float) -> Roots:
-    """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root of D.
+    """Roots of D refined from those eigenvalues `raw` of a mesh, (n,), that approximate a root
+    of D.
 
     sqrt_bound: square root of `rodsweep.determinant.certificate.box.frequency_bound`. max_q:
     largest wave number |q| that the mesh resolves. Infinite eigenvalues, which rounding makes finite, are
@@ -160,31 +163,33 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     error: Array = np.empty(len(raw))
     length: Array = np.empty(len(raw))
     wave: Array = np.empty(len(raw))
-    near = np.zeros(len(raw), dtype=np.bool_)
+    is_near = np.zeros(len(raw), dtype=np.bool_)
     inside = np.zeros(len(raw), dtype=np.bool_)
-    first = raw.copy()
+    guess = raw.copy()
     for i in range(len(raw)):
         if not (math.isfinite(raw[i].real) and math.isfinite(raw[i].imag)):
             continue
         if abs(raw[i].imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(raw[i]):
-            first[i] = complex(raw[i].real, 0.0)
-        error[i], length[i], wave[i] = root_error_and_scales(first[i], coefficients)
+            guess[i] = complex(raw[i].real, 0.0)
+        error[i], length[i], wave[i] = root_error_and_scales(guess[i], coefficients)
         # No eigenvalue lies outside the box: eigenvalues of the mesh outside the box are artefacts.
-        real, imag = box_from_sqrt_bound(sqrt_bound, max(-first[i].real, 0.0))
-        inside[i] = first[i].real <= real and abs(first[i].imag) <= imag
-        near[i] = inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
-    chosen = np.flatnonzero(near)
-    first = first[chosen]
-    error = error[chosen]
-    length = length[chosen]
-    wave = wave[chosen]
-    w, stands = _refine_candidates(
-        first, error, wave, error <= ROOT_SETTINGS.max_correction * length, coefficients
+        real, imag = box_from_sqrt_bound(sqrt_bound, max(-guess[i].real, 0.0))
+        inside[i] = guess[i].real <= real and abs(guess[i].imag) <= imag
+        is_near[i] = (
+            inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
+        )
+    indices = np.flatnonzero(is_near)
+    guess = guess[indices]
+    error = error[indices]
+    length = length[indices]
+    wave = wave[indices]
+    w, is_refined = _refine_candidates(
+        guess, error, wave, error <= ROOT_SETTINGS.max_correction * length, coefficients
     )
-    order = np.flatnonzero(stands)
+    order = np.flatnonzero(is_refined)
     order = order[_descending_order(w[order])]
-    displacement = np.abs(w[order] - first[order]) / np.maximum(np.abs(w[order]), length[order])
-    chosen = chosen[order]
+    displacement = np.abs(w[order] - guess[order]) / np.maximum(np.abs(w[order]), length[order])
+    indices = indices[order]
     w = w[order]
     error = error[order]
     wave = wave[order]
@@ -192,37 +197,37 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     axis = np.abs(w.real) <= np.maximum(
         ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * np.abs(w)
     )
-    ahead = (inside & ~near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
-    return Roots(chosen, w, error, displacement, wave, axis, ahead)
+    spurious_count = (inside & ~is_near & (raw.real > (w[0].real if len(w) else -math.inf))).sum()
+    return Roots(indices, w, error, displacement, wave, axis, spurious_count)
 
 
 @compiled
 def _refine_candidates(
-    first: Complex, error: Array, wave: Array, near: NDArray[np.bool_], coefficients: Coefficients
+    first: Complex, error: Array, wave: Array, is_near_root: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
     """Returns (w, mask), both (k,). w: eigenvalues refined to roots of D. mask: whether w[i] is a root.
 
-    first: eigenvalues of the mesh, (k,). near: whether first[i] approximates a root, (k,). error, wave:
-    errors and wave numbers, (k,), updated in place.
+    first: eigenvalues of the mesh, (k,). is_near_root: whether first[i] approximates a root, (k,). error,
+    wave: errors and wave numbers, (k,), updated in place.
     """
     w = first.copy()
-    reach = _separate_close_pairs(w, error, coefficients)
-    moved = np.isfinite(reach)
-    stands = moved | near
+    half_distances = _separate_close_pairs(w, error, coefficients)
+    is_separated = np.isfinite(half_distances)
+    is_root = is_separated | is_near_root
     for i in range(len(w)):
-        if not stands[i]:
+        if not is_root[i]:
             continue
-        single = i > 0 and w[i].imag != 0 and not moved[i - 1] and not moved[i]
-        if single and w[i] == first[i - 1].conjugate():
+        is_conjugate = i > 0 and w[i].imag != 0 and not is_separated[i - 1] and not is_separated[i]
+        if is_conjugate and w[i] == first[i - 1].conjugate():
             # The conjugate is refined already.
             w[i] = w[i - 1].conjugate()
             error[i] = error[i - 1]
             wave[i] = wave[i - 1]
         else:
             # Close to a double root D and D' are rounding errors, whose quotient may lead anywhere.
-            w[i] = refine_eigenvalue(w[i], coefficients, reach[i])
+            w[i] = refine_eigenvalue(w[i], coefficients, half_distances[i])
             error[i], _, wave[i] = root_error_and_scales(w[i], coefficients)
-    return w, stands
+    return w, is_root
 
 
 @compiled
@@ -234,9 +239,9 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
     """
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
-            apart = abs(w[i] - w[j])
-            if apart <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
+            distance = abs(w[i] - w[j])
+            if distance <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
                 next_root = distance_to_next_root(w[i], coefficients)
-                if apart < ROOT_SETTINGS.same_root_fraction * next_root:
+                if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

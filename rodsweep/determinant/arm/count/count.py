@@ -68,33 +68,33 @@ def count_right_of(
     line: float,
     determinant: ArmDeterminant,
     hull: EigenvalueHull,
-    known: Complex = NO_KNOWN_EIGENVALUES,
-    error: Array | float = 0.0,
+    known_w: Complex = NO_KNOWN_EIGENVALUES,
+    errors: Array | float = 0.0,
 ) -> EigenvalueCount:
     """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
 
-    known, error: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed count
-    raises no exception: `number` is then None and `failure_reason` the reason.
+    known_w, errors: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed
+    count raises no exception: `number` is then None and `failure_reason` the reason.
     """
     if not math.isfinite(hull.a):
-        where = f"at F = {determinant.rod.F:g}"
-        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {where}")
+        place = f"at F = {determinant.rod.F:g}"
+        return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
-    known = known[error < CONTOUR_SETTINGS.max_known_error * np.abs(known.real - line)]
-    known = known[has_conjugate(known)]
-    height = np.maximum(np.abs(known.imag), abs(line))
-    known = known[np.abs(known.real - line) < CONTOUR_SETTINGS.max_known_distance * height]
+    known_w = known_w[errors < CONTOUR_SETTINGS.max_known_error * np.abs(known_w.real - line)]
+    known_w = known_w[has_conjugate(known_w)]
+    height = np.maximum(np.abs(known_w.imag), abs(line))
+    known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance * height]
     try:
-        total, nodes = _phase_change(line, determinant, hull, known)
+        change, nodes = _phase_change(line, determinant, hull, known_w)
     except PhaseLost as lost:
         return EigenvalueCount(None, lost.node_count, str(lost))
     except FloatingPointError as unresolved:
         return EigenvalueCount(None, 0, str(unresolved))
-    number = round(total / math.pi)
-    if abs(total / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
+    number = round(change / math.pi)
+    if abs(change / math.pi - number) > WINDING_SETTINGS.integer_tolerance:
         return EigenvalueCount(None, nodes, NO_INTEGER_MESSAGE)
-    return EigenvalueCount(number + int((known.real > line).sum()), nodes)
+    return EigenvalueCount(number + int((known_w.real > line).sum()), nodes)
 
 
 def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
@@ -122,115 +122,123 @@ def _corner(line: float, hull: EigenvalueHull) -> complex:
 
 
 def _phase_change(
-    line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known: Complex
+    line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known_w: Complex
 ) -> tuple[float, int]:
-    """Returns (change along the upper half of the box of arg D with `known` divided out; number of nodes).
+    """Returns (change along the upper half of the box of arg D with `known_w` divided out; number of nodes).
 
     Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
     """
     corner = _corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
-    largest = largest_w_of_count(line, determinant, hull)
-    level = determinant.propagators_for(largest, CONTOUR_SETTINGS.max_level_ratio)
+    largest_w = largest_w_of_count(line, determinant, hull)
+    propagators = determinant.propagators_for(largest_w, CONTOUR_SETTINGS.max_level_ratio)
     samples = determinant.samples, determinant.gauss_samples
     unit = determinant.w_scale(corners[0])
-    trial = unit, min(CONTOUR_SETTINGS.first_radius * unit, level[0] - abs(corners[0]))
-    first = phase_node(corners[0], known, trial, hull, (samples[1], level))
-    walk = ContourTraversal(0, 0.0, 0.0, 1, first, 0.0, 0.0, 0.0)
+    trial_radii = unit, min(CONTOUR_SETTINGS.first_radius * unit, propagators[0] - abs(corners[0]))
+    first_node = phase_node(corners[0], known_w, trial_radii, hull, (samples[1], propagators))
+    traversal = ContourTraversal(0, 0.0, 0.0, 1, first_node, 0.0, 0.0, 0.0)
     while True:
-        walk = _continue_traversal(walk, (corners, largest), known, hull, samples, level)
-        if walk.required_w_bound == 0:
+        traversal = _continue_traversal(traversal, (corners, largest_w), known_w, hull, samples, propagators)
+        if traversal.required_w_bound == 0:
             break
-        if walk.required_w_bound == math.inf:
-            raise PhaseLost(walk.node_count)
-        level = determinant.propagators_for(walk.required_w_bound, CONTOUR_SETTINGS.max_level_ratio)
-    return walk.phase_change, walk.node_count
+        if traversal.required_w_bound == math.inf:
+            raise PhaseLost(traversal.node_count)
+        propagators = determinant.propagators_for(
+            traversal.required_w_bound, CONTOUR_SETTINGS.max_level_ratio
+        )
+    return traversal.phase_change, traversal.node_count
 
 
 @compiled
 def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one walk
-    walk: ContourTraversal,
+    traversal: ContourTraversal,
     box: tuple[Complex, float],
-    known: Complex,
+    known_w: Complex,
     hull: EigenvalueHull,
     samples: tuple[ArmSamples, ArmSamples],
     level: PropagatorsUpToW,
 ) -> ContourTraversal:
     """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
 
-    box: (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use.
-    samples: samples of the arm's coefficients, which give the lengths over which D changes and the dominant
-    wave.
+    box: (corners, largest |w| for which propagators are known to exist). level: (W,
+    propagators) in use. samples: samples of the arm's coefficients, which give the lengths over which D
+    changes and the dominant wave.
     """
-    corners, largest = box
-    side, t, total, nodes, here, growth, ahead, _ = walk
+    corners, largest_w = box
+    side, t, change, nodes, node, growth, step, _ = traversal
     while side < len(corners) - 1:
         end = corners[side + 1]
         length = abs(end - corners[side])
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not here.reach > CONTOUR_SETTINGS.min_reach * abs(here.w) or nodes > CONTOUR_SETTINGS.max_nodes:
-            return ContourTraversal(side, t, total, nodes, here, growth, ahead, math.inf)
-        if ahead == 0:
-            ahead = min(_overlapping_distance(here.reach, growth), length - t)
-        w = end if ahead == length - t else corners[side] + (end - corners[side]) / length * (t + ahead)
+        if not node.reach > CONTOUR_SETTINGS.min_reach * abs(node.w) or nodes > CONTOUR_SETTINGS.max_nodes:
+            return ContourTraversal(side, t, change, nodes, node, growth, step, math.inf)
+        if step == 0:
+            step = min(_overlapping_distance(node.reach, growth), length - t)
+        w = end if step == length - t else corners[side] + (end - corners[side]) / length * (t + step)
         unit = mean_wave_number_and_w_scale(w, samples[0])[1]
         first = CONTOUR_SETTINGS.first_radius * unit
-        radius = min(2 * here.radius, CONTOUR_SETTINGS.max_circle_radius * unit) if here.radius > 0 else first
+        radius = min(2 * node.radius, CONTOUR_SETTINGS.max_circle_radius * unit) if node.radius > 0 else first
         radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
-        enough = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest - abs(w)))
-        needed = abs(w) + min(radius, enough)
-        if not _serves_efficiently(level[0], needed):
-            return ContourTraversal(side, t, total, nodes, here, growth, ahead, needed)
-        there = phase_node(w, known, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
+        limit = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest_w - abs(w)))
+        min_W = abs(w) + min(radius, limit)
+        if not _serves_efficiently(level[0], min_W):
+            return ContourTraversal(side, t, change, nodes, node, growth, step, min_W)
+        neighbour = phase_node(w, known_w, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
-        growth = (there.reach - here.reach) / ahead
-        if abs(there.w - here.w) < here.reach + there.reach:
-            total += _phase_between(here, there, samples[1])
-            t = length if there.w == end else t + ahead
-            here = there
-            ahead = 0.0
+        growth = (neighbour.reach - node.reach) / step
+        if abs(neighbour.w - node.w) < node.reach + neighbour.reach:
+            change += _phase_between(node, neighbour, samples[1])
+            t = length if neighbour.w == end else t + step
+            node = neighbour
+            step = 0.0
         else:
-            ahead = _shortened_distance(here.reach, growth, ahead)
-    return ContourTraversal(side, t, total, nodes, here, growth, ahead, 0.0)
+            step = _shortened_distance(node.reach, growth, step)
+    return ContourTraversal(side, t, change, nodes, node, growth, step, 0.0)
 
 
 @compiled
-def _serves_efficiently(W: float, needed: float) -> bool:
-    """Whether propagators for |w| <= W are valid at |w| = `needed`, with W not much larger than necessary."""
-    return needed <= W <= CONTOUR_SETTINGS.max_level_ratio * max(needed, ARM_ELEMENT_SETTINGS.min_W)
+def _serves_efficiently(W: float, required_W: float) -> bool:
+    """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than
+    necessary."""
+    return required_W <= W <= CONTOUR_SETTINGS.max_level_ratio * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
 
 
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node: `reach_overlap` times the sum of the present reach and of the reach expected
-    there. growth: expected change of the reach per distance, clipped to between -1 and `max_reach_growth`.
+    there. growth: expected change of the reach per distance, clipped to between -1 and
+    `max_reach_growth`.
     """
     overlap = CONTOUR_SETTINGS.reach_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_reach_growth))
 
 
 @compiled
-def _shortened_distance(reach: float, growth: float, ahead: float) -> float:
-    """A distance to the next node below `ahead`; repeated calls give a distance within the reach of the
+def _shortened_distance(reach: float, growth: float, distance: float) -> float:
+    """A distance to the next node below `distance`; repeated calls give a distance within the reach of the
     present node.
     """
-    nearer = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * ahead)
-    return nearer if nearer > reach else min(CONTOUR_SETTINGS.safe_step * reach, ahead / 2)
+    shorter_distance = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * distance)
+    return (
+        shorter_distance
+        if shorter_distance > reach
+        else min(CONTOUR_SETTINGS.safe_step * reach, distance / 2)
+    )
 
 
 @compiled
-def _phase_between(here: PhaseNode, there: PhaseNode, samples: ArmSamples) -> float:
+def _phase_between(node: PhaseNode, next_node: PhaseNode, samples: ArmSamples) -> float:
     """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
-    share = here.reach / (here.reach + there.reach)
-    between = here.w + share * (there.w - here.w)
+    fraction = node.reach / (node.reach + next_node.reach)
+    middle_w = node.w + fraction * (next_node.w - node.w)
     # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
     # because the reaches overlap.
-    expected = (
-        linearised_log_determinant(here, between, samples).imag
-        - linearised_log_determinant(there, between, samples).imag
+    linear_change = (
+        linearised_log_determinant(node, middle_w, samples).imag
+        - linearised_log_determinant(next_node, middle_w, samples).imag
     )
-    rest = there.direction / here.direction * cmath.exp(complex(0.0, -expected))
-    return expected + cmath.phase(rest)
+    remaining_rotation = next_node.direction / node.direction * cmath.exp(complex(0.0, -linear_change))
+    return linear_change + cmath.phase(remaining_rotation)

@@ -44,61 +44,66 @@ class NearAxisSettings(CompiledSettings):
 NEAR_AXIS_SETTINGS = NearAxisSettings()
 
 
-def modes_near_axis(determinant: ArmDeterminant, top: float, known: Complex) -> Complex:
+def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: Complex) -> Complex:
     """The known eigenvalues, followed by further eigenvalues close to the imaginary axis with Im w up to
-    `top`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`.
+    `max_frequency`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`.
 
-    known: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
+    known_w: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
     """
-    found = known[: NEAR_AXIS_SETTINGS.max_modes]
+    eigenvalues = known_w[: NEAR_AXIS_SETTINGS.max_modes]
     height = NEAR_AXIS_SETTINGS.first_height
-    while height < top:
+    while height < max_frequency:
         W, propagators = determinant.propagators_for(
             (1 + NEAR_AXIS_SETTINGS.max_distance) * height, CONTOUR_SETTINGS.max_level_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
-            top, W / (1 + NEAR_AXIS_SETTINGS.max_distance)
+            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance)
         ):
             heights.append(heights[-1] * NEAR_AXIS_SETTINGS.height_ratio)
-        found = _modes_from(np.array(heights), found, (W, propagators), determinant.gauss_samples)
+        eigenvalues = _modes_from(np.array(heights), eigenvalues, (W, propagators), determinant.gauss_samples)
         height = heights[-1] * NEAR_AXIS_SETTINGS.height_ratio
-    return found
+    return eigenvalues
 
 
 @compiled
-def _modes_from(heights: Array, known: Complex, level: PropagatorsUpToW, samples: ArmSamples) -> Complex:
+def _modes_from(
+    heights: Array, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
+) -> Complex:
     """The known eigenvalues, (n,), followed by the eigenvalues that Newton's method finds from w = i height,
-    for each of `heights`, (k,). level: (W, propagators)."""
-    found = np.empty(NEAR_AXIS_SETTINGS.max_modes, np.complex128)
-    n = len(known)
-    found[:n] = known
+    for each of `heights`, (k,). propagator_set: (W, propagators)."""
+    eigenvalues = np.empty(NEAR_AXIS_SETTINGS.max_modes, np.complex128)
+    n = len(known_w)
+    eigenvalues[:n] = known_w
     for height in heights:
         while n < NEAR_AXIS_SETTINGS.max_modes:
-            w = _mode_near(complex(0.0, height), found[:n], level, samples)
+            w = _mode_near(complex(0.0, height), eigenvalues[:n], propagator_set, samples)
             if math.isnan(w.real):
                 break
-            found[n] = w
+            eigenvalues[n] = w
             n += 1
-    return found[:n].copy()
+    return eigenvalues[:n].copy()
 
 
 @compiled
-def _mode_near(start: complex, known: Complex, level: PropagatorsUpToW, samples: ArmSamples) -> complex:
-    """The eigenvalue close to `start` that is not in `known`, (n,); nan if no further eigenvalue is close."""
-    w = start
+def _mode_near(
+    guess: complex, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
+) -> complex:
+    """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no further eigenvalue is
+    close."""
+    w = guess
     for _ in range(NEAR_AXIS_SETTINGS.max_steps):
-        value = determinant_along_chain(w, level[0], level[1])
+        value = determinant_along_chain(w, propagator_set[0], propagator_set[1])
         if value.D == 0:
             return w
         slope = value.D_w / value.D - dominant_exponent_slope(w, samples)
-        for k in range(len(known)):
-            slope -= 1 / (w - known[k]) if w != known[k] else 0j
-        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * start.imag > 1:
+        for k in range(len(known_w)):
+            slope -= 1 / (w - known_w[k]) if w != known_w[k] else 0j
+        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * guess.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - start) < NEAR_AXIS_SETTINGS.max_distance * start.imag):
+        if not (w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance * guess.imag):
             break
         if abs(step) <= NEAR_AXIS_SETTINGS.converged_step * abs(w):
             return w

@@ -72,28 +72,33 @@ def sampled_point_indices(first: int, last: int) -> list[int]:
     """Indices of the `NO_CROSSING_SETTINGS.arm_count` points, of the points `first` to `last`, at which D is
     evaluated: the middle, the ends, and further points."""
     steps = NO_CROSSING_SETTINGS.arm_count - 1
-    between = [first + (last - first) * k // steps for k in range(1, steps)]
-    middle = between.pop(steps // 2 - 1)
-    return [middle, first, last, *between]
+    further_indices = [first + (last - first) * k // steps for k in range(1, steps)]
+    middle = further_indices.pop(steps // 2 - 1)
+    return [middle, first, last, *further_indices]
 
 
 def proves_no_crossing(
-    line: float, rods: list[Rod], p: Array, known: tuple[Complex, Array], family: ArmFamily, hulls: PathHulls
+    line: float,
+    rods: list[Rod],
+    p: Array,
+    eigenvalues_and_errors: tuple[Complex, Array],
+    family: ArmFamily,
+    hulls: PathHulls,
 ) -> bool:
     """Whether no unknown eigenvalue lies on the line Re w = `line` for any arm of an interval.
 
-    rods: arms of the interval in the order of `sampled_point_indices`; p: their path variables, (n,). known:
-    their known eigenvalues, followed from arm to arm, and the errors, (n, m) each. family, hulls: as of the
-    whole path.
+    rods: arms of the interval in the order of `sampled_point_indices`; p: their path variables, (n,).
+    eigenvalues_and_errors: their known eigenvalues, followed from arm to arm, and the errors, (n, m) each.
+    family, hulls: as of the whole path.
     """
-    w, error = known
+    w, error = eigenvalues_and_errors
     top = _height_of_hulls(line, p, hulls)
     if not math.isfinite(top) or not all(has_conjugate(here).all() for here in w):
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
-    squares = np.array([one.squares for one in samples])
-    levels = [propagators_at(family, here)[1] for here in p.tolist()]
-    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(levels))
+    squares = np.array([arm_samples.squares for arm_samples in samples])
+    propagators = [propagators_at(family, here)[1] for here in p.tolist()]
+    arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
     unit = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
         line, 0.0, top, (CONTOUR_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
@@ -111,15 +116,15 @@ def proves_no_crossing(
 
 def _height_of_hulls(line: float, p: Array, hulls: PathHulls) -> float:
     """Largest |Im w| at Re w >= `line` in the hulls of all arms between the smallest and the largest p."""
-    inside = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
-    pieces = zip(hulls.a[inside].tolist(), hulls.c[inside].tolist(), strict=True)
-    return max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in pieces)
+    overlaps = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
+    intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
+    return max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
 
 
 def _arms_with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
     """The arms with propagators for |w| <= W."""
-    found = elements_for(rods, coefficient_samples(rods), W)
-    propagators = element_propagators([rod.F for rod in rods], found.local, found.lengths, W)
+    elements = elements_for(rods, coefficient_samples(rods), W)
+    propagators = element_propagators([rod.F for rod in rods], elements.local, elements.lengths, W)
     return arms._replace(largest_w=W, propagators=propagators)
 
 
@@ -136,10 +141,10 @@ def covered_height(
     height = start
     radius, smallest = radii
     while height < top:
-        fitting = (arms.largest_w - abs(complex(line, height))) / 2
-        if fitting < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
+        max_valid_radius = (arms.largest_w - abs(complex(line, height))) / 2
+        if max_valid_radius < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
             return height, radius
-        radius = min(radius, fitting)
+        radius = min(radius, max_valid_radius)
         w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap * radius)
         if _is_zero_free(w0, radius, arms):
             height = w0.imag + NO_CROSSING_SETTINGS.overlap * radius
@@ -158,11 +163,11 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     value = determinant_along_chain(w0, arms.largest_w, arms.propagators[0])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return False
-    divided = np.flatnonzero(
+    divided_indices = np.flatnonzero(
         np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
     )
     L = value.D_w / value.D
-    for n in divided:
+    for n in divided_indices:
         if _is_too_close_to_divide(w0, arms.known_eigenvalues[0, n], arms.known_errors[0, n]):
             return False
         L -= 1 / (w0 - arms.known_eigenvalues[0, n])
@@ -170,7 +175,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
         wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
-    node = LineNode(w0, value.D, value.S, L, divided, wave)
+    node = LineNode(w0, value.D, value.S, L, divided_indices, wave)
     number = len(arms.known_eigenvalues)
     is_free = True
     for k in range(1, number + 1):  # the ends before the middle arm, because f changes most at the ends
@@ -194,9 +199,9 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
     growth = 0.0
     if node.exponent_and_slope[0] == 0:
         # Phi has branch points on the real axis. Here only its change from arm to arm is used, off the axis.
-        above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
-        of_middle = dominant_exponent(above, ArmSamples(arms.squares[0], arms.weights))
-        growth = (dominant_exponent(above, samples) - of_middle).real
+        point_above = complex(node.w.real, radius / CONTOUR_SETTINGS.max_wave_radius)
+        middle_exponent = dominant_exponent(point_above, ArmSamples(arms.squares[0], arms.weights))
+        growth = (dominant_exponent(point_above, samples) - middle_exponent).real
     for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction
         D, S = chain_value(v, arms.largest_w, arms.propagators[arm])

@@ -53,102 +53,102 @@ class PhaseNode(NamedTuple):
 def linearised_log_determinant(node: PhaseNode, v: complex, samples: ArmSamples) -> complex:
     """The tangent h(v) of log D at a node, without the constant log D(w) (see the module docstring)."""
     Phi, slope = node.exponent_and_slope
-    ahead = (node.L - slope) * (v - node.w)
-    return ahead + dominant_exponent(v, samples) - Phi if Phi != 0 else ahead
+    linear_change = (node.L - slope) * (v - node.w)
+    return linear_change + dominant_exponent(v, samples) - Phi if Phi != 0 else linear_change
 
 
 @compiled
 def phase_node(
     w: complex,
-    known: Complex,
-    trial: tuple[float, float],
+    known_w: Complex,
+    trial_radii: tuple[float, float],
     hull: EigenvalueHull,
     arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w, inside or outside the hull.
 
-    known: eigenvalues to divide out of D, (n,). trial: (length over which D changes, largest radius of a
-    circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
+    known_w: eigenvalues to divide out of D, (n,). trial_radii: (length over which D changes, largest radius
+    of a circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = determinant_along_chain(w, arm[1][0], arm[1][1])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
-    for n in range(len(known)):
-        away = w - known[n]
-        direction *= away.conjugate() / abs(away)
-        L -= 1 / away
+    for n in range(len(known_w)):
+        difference = w - known_w[n]
+        direction *= difference.conjugate() / abs(difference)
+        L -= 1 / difference
     distance, normal = distance_and_normal(complex(w.real, abs(w.imag)), hull.a, hull.c)
     reach = 0.0
     if distance > 0:
         S = max((normal * L).real, 0.0) / distance
         reach = 1 / (1 / distance + math.sqrt(S / (2 * CONTOUR_SETTINGS.max_tangent_error)))
     node = PhaseNode(w, direction, L, (0j, 0j), reach, 0.0)
-    return node if reach > trial[0] else _node_inside(node, value, known, trial, arm)
+    return node if reach > trial_radii[0] else _node_inside(node, value, known_w, trial_radii, arm)
 
 
 @compiled
 def _node_inside(
     node: PhaseNode,
     value: DeterminantValue,
-    known: Complex,
+    known_w: Complex,
     trial: tuple[float, float],
     arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
-    """The node at w inside the hull, with the circle whose bound of |f| gives the largest reach.
+    """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
 
     value: D at the node. Further arguments as in `phase_node`.
     """
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
-    least = CONTOUR_SETTINGS.min_circle_radius * unit
-    room = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
-    here = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known)
+    min_rho = CONTOUR_SETTINGS.min_circle_radius * unit
+    excess = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
+    log_D = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known_w)
     best = node
-    rho = max(trial[1], least)
-    while rho >= least:
+    rho = max(trial[1], min_rho)
+    while rho >= min_rho:
         wave = (0j, 0j)
         if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
             wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
         # Smaller circles give at most this reach.
-        enough = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, room))
+        target = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, excess))
         reach = math.inf
-        size = -math.inf  # log of the largest |f| of the points of the circle
+        log_max = -math.inf  # log of the largest |f| of the points of the circle
         for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
-            log = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known)
-            size = max(size, log - linearised_log_determinant(tried, v, samples).real)
-            growth = math.exp(min(size - here, EXPONENT_SETTINGS.max_exponent))
-            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, room)
-            if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= least):
+            log_f = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known_w)
+            log_max = max(log_max, log_f - linearised_log_determinant(tried, v, samples).real)
+            growth = math.exp(min(log_max - log_D, EXPONENT_SETTINGS.max_exponent))
+            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, excess)
+            if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= min_rho):
                 reach = 0.0
                 break
         if reach > best.reach:
             best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
         elif best.radius > 0:
             break
-        if best.radius > 0 and best.reach >= enough:
+        if best.radius > 0 and best.reach >= target:
             break
         rho /= 2
     return best
 
 
 @compiled
-def _reach_of_circle(rho: float, M: float, room: float) -> float:
-    """Distance from w within which f changes by less than room |D|, if |f| <= M |D| on the circle of radius
-    rho.
+def _reach_of_circle(rho: float, M: float, excess: float) -> float:
+    """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| on the circle of
+    radius rho.
     """
-    q = room / M
+    q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 
 
 @compiled
-def _log_of_distance_product(v: complex, known: Complex) -> float:
+def _log_of_distance_product(v: complex, known_w: Complex) -> float:
     """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
-    for n in range(len(known)):
-        total += math.log(max(abs(v - known[n]), EXPONENT_SETTINGS.least_divisor))
+    for n in range(len(known_w)):
+        total += math.log(max(abs(v - known_w[n]), EXPONENT_SETTINGS.least_divisor))
     return total

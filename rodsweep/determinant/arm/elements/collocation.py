@@ -65,7 +65,7 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
     """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); the array is empty,
     terms = 0, if MAX_TERMS powers do not suffice.
 
-    F: forces of n arms, (n,). W: bound of |w|. local: `LocalCoefficients`, (6, n, elements, STAGES). lengths:
+    F: forces, (n,). W: bound of |w|. local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths
     of the elements, in L, (elements,).
     """
     n, elements = local.shape[1:3]
@@ -78,10 +78,10 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
             for arm in range(n):
                 coefficients[arm, b, :, :, lane] = local[:, arm, e] * lengths[e]
     terms = np.zeros((n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED))
-    most = fill_propagator_terms(F, W, coefficients, method, terms)
-    if most > ARM_ELEMENT_SETTINGS.max_terms:
+    term_count = fill_propagator_terms(F, W, coefficients, method, terms)
+    if term_count > ARM_ELEMENT_SETTINGS.max_terms:
         return terms[:, :, :0].copy()
-    return terms[:, :elements, :most].copy()
+    return terms[:, :elements, :term_count].copy()
 
 
 @compiled
@@ -95,49 +95,50 @@ def fill_propagator_terms(
     batches, 6, STAGES, LANES). terms: coefficients of the powers of w/W, (n, batches * LANES, MAX_TERMS,
     PADDED), all 0 at first.
     """
-    most = 1
+    count = 1
     shape = (ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.width)
     values = np.empty((MINORS, *shape))
     rates = np.empty((MINORS, *shape))
-    local = np.empty((6, *shape))
-    turning = np.empty((shape[0], 1 + shape[0], shape[1]))
+    repeated = np.empty((6, *shape))
+    matrices = np.empty((shape[0], 1 + shape[0], shape[1]))
     for arm in range(len(F)):
         for b in range(coefficients.shape[1]):
-            _repeat_per_initial_value(coefficients[arm, b], local)
+            _repeat_per_initial_value(coefficients[arm, b], repeated)
             for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-                own = coefficients[arm, b, :, :, lane]
-                eliminated = elimination_matrix(F[arm], own[C3], own[G], method.integrals)
-                _copy_to_simd_lane(eliminated, lane, turning)
-            here = terms[arm, b * ARM_ELEMENT_SETTINGS.lane_count : (b + 1) * ARM_ELEMENT_SETTINGS.lane_count]
-            most = max(most, _fill_batch_terms((F[arm], W), local, (method, turning), (values, rates), here))
-    return most
+                element = coefficients[arm, b, :, :, lane]
+                matrix = elimination_matrix(F[arm], element[C3], element[G], method.integrals)
+                _copy_to_simd_lane(matrix, lane, matrices)
+            start = b * ARM_ELEMENT_SETTINGS.lane_count
+            batch = terms[arm, start : start + ARM_ELEMENT_SETTINGS.lane_count]
+            work = values, rates
+            count = max(count, _fill_batch_terms((F[arm], W), repeated, (method, matrices), work, batch))
+    return count
 
 
 @compiled_for_vectors
-def _repeat_per_initial_value(coefficients: Array, local: Array) -> None:
-    """Writes coefficients, (6, STAGES, LANES), once for each initial value into local, (6, STAGES, WIDTH)."""
+def _repeat_per_initial_value(coefficients: Array, repeated: Array) -> None:
+    """Writes coefficients, (6, STAGES, LANES), for each initial value into repeated, (6, STAGES, WIDTH)."""
     for q in range(6):
         for i in range(ARM_ELEMENT_SETTINGS.stages):
             for k in range(MINORS):
                 for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-                    local[q, i, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = coefficients[q, i, lane]
+                    repeated[q, i, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = coefficients[q, i, lane]
 
 
 @compiled_for_vectors
-def _copy_to_simd_lane(eliminated: Array, lane: int, turning: Array) -> None:
-    """Copies `eliminated`, the `elimination_matrix` of one element, into the columns of lane number `lane` of
-    `turning`, (STAGES, 1 + STAGES, WIDTH).
-    """
+def _copy_to_simd_lane(matrix: Array, lane: int, lane_matrices: Array) -> None:
+    """Copies `matrix`, the `elimination_matrix` of one element, into the columns of lane number `lane` of
+    `lane_matrices`, (STAGES, 1 + STAGES, WIDTH)."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for j in range(1 + ARM_ELEMENT_SETTINGS.stages):
             for k in range(MINORS):
-                turning[i, j, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = eliminated[i, j]
+                lane_matrices[i, j, k * ARM_ELEMENT_SETTINGS.lane_count + lane] = matrix[i, j]
 
 
 @compiled
 def _fill_batch_terms(
     load: tuple[float, float],
-    local: Array,
+    coefficients: Array,
     method: tuple[IntegrationMatrices, Array],
     work: tuple[Array, Array],
     terms: Array,
@@ -145,36 +146,36 @@ def _fill_batch_terms(
     """Fills `terms`, the coefficients of propagators, for one batch of elements; returns the number of terms
     needed.
 
-    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). local: coefficients, (6, STAGES, WIDTH). method:
-    integrals, and `elimination_matrix` of each lane's element. work: values of the minors and their rates,
-    (MINORS, STAGES, WIDTH) each.
+    terms: (LANES, MAX_TERMS, PADDED). load: (F, W). coefficients: (6, STAGES, WIDTH). method: integrals, and
+    `elimination_matrix` of each lane's element. work: values and rates of the minors, (MINORS, STAGES,
+    WIDTH) each.
     """
     F, W = load
-    (Q, weights), turning = method
+    (Q, weights), matrices = method
     values, rates = work
     values[:] = 0.0
     rates[:] = 0.0
     for n in range(terms.shape[1]):
         start = 1.0 if n == 0 else 0.0  # the initial values belong to the term of w^0
-        fill_drag_rates(W, local, values, rates)
+        fill_drag_rates(W, coefficients, values, rates)
         _integrate(Q, rates[SM], values[SM])
         add_start_value(SM, start, values)
-        add_theta_s_rates(F, start, local, values, rates)
-        _integrate_eliminated(turning, rates[TS], values[TS])
-        add_eliminated_start_value(TS, start, turning, values)
-        fill_theta_m_rates(local, values, rates)
+        add_theta_s_rates(F, start, coefficients, values, rates)
+        _integrate_eliminated(matrices, rates[TS], values[TS])
+        add_eliminated_start_value(TS, start, matrices, values)
+        fill_theta_m_rates(coefficients, values, rates)
         _integrate(Q, rates[TM], values[TM])
         add_start_value(TM, start, values)
-        add_rates_by_theta_m(F, start, local, values, rates)
+        add_rates_by_theta_m(F, start, coefficients, values, rates)
         _integrate(Q, rates[YM], values[YM])  # without the part by y^theta
         add_start_value(YM, start, values)
-        fill_y_theta_rates(local, values, rates)
-        _integrate_eliminated(turning, rates[YT], values[YT])
-        add_eliminated_start_value(YT, start, turning, values)
-        add_rates_by_y_theta(F, local, values, rates)
+        fill_y_theta_rates(coefficients, values, rates)
+        _integrate_eliminated(matrices, rates[YT], values[YT])
+        add_eliminated_start_value(YT, start, matrices, values)
+        add_rates_by_y_theta(F, coefficients, values, rates)
         _integrate(Q, rates[YM], values[YM])
         add_start_value(YM, start, values)
-        fill_y_theta_rates(local, values, rates)
+        fill_y_theta_rates(coefficients, values, rates)
         if _write_end_terms(weights, rates, n, terms):
             return n + 1
     return terms.shape[1] + 1
@@ -196,18 +197,18 @@ def _integrate(Q: Array, rates: Array, out: Array) -> None:
 
 
 @compiled_for_vectors
-def _integrate_eliminated(turning: Array, rates: Array, out: Array) -> None:
+def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
     """Writes M Q rates into out, both (STAGES, WIDTH): rates integrated after the elimination of a minor.
 
-    turning: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
+    matrices: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             out[i, c] = 0.0
         for j in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
             for c in range(ARM_ELEMENT_SETTINGS.width):
-                out[i, c] += turning[i, j + 1, c] * rates[j, c] + turning[i, j + 2, c] * rates[j + 1, c]
-                out[i, c] += turning[i, j + 3, c] * rates[j + 2, c] + turning[i, j + 4, c] * rates[j + 3, c]
+                out[i, c] += matrices[i, j + 1, c] * rates[j, c] + matrices[i, j + 2, c] * rates[j + 1, c]
+                out[i, c] += matrices[i, j + 3, c] * rates[j + 2, c] + matrices[i, j + 4, c] * rates[j + 3, c]
 
 
 @compiled
@@ -217,28 +218,27 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
 
     terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,).
     """
-    end = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
-    _add_end_integrals(weights, rates, end)
-    done = True
+    integrals = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
+    _add_end_integrals(weights, rates, integrals)
+    is_negligible = True
     for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
         size = 0.0
-        first = 0.0
+        constant_size = 0.0
         for row in range(MINORS):
             for k in range(MINORS):
-                entry = end[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane]
+                entry = integrals[row, k * ARM_ELEMENT_SETTINGS.lane_count + lane]
                 entry += 1.0 if n == 0 and k == row else 0.0
                 terms[lane, n, MINORS * k + row] = entry
                 size = max(size, abs(entry))
-                first = max(first, abs(terms[lane, 0, MINORS * k + row]))
-        done = done and size <= ARM_ELEMENT_SETTINGS.negligible_term * first
-    return done
+                constant_size = max(constant_size, abs(terms[lane, 0, MINORS * k + row]))
+        is_negligible = is_negligible and size <= ARM_ELEMENT_SETTINGS.negligible_term * constant_size
+    return is_negligible
 
 
 @compiled_for_vectors
-def _add_end_integrals(weights: Array, rates: Array, end: Array) -> None:
-    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), over the elements to `end`, (MINORS, WIDTH).
-    weights: Gauss weights, (STAGES,).
-    """
+def _add_end_integrals(weights: Array, rates: Array, integrals: Array) -> None:
+    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), to `integrals`, (MINORS, WIDTH). weights: Gauss
+    weights, (STAGES,)."""
     for row in range(MINORS):
         for i in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
             p = weights[i]
@@ -246,5 +246,5 @@ def _add_end_integrals(weights: Array, rates: Array, end: Array) -> None:
             r = weights[i + 2]
             s = weights[i + 3]
             for c in range(ARM_ELEMENT_SETTINGS.width):
-                end[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
-                end[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]
+                integrals[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
+                integrals[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]

@@ -25,29 +25,29 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     max_elements + 1 boundaries are returned, all 0.
     """
     density = _elements_per_length(W, squares, tapers, points)
-    pieces = len(breaks) - 1
-    parts = len(points) // pieces
+    intervals = len(breaks) - 1
+    parts = len(points) // intervals
     edges = [0.0]
-    for piece in range(pieces):
-        start = breaks[piece]
-        part = (breaks[piece + 1] - start) / parts
-        own = density[piece * parts : (piece + 1) * parts]
-        mass = own.sum() * part
+    for interval in range(intervals):
+        start = breaks[interval]
+        part = (breaks[interval + 1] - start) / parts
+        interval_density = density[interval * parts : (interval + 1) * parts]
+        mass = interval_density.sum() * part
         if not (
             math.inf > W and mass <= ARM_ELEMENT_SETTINGS.max_elements
         ):  # a count of inf or nan is undefined
             return np.zeros(ARM_ELEMENT_SETTINGS.max_elements + 1)
         count = max(1, math.ceil(mass))
-        below = 0.0
+        integral = 0.0
         k = 0
         for edge in range(1, count):
             target = mass * edge / count
-            while k < parts - 1 and below + own[k] * part < target:
-                below += own[k] * part
+            while k < parts - 1 and integral + interval_density[k] * part < target:
+                integral += interval_density[k] * part
                 k += 1
-            edges.append(start + part * (k + min((target - below) / (own[k] * part), 1.0)))
+            edges.append(start + part * (k + min((target - integral) / (interval_density[k] * part), 1.0)))
         # Exactly on the break: beyond it the coefficients jump.
-        edges.append(breaks[piece + 1])
+        edges.append(breaks[interval + 1])
     return np.array(edges)
 
 
@@ -67,25 +67,25 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
         density[i] = math.sqrt(waves) / ARM_ELEMENT_SETTINGS.max_exponent
         for taper in (tapers.min(), tapers.max()):
             if taper != 1:
-                apex = 1 / (1 - taper)
+                apex_position = 1 / (1 - taper)
                 density[i] = max(
                     density[i],
-                    1 / (ARM_ELEMENT_SETTINGS.max_length_over_apex_distance * abs(apex - points[i])),
+                    1 / (ARM_ELEMENT_SETTINGS.max_length_over_apex_distance * abs(apex_position - points[i])),
                 )
     return density
 
 
-def halved_where_coarse(edges: Array, local: Array) -> Array:
+def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
     """Boundaries after halving every element that does not resolve the coefficients of an arm; the object
     `edges` itself if no element is halved.
 
-    local: coefficients of n arms at the Gauss points, (6, n, elements, stages).
+    coefficients: coefficients of n arms at the Gauss points, (6, n, elements, stages).
     """
-    coarse = _is_coarse(local, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
-    if not coarse.any():
+    is_coarse = _is_coarse(coefficients, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
+    if not is_coarse.any():
         return edges
-    middles = (edges[:-1] + edges[1:])[coarse] / 2
-    return np.sort(np.append(edges, middles))
+    midpoints = (edges[:-1] + edges[1:])[is_coarse] / 2
+    return np.sort(np.append(edges, midpoints))
 
 
 @cache
@@ -97,27 +97,28 @@ def _last_legendre_matrix(stages: int) -> Array:
 
 
 @compiled
-def _is_coarse(local: Array, last_terms: Array) -> NDArray[np.bool_]:
+def _is_coarse(coefficients: Array, last_terms: Array) -> NDArray[np.bool_]:
     """Mask of the elements, (elements,), that do not resolve an arm: one of the last two Legendre
     coefficients of nu, c2, c3, gamma2 or gamma3 exceeds `max_coefficient_tail` times the largest value.
 
-    local: coefficients of n arms, (6, n, elements, stages). last_terms: result of `_last_legendre_matrix`.
+    coefficients: coefficients of n arms, (6, n, elements, stages). last_terms: result of
+    `_last_legendre_matrix`.
     """
-    quantities, arms, elements, stages = local.shape
-    coarse = np.zeros(elements, np.bool_)
+    quantities, arms, elements, stages = coefficients.shape
+    is_coarse = np.zeros(elements, np.bool_)
     # The sixth coefficient, g, follows from the other coefficients and the force.
     for q in range(quantities - 1):
         for arm in range(arms):
             for e in range(elements):
                 size = EXPONENT_SETTINGS.least_divisor  # a compliance or a drag may be 0
-                first = 0.0
-                second = 0.0
+                next_to_last = 0.0
+                last = 0.0
                 for i in range(stages):
-                    value = local[q, arm, e, i]
+                    value = coefficients[q, arm, e, i]
                     size = max(size, abs(value))
-                    first += value * last_terms[0, i]
-                    second += value * last_terms[1, i]
-                coarse[e] |= (
-                    not max(abs(first), abs(second)) <= ARM_ELEMENT_SETTINGS.max_coefficient_tail * size
+                    next_to_last += value * last_terms[0, i]
+                    last += value * last_terms[1, i]
+                is_coarse[e] |= (
+                    not max(abs(next_to_last), abs(last)) <= ARM_ELEMENT_SETTINGS.max_coefficient_tail * size
                 )
-    return coarse
+    return is_coarse

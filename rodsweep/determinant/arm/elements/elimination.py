@@ -44,24 +44,24 @@ def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array
 
 
 @compiled_for_vectors
-def _solve_linear_system(system: Array, row: Array) -> None:
+def _solve_linear_system(system: Array, row_copy: Array) -> None:
     """Solves A x = right in place for a system (A, right), (STAGES, columns), by elimination with pivoting.
 
-    row: (columns,), overwritten.
+    row_copy: (columns,), overwritten.
     """
     columns = system.shape[1]
     for column in range(ARM_ELEMENT_SETTINGS.stages):
-        pivot = column
+        pivot_row = column
         for i in range(column + 1, ARM_ELEMENT_SETTINGS.stages):
-            if abs(system[i, column]) > abs(system[pivot, column]):
-                pivot = i
-        scale = 1 / system[pivot, column]
+            if abs(system[i, column]) > abs(system[pivot_row, column]):
+                pivot_row = i
+        scale = 1 / system[pivot_row, column]
         for j in range(columns):
-            row[j] = system[pivot, j] * scale
-            system[pivot, j] = system[column, j]
+            row_copy[j] = system[pivot_row, j] * scale
+            system[pivot_row, j] = system[column, j]
         for i in range(ARM_ELEMENT_SETTINGS.stages):
             factor = system[i, column]
             for j in range(columns):
-                system[i, j] -= factor * row[j]
+                system[i, j] -= factor * row_copy[j]
         for j in range(columns):
-            system[column, j] = row[j]
+            system[column, j] = row_copy[j]

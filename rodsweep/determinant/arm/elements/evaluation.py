@@ -22,10 +22,10 @@ RE, IM, RE_SLOPE, IM_SLOPE = range(4)
 @compiled
 def _needed_power_count(size: float, terms: int) -> int:
     """Number of powers of z that are not negligible in C and dC/dz at |z| = size, at most `terms`."""
-    needed = terms
-    while needed > 2 and size <= ARM_ELEMENT_SETTINGS.largest_z_by_term_count[needed - 1]:
-        needed -= 1
-    return needed
+    count = terms
+    while count > 2 and size <= ARM_ELEMENT_SETTINGS.largest_z_by_term_count[count - 1]:
+        count -= 1
+    return count
 
 
 @compiled
@@ -40,9 +40,9 @@ def powers_and_derivatives(z: complex, terms: int) -> Array:
     for n in range(1, len(powers)):
         # Multiplying two halves accumulates fewer rounding errors than n - 1 multiplications by z.
         half = complex(powers[n // 2, RE], powers[n // 2, IM])
-        here = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
-        powers[n, RE] = here.real
-        powers[n, IM] = here.imag
+        half_power = z if n == 1 else complex(powers[n - n // 2, RE], powers[n - n // 2, IM]) * half
+        powers[n, RE] = half_power.real
+        powers[n, IM] = half_power.imag
         powers[n, RE_SLOPE] = n * powers[n - 1, RE]
         powers[n, IM_SLOPE] = n * powers[n - 1, IM]
     return powers
@@ -88,15 +88,15 @@ def fill_real_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 @compiled_for_vectors
 def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Array) -> None:
     """Writes sum_n powers[n, row] polynomial[n], for each of two `rows`, into out, (2, PADDED)."""
-    first, second = rows
+    i, j = rows
     for k in range(PADDED):
-        out[0, k] = powers[0, first] * polynomial[0, k]
-        out[1, k] = powers[0, second] * polynomial[0, k]
+        out[0, k] = powers[0, i] * polynomial[0, k]
+        out[1, k] = powers[0, j] * polynomial[0, k]
     terms = len(powers)
-    done = 1
+    count = 1
     for n in range(1, terms - 3, 4):  # four terms at a time save passes over `out`
-        a, b, c, d = powers[n, first], powers[n + 1, first], powers[n + 2, first], powers[n + 3, first]
-        p, q, r, s = powers[n, second], powers[n + 1, second], powers[n + 2, second], powers[n + 3, second]
+        a, b, c, d = (powers[n, i], powers[n + 1, i], powers[n + 2, i], powers[n + 3, i])
+        p, q, r, s = (powers[n, j], powers[n + 1, j], powers[n + 2, j], powers[n + 3, j])
         for k in range(PADDED):
             x = polynomial[n, k]
             y = polynomial[n + 1, k]
@@ -104,10 +104,10 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
             last = polynomial[n + 3, k]
             out[0, k] += a * x + b * y + c * z + d * last
             out[1, k] += p * x + q * y + r * z + s * last
-        done = n + 4
-    for n in range(done, terms):
-        a = powers[n, first]
-        p = powers[n, second]
+        count = n + 4
+    for n in range(count, terms):
+        a = powers[n, i]
+        p = powers[n, j]
         for k in range(PADDED):
             out[0, k] += a * polynomial[n, k]
             out[1, k] += p * polynomial[n, k]

@@ -31,87 +31,91 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 
 @compiled_for_vectors
-def add_eliminated_start_value(minor: int, start: float, turning: Array, values: Array) -> None:
+def add_eliminated_start_value(minor: int, start: float, eliminations: Array, values: Array) -> None:
     """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
-    values: (MINORS, STAGES, WIDTH). turning: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`.
+    values: (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0
+    multiplies `start`.
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane
-            values[minor, i, c] += start * turning[i, 0, c]
+            values[minor, i, c] += start * eliminations[i, 0, c]
 
 
 @compiled_for_vectors
-def fill_drag_rates(W: float, local: Array, values: Array, rates: Array) -> None:
+def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
     at the previous power of w.
 
-    values, rates: (MINORS, STAGES, WIDTH). local: coefficients, (6, STAGES, WIDTH). W: unit of w.
+    values, rates: (MINORS, STAGES, WIDTH). coefficients: coefficients, (6, STAGES, WIDTH). W: unit of
+    w.
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            push = W * local[GAMMA2, i, c]
-            turn = W * local[GAMMA3, i, c]
-            rates[SM, i, c] = push * values[YM, i, c] - turn * values[TS, i, c]
-            rates[TS, i, c] = -push * values[YT, i, c]
-            rates[YM, i, c] = turn * values[YT, i, c]
+            transverse_drag = W * coefficients[GAMMA2, i, c]
+            rotational_drag = W * coefficients[GAMMA3, i, c]
+            rates[SM, i, c] = transverse_drag * values[YM, i, c] - rotational_drag * values[TS, i, c]
+            rates[TS, i, c] = -transverse_drag * values[YT, i, c]
+            rates[YM, i, c] = rotational_drag * values[YT, i, c]
 
 
 @compiled_for_vectors
-def add_theta_s_rates(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
+def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
-    theta^m. local, values: see the module docstring.
+    theta^m. coefficients, values: see the module docstring.
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[TS, i, c] -= local[C3, i, c] * values[SM, i, c]
+            rates[TS, i, c] -= coefficients[C3, i, c] * values[SM, i, c]
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
-            rates[TS, i, c] += F * start * local[C3, i, c]
+            rates[TS, i, c] += F * start * coefficients[C3, i, c]
 
 
 @compiled_for_vectors
-def fill_theta_m_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). local, values: see the module
-    docstring.
-    """
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[TM, i, c] = -local[G, i, c] * values[TS, i, c]
-
-
-@compiled_for_vectors
-def add_rates_by_theta_m(F: float, start: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
-    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted. local, values:
-    see the module docstring.
-    """
-    for i in range(ARM_ELEMENT_SETTINGS.stages):
-        for c in range(ARM_ELEMENT_SETTINGS.width):
-            turn = values[TM, i, c]
-            rates[TS, i, c] += F * local[C3, i, c] * turn
-            rates[YM, i, c] += (local[G, i, c] + local[NU, i, c]) * turn
-            rates[YM, i, c] += local[C2, i, c] * values[SM, i, c]
-        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
-            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
-            rates[TS, i, c] -= F * start * local[C3, i, c]  # contained in `add_theta_s_rates`
-
-
-@compiled_for_vectors
-def fill_y_theta_rates(local: Array, values: Array, rates: Array) -> None:
-    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). local, values: see the
+def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None:
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). coefficients, values: see the
     module docstring.
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[YT, i, c] = local[C3, i, c] * values[YM, i, c] - local[C2, i, c] * values[TS, i, c]
+            rates[TM, i, c] = -coefficients[G, i, c] * values[TS, i, c]
 
 
 @compiled_for_vectors
-def add_rates_by_y_theta(F: float, local: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. local, values: see the module
-    docstring.
+def add_rates_by_theta_m(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
+    y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted.
+    coefficients, values: see the module docstring.
     """
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            rates[YM, i, c] -= F * local[G, i, c] * values[YT, i, c]
+            turn = values[TM, i, c]
+            rates[TS, i, c] += F * coefficients[C3, i, c] * turn
+            rates[YM, i, c] += (coefficients[G, i, c] + coefficients[NU, i, c]) * turn
+            rates[YM, i, c] += coefficients[C2, i, c] * values[SM, i, c]
+        for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
+            c = TM * ARM_ELEMENT_SETTINGS.lane_count + lane
+            rates[TS, i, c] -= F * start * coefficients[C3, i, c]  # contained in `add_theta_s_rates`
+
+
+@compiled_for_vectors
+def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None:
+    """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). coefficients, values:
+    see the module docstring.
+    """
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
+            rates[YT, i, c] = (
+                coefficients[C3, i, c] * values[YM, i, c] - coefficients[C2, i, c] * values[TS, i, c]
+            )
+
+
+@compiled_for_vectors
+def add_rates_by_y_theta(F: float, coefficients: Array, values: Array, rates: Array) -> None:
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. coefficients, values: see the
+    module docstring.
+    """
+    for i in range(ARM_ELEMENT_SETTINGS.stages):
+        for c in range(ARM_ELEMENT_SETTINGS.width):
+            rates[YM, i, c] -= F * coefficients[G, i, c] * values[YT, i, c]

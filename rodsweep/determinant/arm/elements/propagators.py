@@ -38,14 +38,14 @@ def _collocation_method() -> IntegrationMatrices:
     return IntegrationMatrices(np.ascontiguousarray(integrals), np.ascontiguousarray(weights))
 
 
-def element_propagators(F: Sequence[float], local: Array, lengths: Array, W: float) -> Array:
+def element_propagators(F: Sequence[float], coefficients: Array, lengths: Array, W: float) -> Array:
     """The propagators C of the elements of n arms in powers of w/W, (n, elements, terms, PADDED), C column
     by column.
 
-    F: forces, (n,). local: `LocalCoefficients` at the Gauss points, (6, n, elements, stages). lengths: of
-    elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
+    F: forces, (n,). coefficients: `LocalCoefficients` at the Gauss points, (6, n, elements, stages).
+    lengths: of elements, in L, (elements,). Raises FloatingPointError if `max_terms` powers do not resolve C.
     """
-    terms = propagator_terms(np.array(F, float), W, local, lengths, _collocation_method())
+    terms = propagator_terms(np.array(F, float), W, coefficients, lengths, _collocation_method())
     if not terms.size:
         raise FloatingPointError(
             f"D of this arm at |w| = {W:g} needs more than the maximum of {ARM_ELEMENT_SETTINGS.max_terms} "

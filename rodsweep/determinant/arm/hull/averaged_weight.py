@@ -54,23 +54,23 @@ class GridPositions(NamedTuple):
 
 
 @compiled
-def averaged_regions(u: Array, local: Array, F: float) -> Array:
+def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound.
 
-    u: points of an arm from clamp to tip, (points,), two at a jump. local: `LocalCoefficients` at the points,
-    (6, points), with c2 > 0 and g > 0. F: force.
+    u: points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients`
+    at the points, (6, points), with c2 > 0 and g > 0. F: force.
     """
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
         points = _with_points_beside_jumps(u, h)
-        places = _grid_positions(points, u)
-        there = np.empty((6, len(points)))
+        positions = _grid_positions(points, u)
+        coefficients_at_points = np.empty((6, len(points)))
         for k in range(6):
-            there[k] = _interpolate_at_positions(places, local[k])
+            coefficients_at_points[k] = _interpolate_at_positions(positions, coefficients[k])
         window = (_grid_positions(points - h, points), _grid_positions(points + h, points))
         for f in AVERAGED_WEIGHT_SETTINGS.factors:
-            _write_regions_of_trial(regions[row : row + 2], points, there, window, (F, f, h))
+            _write_regions_of_trial(regions[row : row + 2], points, coefficients_at_points, window, (F, f, h))
             row += 2
     return regions
 
@@ -85,11 +85,14 @@ def _with_points_beside_jumps(u: Array, h: float) -> Array:
     points[:count] = u
     for i in range(len(u) - 1):
         if u[i + 1] - u[i] < AVERAGED_WEIGHT_SETTINGS.jump_distance:
-            for side in (-h, h):
-                for at in (-AVERAGED_WEIGHT_SETTINGS.point_distance, AVERAGED_WEIGHT_SETTINGS.point_distance):
-                    place = (u[i + 1] + u[i]) / 2 + side + at
-                    if u[0] < place < u[-1]:
-                        points[count] = place
+            for window_end in (-h, h):
+                for offset in (
+                    -AVERAGED_WEIGHT_SETTINGS.point_distance,
+                    AVERAGED_WEIGHT_SETTINGS.point_distance,
+                ):
+                    position = (u[i + 1] + u[i]) / 2 + window_end + offset
+                    if u[0] < position < u[-1]:
+                        points[count] = position
                         count += 1
     return np.sort(points[:count])
 
@@ -98,24 +101,24 @@ def _with_points_beside_jumps(u: Array, h: float) -> Array:
 def _grid_positions(x: Array, grid: Array) -> GridPositions:
     """Positions of x, (n,), increasing, in the intervals of `grid`; x outside is moved to the nearer end."""
     interval = np.empty(len(x), np.int64)
-    share = np.empty(len(x))
+    fraction = np.empty(len(x))
     i = 0
     for n in range(len(x)):
         while i < len(grid) - 2 and grid[i + 1] < x[n]:
             i += 1
         width = grid[i + 1] - grid[i]
         interval[n] = i
-        share[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
-    return GridPositions(interval, share)
+        fraction[n] = min(max((x[n] - grid[i]) / width, 0.0), 1.0) if width > 0 else 0.0
+    return GridPositions(interval, fraction)
 
 
 @compiled
-def _interpolate_at_positions(places: GridPositions, values: Array) -> Array:
+def _interpolate_at_positions(positions: GridPositions, values: Array) -> Array:
     """Values at positions in a grid, (n,), interpolated linearly from `values` at the grid points."""
-    out = np.empty(len(places.fraction))
+    out = np.empty(len(positions.fraction))
     for n in range(len(out)):
-        i = places.interval_index[n]
-        out[n] = values[i] + places.fraction[n] * (values[i + 1] - values[i])
+        i = positions.interval_index[n]
+        out[n] = values[i] + positions.fraction[n] * (values[i + 1] - values[i])
     return out
 
 
@@ -123,48 +126,50 @@ def _interpolate_at_positions(places: GridPositions, values: Array) -> Array:
 def _write_regions_of_trial(
     regions: Array,
     u: Array,
-    local: Array,
+    coefficients: Array,
     window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
     """Writes the two regions (a, c) of a trial (F, f, h) into `regions`, (2, 2). In the first region (t -
     alpha) nu is bounded by theta(0) = 0, in the second by the rotational drag.
 
-    u: points of the arm, (points,). local: `LocalCoefficients` at u, (6, points). window: positions of u - h
-    and of u + h in u.
+    u: points of the arm, (points,). coefficients: `LocalCoefficients` at u, (6, points). window:
+    positions of u - h and of u + h in u.
     """
     F, f, h = trial
     count = len(u)
     log_t = np.empty(count)
     integral = np.zeros(count)
     for i in range(count):
-        nu, c2, c3, gamma2, gamma3, g = local[:, i]
+        nu, c2, c3, gamma2, gamma3, g = coefficients[:, i]
         log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
         if i > 0:
             integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    behind, ahead, means = _averaged_log_weight(u, log_t, integral, window, h)
-    split = 0.0
-    whole = 0.0
-    bend = 0.0
-    share = 0.0
-    before = 0.0
+    log_t_left, log_t_right, log_t_integrals = _averaged_log_weight(u, log_t, integral, window, h)
+    a2_clamp = 0.0
+    a2_drag = 0.0
+    bending = 0.0
+    c2_clamp = 0.0
+    previous = 0.0
     for i in range(count):
-        nu, c2, c3, gamma2, gamma3, g = local[:, i]
-        alpha = math.exp(means[i] / (2 * h))
+        nu, c2, c3, gamma2, gamma3, g = coefficients[:, i]
+        alpha = math.exp(log_t_integrals[i] / (2 * h))
         t = math.exp(log_t[i])
-        A2 = ((ahead[i] - behind[i]) / (2 * h)) ** 2 / (gamma2 * c2)
+        A2 = ((log_t_right[i] - log_t_left[i]) / (2 * h)) ** 2 / (gamma2 * c2)
         B2 = F * F * alpha * c3 / gamma2
-        split = max(split, squared_block_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2))
-        whole = max(whole, squared_block_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
+        a2_clamp = max(
+            a2_clamp, squared_block_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2)
+        )
+        a2_drag = max(a2_drag, squared_block_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
         if i > 0:
             # As theta(0) = 0, |theta(u)|^2 is at most int_0^u c3 du times int c3 |m|^2 du.
-            bend += (u[i] - u[i - 1]) * (c3 + local[2, i - 1]) / 2
-        here = ((t - alpha) * nu) ** 2 / (alpha * c2) * bend
+            bending += (u[i] - u[i - 1]) * (c3 + coefficients[2, i - 1]) / 2
+        density = ((t - alpha) * nu) ** 2 / (alpha * c2) * bending
         if i > 0:
-            share += (u[i] - u[i - 1]) * (here + before) / 2
-        before = here
-    regions[0] = math.sqrt(split), math.sqrt(share) / 2
-    regions[1] = math.sqrt(whole), 0.0
+            c2_clamp += (u[i] - u[i - 1]) * (density + previous) / 2
+        previous = density
+    regions[0] = math.sqrt(a2_clamp), math.sqrt(c2_clamp) / 2
+    regions[1] = math.sqrt(a2_drag), 0.0
 
 
 @compiled
@@ -176,12 +181,12 @@ def _averaged_log_weight(
     u: points of the arm. log_t: log t at u. integral: integral of log t from the first point to every point.
     All (points,). window: positions of u - h and of u + h in u.
     """
-    behind = _interpolate_at_positions(window[0], log_t)
-    ahead = _interpolate_at_positions(window[1], log_t)
+    log_t_left = _interpolate_at_positions(window[0], log_t)
+    log_t_right = _interpolate_at_positions(window[1], log_t)
     # Beyond its ends the arm continues with its end values, so that every window has the same width.
-    means = _interpolate_at_positions(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
-    means -= _interpolate_at_positions(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
-    return behind, ahead, means
+    integrals = _interpolate_at_positions(window[1], integral) + np.maximum(u + h - u[-1], 0.0) * log_t[-1]
+    integrals -= _interpolate_at_positions(window[0], integral) - np.maximum(u[0] - (u - h), 0.0) * log_t[0]
+    return log_t_left, log_t_right, integrals
 
 
 @compiled

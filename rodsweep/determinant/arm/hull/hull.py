@@ -55,9 +55,9 @@ def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
 
 def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
     """The smallest hull found for the spectra of all sampled arms; `UNBOUNDED_HULL` if no bound is found."""
-    largest = 1 - HULL_SETTINGS.min_remainder
+    max_c = 1 - HULL_SETTINGS.min_remainder
     a, c = _smallest_region(
-        arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), largest
+        arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), max_c
     )
     return EigenvalueHull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
@@ -82,11 +82,13 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     build = rods[0].build
     lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
-    local = np.array(Rod.local_coefficients_of_rods(rods, u))
+    coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged = (
-        np.empty((len(rods), 0, 2)) if build.is_continuous else _averaged_regions_by_arm(F, lengths, local)
+        np.empty((len(rods), 0, 2))
+        if build.is_continuous
+        else _averaged_regions_by_arm(F, lengths, coefficients)
     )
-    return HullSamples(F, lengths, local, averaged)
+    return HullSamples(F, lengths, coefficients, averaged)
 
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_builds)
@@ -99,24 +101,26 @@ def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
     return lengths * (1 - 2 * HULL_SETTINGS.end_distance), u
 
 
-def _averaged_regions_by_arm(F: Array, lengths: Array, local: Array) -> Array:
+def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
     """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
-    g > 0 everywhere. F, lengths, local: as in `HullSamples`.
+    g > 0 everywhere. F, lengths, coefficients: as in `HullSamples`.
     """
-    starts = np.cumsum(lengths) - lengths
+    interval_starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
-    u = (starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
-    along = local.reshape(6, len(F), -1)
+    u = (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
+    flat_coefficients = coefficients.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
-    for i in np.flatnonzero(((along[5] > 0) & (along[1] > 0)).all(axis=1)).tolist():
-        regions[i] = averaged_regions(u, np.ascontiguousarray(along[:, i]), float(F[i]))
+    for i in np.flatnonzero(((flat_coefficients[5] > 0) & (flat_coefficients[1] > 0)).all(axis=1)).tolist():
+        regions[i] = averaged_regions(u, np.ascontiguousarray(flat_coefficients[:, i]), float(F[i]))
     return regions
 
 
-def _slice_of_samples(arms: HullSamples, chosen: slice) -> HullSamples:
-    """The samples of the arms with the indices `chosen`."""
-    local = np.ascontiguousarray(arms.local[:, chosen])
-    return arms._replace(F=arms.F[chosen], local=local, averaged_regions=arms.averaged_regions[chosen])
+def _slice_of_samples(arms: HullSamples, arm_indices: slice) -> HullSamples:
+    """The samples of the arms with the indices `arm_indices`."""
+    coefficients = np.ascontiguousarray(arms.local[:, arm_indices])
+    return arms._replace(
+        F=arms.F[arm_indices], local=coefficients, averaged_regions=arms.averaged_regions[arm_indices]
+    )
 
 
 class ChebyshevMatrices(NamedTuple):
@@ -148,51 +152,51 @@ def _chebyshev_matrices() -> ChebyshevMatrices:
 
 @compiled
 def _smallest_region(
-    F: Array, lengths: Array, local: Array, averaged: Array, chebyshev: ChebyshevMatrices, largest: float
+    F: Array, lengths: Array, coefficients: Array, averaged: Array, chebyshev: ChebyshevMatrices, max_c: float
 ) -> tuple[float, float]:
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    F, lengths, local: as in `HullSamples`. averaged: `averaged_regions` of `HullSamples`. largest: bound of
-    c.
+    F, lengths, coefficients: as in `HullSamples`. averaged: `averaged_regions` of `HullSamples`. max_c:
+    bound of c.
     """
-    nu, c2, c3, gamma2, gamma3, g = local
-    push = 0.0
+    nu, c2, c3, gamma2, gamma3, g = coefficients
+    max_weighted_force = 0.0
     for arm in range(len(F)):
-        push = max(push, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
-    alphas = trial_constant_weights(local)
-    best = (inf, 0.0)
+        max_weighted_force = max(max_weighted_force, (F[arm] * F[arm] * c3[arm] / gamma2[arm]).max())
+    alphas = trial_constant_weights(coefficients)
+    smallest = (inf, 0.0)
     if not (c2 > 0).any():  # then g = nu
-        best = (sqrt(push), 0.0)
+        smallest = (sqrt(max_weighted_force), 0.0)
     elif (gamma3 > 0).all():
-        best = (sqrt(least_squared_norm(alphas, local.reshape(6, -1), push)), 0.0)
+        smallest = (sqrt(least_squared_norm(alphas, coefficients.reshape(6, -1), max_weighted_force)), 0.0)
     continuous = averaged.shape[1] == 0
     if continuous and (g > 0).all() and (c2 > 0).all():
-        for square in varying_weight_norms(F, lengths, local, chebyshev.derivative):
-            best = _smaller_region(best, (sqrt(square), 0.0), largest)
+        for square in varying_weight_norms(F, lengths, coefficients, chebyshev.derivative):
+            smallest = _smaller_region(smallest, (sqrt(square), 0.0), max_c)
     for trial in range(averaged.shape[1]):
         c = (1 + HULL_SETTINGS.enlargement) * averaged[:, trial, 1].max()
-        best = _smaller_region(best, (averaged[:, trial, 0].max(), c), largest)
+        smallest = _smaller_region(smallest, (averaged[:, trial, 0].max(), c), max_c)
     if not (c2 > 0).all():
         alphas = np.ones(1)
-    integrals = clamp_integrals(alphas, F, lengths, local, chebyshev.integral)
+    integrals = clamp_integrals(alphas, F, lengths, coefficients, chebyshev.integral)
     for k in range(len(alphas)):
         c = (1 + HULL_SETTINGS.enlargement) * sqrt(integrals[k]) / 2
-        best = _smaller_region(best, (sqrt(alphas[k] * push), c), largest)
-    return best
+        smallest = _smaller_region(smallest, (sqrt(alphas[k] * max_weighted_force), c), max_c)
+    return smallest
 
 
 @compiled
 def _smaller_region(
-    best: tuple[float, float], other: tuple[float, float], largest: float
+    current: tuple[float, float], candidate: tuple[float, float], max_c: float
 ) -> tuple[float, float]:
-    """The smaller of the regions (a, c) `best` and `other`, by the measure a^2 (1 +
+    """The smaller of the regions (a, c) `current` and `candidate`, by the measure a^2 (1 +
     (c/c_doubling_measure)^4).
 
-    `best` is returned if `other` has c >= `largest`.
+    `current` is returned if `candidate` has c >= `max_c`.
     """
-    if not other[1] < largest:
-        return best
-    here = best[0] ** 2 * (1 + (best[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
-    there = other[0] ** 2 * (1 + (other[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
-    return other if there < here else best
+    if not candidate[1] < max_c:
+        return current
+    current_size = current[0] ** 2 * (1 + (current[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
+    candidate_size = candidate[0] ** 2 * (1 + (candidate[1] / HULL_SETTINGS.c_doubling_measure) ** 4)
+    return candidate if candidate_size < current_size else current

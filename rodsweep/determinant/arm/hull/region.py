@@ -67,8 +67,8 @@ class EigenvalueHull(NamedTuple):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
-        pad = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
-        return a * a / (4 * b) + pad, a * n + self.c * n * n + pad
+        padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
+        return a * a / (4 * b) + padding, a * n + self.c * n * n + padding
 
 
 UNBOUNDED_HULL = EigenvalueHull(inf, 0.0)
@@ -83,7 +83,7 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
     <normal, w - v> >= distance for every v in the hull.
     """
     b = 1 - c
-    best = -inf
+    largest_distance = -inf
     normal = 1 + 0j
     for k in range(HULL_SETTINGS.supporting_lines):
         # Close to the imaginary axis the support function grows without bound.
@@ -93,10 +93,10 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
         size = sqrt(1 + T * T)
         support = a * a * (1 + T) * (1 + T) / (4 * (b - c * T))
         distance = (w.real + T * w.imag - support) / size
-        if distance > best:
-            best = distance
+        if distance > largest_distance:
+            largest_distance = distance
             normal = complex(1 / size, T / size)
-    return best, normal
+    return largest_distance, normal
 
 
 class PathHulls(NamedTuple):
