@@ -100,6 +100,7 @@ def branch_values(result: "BranchesOfRod", along: str, points: int, special: int
     counts["special"] = len(specials)
     values: dict[str, Any] = {f"{name}_count": count if known else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
+    values["followed_from"], values["followed_to"] = result.followed_range
     values |= value_lists(followed_variables(along), cycles, points)
     values |= value_lists(special_variables(along), specials, special)
     return values | {"seconds": result.seconds, "status": result.status}
