@@ -102,6 +102,7 @@ def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_
     counts["special"] = len(specials)
     values: dict[str, Any] = {f"{name}_count": count if is_complete else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
+    values["followed_from"], values["followed_to"] = result.followed_range
     values |= value_lists(followed_variables(parameter), cycles, points)
     values |= value_lists(special_variables(parameter), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}

@@ -80,6 +80,17 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
     )
 
 
+def followed_range_variables(parameter: str, prefix: str = "") -> tuple[Variable, Variable]:
+    """Variables of the range of the parameter in which branches are followed, whose names begin with
+    `prefix`. parameter: the continuation parameter's name."""
+    unit = PARAMETERS[parameter].unit
+    words = f"{parameter} up to which branches are followed beyond the range, if they may enter it again"
+    return (
+        real(f"{prefix}followed_from", unit, f"smallest {words}"),
+        real(f"{prefix}followed_to", unit, f"largest {words}"),
+    )
+
+
 def special_variables(parameter: str) -> tuple[Variable, ...]:
     """Variables of the special points on all branches; parameter: the continuation parameter's name."""
     unit = PARAMETERS[parameter].unit
@@ -146,6 +157,7 @@ def layout(config: dict[str, Any]) -> Layout:
         integer("special_count", "number of special points of all branches, stored or not"),
         integer("unstable_at_start", "number of unstable modes of the straight rod at start; -1: not known"),
         boolean("certified", "whether the list of Hopf points is proved complete"),
+        *followed_range_variables(parameter),
         *followed_variables(parameter),
         *special_variables(parameter),
         SECONDS,

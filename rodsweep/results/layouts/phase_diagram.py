@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
-from .branch import SPECIAL_KINDS
+from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
 from .detached_branches import DETACHED_BRANCH_VARIABLES, DETACHED_ROW
 from .rods import with_certified_meaning
@@ -118,6 +118,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
+        *followed_range_variables(line, "cycle_"),
         *along_dimension(
             CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),

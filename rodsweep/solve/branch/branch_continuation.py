@@ -10,7 +10,7 @@ from ...solve_progress import SolvePosition, report
 from ...wording import counted
 from ..unsolvable import Unsolvable
 from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
-from .branch_curve import BranchCurve, BranchEnd
+from .branch_curve import BranchCurve, BranchEnd, RangePassage
 from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
@@ -69,9 +69,11 @@ def _follow_to_end(
     except Unsolvable as why:
         curve.end(BranchEnd(_end_without_cycle(curve, reason_of_failure(why), str(why)), complete=False))
         return curve
-    outside = _index_of_passed_range_end(start, limits)
+    outside = index_of_passed_range_end(start, limits.coordinate_range)
     if outside >= 0:
-        curve.end(BranchEnd(_end_without_cycle(curve, limits.end_reasons[outside]), complete=True))
+        there = RangePassage(start, outside, limits.accuracy)
+        special = _end_without_cycle(curve, limits.end_reasons[outside])
+        curve.end(BranchEnd(special, complete=True, range_passage=there))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -85,6 +87,18 @@ def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimi
         last = _append_next_cycle(record, last, limits)
     record.end(last)
     return curve
+
+
+def follow_from_range_end(entry: RangePassage, limits: BranchLimits) -> BranchCurve:
+    """The branch that enters the range at `entry`, followed to its end."""
+    limits = replace(limits, accuracy=entry.accuracy)
+    curve = BranchCurve(start_hopf=-1, start_passage=entry)
+    errors = entry.cycle.cycle.errors
+    start = range_end_point(entry.cycle, limits.end_reasons[entry.index])
+    curve.add_special_point(
+        replace(start, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error)
+    )
+    return follow_from_cycle(curve, entry.cycle, limits)
 
 
 def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
@@ -114,9 +128,10 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
     )
 
 
-def _index_of_passed_range_end(point: BranchCycle, limits: BranchLimits) -> int:
-    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range."""
-    low, high = limits.coordinate_range
+def index_of_passed_range_end(point: BranchCycle, ends: tuple[float, float]) -> int:
+    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range. ends:
+    smallest and largest coordinate of the range."""
+    low, high = ends
     if point.parameter_coordinate < low:
         return 0
     return 1 if point.parameter_coordinate > high else -1
@@ -134,6 +149,7 @@ def _append_next_cycle(
     try:
         at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
         end = at_zero or next_cycle(start, limits.accuracy)
+        next_length = end.next_arc_length
         if reaches_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return end_at_mirror_image(start, end, limits)
@@ -151,9 +167,15 @@ def _append_next_cycle(
         return BranchEnd(branch_end_point(start, reason_of_failure(why), message), complete=False)
     if range_end is None:
         return last
-    at = getattr(last.orbit.form.rod, last.scale.parameter_name)
-    error = BRANCH_END_SETTINGS.range_end_error * abs(at)
-    return BranchEnd(replace(branch_end_point(last, limits.end_reasons[outside]), error=error), complete=True)
+    there = RangePassage(replace(last, next_arc_length=next_length), outside, limits.accuracy)
+    return BranchEnd(range_end_point(last, limits.end_reasons[outside]), complete=True, range_passage=there)
+
+
+def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint:
+    """The special point for the end of a branch at its last cycle `point`, at an end of the range. reason:
+    reason for this end of the range."""
+    special = branch_end_point(point, reason)
+    return replace(special, error=BRANCH_END_SETTINGS.range_end_error * abs(special.at))
 
 
 def _add_special_points(
@@ -166,6 +188,8 @@ def _add_special_points(
         return BranchEnd(
             special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
         )
+    if not limits.locates_special_points:
+        return None
     cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
     between, explained = special_points_between(start, end, cycle_at, limits.accuracy)
     closing = curve.index_of_first_special_point(between)

@@ -11,7 +11,7 @@ from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import Measures
 from .arc_length_step import BranchCycle
-from .special.special_point import SpecialPoint
+from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking
 
 
@@ -64,10 +64,37 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
     return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class RangePassage:
+    """Place where a branch leaves or enters the parameter range. cycle: the cycle there, with the tangent
+    along which the branch is followed. index: 0 at the smallest coordinate of the range, 1 at the largest.
+    accuracy: relative accuracy of the branch."""
+
+    cycle: BranchCycle
+    index: int
+    accuracy: float
+
+    def is_same_as(self, other: "RangePassage") -> bool:
+        """Whether a branch passes the end of the range at the same cycle, or its mirror image, as another
+        branch, in either direction: the end of the range, the period and the largest |y| of the tip agree
+        within their errors."""
+        if self.index != other.index:
+            return False
+        one, two = self.cycle.cycle, other.cycle.cycle
+        factor = SPECIAL_POINT_SETTINGS.error_factor
+        period_error = factor * (one.errors.period_error + two.errors.period_error)
+        height_error = factor * (one.errors.amplitude_error + two.errors.amplitude_error)
+        heights = [max(cycle.measures.tip_y_max, -cycle.measures.tip_y_min) for cycle in (one, two)]
+        return (
+            abs(one.measures.period / two.measures.period - 1) <= period_error
+            and abs(heights[0] / heights[1] - 1) <= height_error
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class BranchEnd:
     """The end of a branch. special_point: last special point of the branch; other fields as in
-    `BranchCurve`."""
+    `BranchCurve`, `range_passage` as `end_passage`."""
 
     special_point: SpecialPoint
     complete: bool
@@ -75,6 +102,7 @@ class BranchEnd:
     end_breaking: SymmetryBreaking | None = None
     list_full: bool = False
     closed: bool = False
+    range_passage: RangePassage | None = None
 
 
 @dataclass(kw_only=True, slots=True)
@@ -101,6 +129,10 @@ class BranchCurve:
     """Whether the branch is closed: its last special point is its first special point, located again."""
     unit_circle_crossings_explained: bool = True
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
+    start_passage: RangePassage | None = None
+    """Place at an end of the range where the branch starts; None if it starts elsewhere."""
+    end_passage: RangePassage | None = None
+    """Place where the branch leaves the range; None if it has another end."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
         """Appends a special point that lies beyond the present last cycle, and sets its
@@ -135,6 +167,7 @@ class BranchCurve:
         self.closed = end.closed
         self.end_hopf = end.end_hopf
         self.end_breaking = end.end_breaking
+        self.end_passage = end.range_passage
 
     def index_of_first_special_point(self, between: Sequence[SpecialPoint]) -> int:
         """Index in `between` of the first special point of this branch, -1 if `between` does not have it or
@@ -162,6 +195,8 @@ class BranchCurve:
             special_points=[*behind, *beyond],
             end_hopf=ahead.end_hopf,
             end_breaking=ahead.end_breaking,
+            start_passage=self.end_passage,
+            end_passage=ahead.end_passage,
             complete=self.complete and ahead.complete,
             list_full=self.list_full or ahead.list_full,
             unit_circle_crossings_explained=self.unit_circle_crossings_explained

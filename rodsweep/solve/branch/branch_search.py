@@ -1,17 +1,20 @@
 """All branches of a rod: from Hopf points, from symmetry breakings, and through known special points that no
-Hopf point leads to. A branch is followed only once, also if it has two starting points."""
+Hopf point leads to; and those that enter the range from beyond. A branch is followed only once, also if it
+has two starting points."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from ...model.parameters import PARAMETERS
 from ...solve_progress import solve_part
 from ..point_outcome import FAILURES, cause_of
 from ..unsolvable import Unsolvable
-from .branch_continuation import follow_asymmetric_branch, follow_branch
-from .branch_curve import BranchCurve
+from .branch_continuation import follow_asymmetric_branch, follow_branch, follow_from_range_end
+from .branch_curve import BranchCurve, RangePassage
 from .branch_limits import BranchLimits
 from .computing_time import fractions_before_branches
 from .detached_branch import follow_detached_branch, lies_on_any
+from .region_beyond import RegionBeyond
 from .special.special_point import SpecialKind, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
 
@@ -23,18 +26,38 @@ class BranchSearch:
 
     limits: BranchLimits
     name: str
+    regions: Sequence[RegionBeyond] = ()
+    """Regions beyond the range in which branches are followed."""
     curves: list[BranchCurve] = field(default_factory=list)
     """Branches followed so far."""
     failures: list[str] = field(default_factory=list)
     """Messages on known special points through which no branch was followed."""
     followed_breakings: list[SymmetryBreaking] = field(default_factory=list)
     """Symmetry breakings at which a followed branch of asymmetric cycles starts or ends."""
+    followed_passages: list[RangePassage] = field(default_factory=list)
+    """Places at the ends of the range from which a branch was followed beyond the range, or to which a branch
+    was followed from there."""
 
-    def follow_all(self, starts: Iterable[SpecialPoint]) -> None:
-        """Follows all branches. starts: known special points, as for `follow_through`."""
+    @property
+    def followed_range(self) -> tuple[float, float]:
+        """Smallest and largest value of the parameter up to which branches are followed."""
+        reached = [*self.limits.coordinate_range, *(region.followed_to for region in self.regions)]
+        values = [PARAMETERS[self.name].value(coordinate) for coordinate in reached]
+        return min(values), max(values)
+
+    def follow_within_range(self) -> None:
+        """Follows the branches from all Hopf points and symmetry breakings of the range, within the range."""
         self.follow_from_hopf_points()
         self.follow_from_symmetry_breakings()
-        self.follow_through(starts)
+
+    def follow_into_range(self, regions: Sequence[RegionBeyond]) -> None:
+        """Follows branches beyond the range, in `regions`, and those that enter the range from there."""
+        self.regions = regions
+        self.follow_beyond()
+        for region in regions:
+            for entry in region.entries_from_hopf_points():
+                self._follow_entering(entry, region)
+        self.follow_beyond()
 
     def _limits_left(self) -> BranchLimits:
         left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
@@ -79,7 +102,44 @@ class BranchSearch:
                     self._follow_detached(start)
                 except FAILURES as error:
                     self.failures.append(f"no branch is followed through the {where}: {cause_of(error)}")
+            self.follow_beyond()
+
+    def follow_beyond(self) -> None:
+        """Follows the branches that leave the range, beyond its ends; where a branch enters the range again,
+        it continues as a further branch. Then follows the branches from symmetry breakings on further
+        branches."""
+        while (passage := next(self._passages_to_follow(), None)) is not None:
+            self.followed_passages.append(passage)
+            for region in self.regions:
+                entry = region.entry_after(passage) if region.index == passage.index else None
+                if entry is not None:
+                    self._follow_entering(entry, region, passage)
             self.follow_from_symmetry_breakings()
+
+    def _passages_to_follow(self) -> Iterator[RangePassage]:
+        return (place for place in self._passages() if place not in self.followed_passages)
+
+    def _passages(self) -> Iterator[RangePassage]:
+        """Places at which the branches so far leave or enter the range."""
+        ends = (place for curve in self.curves for place in (curve.start_passage, curve.end_passage))
+        return (place for place in ends if place is not None)
+
+    def _follow_entering(
+        self, entry: RangePassage, region: RegionBeyond, left_at: RangePassage | None = None
+    ) -> None:
+        """Appends the branch that enters the range at `entry`, unless a branch so far leaves the range there.
+        left_at: place at which the branch left the range before."""
+        known = [p for p in self._passages() if p is not left_at and p.is_same_as(entry)]
+        self.followed_passages += known
+        limits = self._limits_left()
+        if known:
+            return
+        if limits.max_cycles < 1:
+            region.stop_at(region.range_end)
+            return
+        with solve_part(f"branch {len(self.curves) + 1}, from beyond the range"):
+            self.curves.append(follow_from_range_end(entry, limits))
+        self.followed_passages.append(entry)
 
     def _follow_detached(self, start: SpecialPoint) -> None:
         """Appends the branch through `start`, unless it is a branch that was followed before: the crossing is

@@ -6,6 +6,7 @@ is followed too. Cycles on other branches are found only if a special point on t
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cache
+from math import nan
 
 from ...determinant.parameter_path import Path
 from ...discretization.stress.form import has_small_rotational_drag
@@ -20,6 +21,7 @@ from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .branch_search import BranchSearch
+from .region_beyond import regions_beyond
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .start.hopf_point import HopfBranchStart, accuracy_beside_hopf_points, hopf_branch_start
 from .status import BranchStatus
@@ -55,6 +57,9 @@ class BranchesOfRod:
     unstable_at_start: int = -1
     proved: bool = False
     curves: tuple[BranchCurve, ...] = field(default_factory=tuple)
+    followed_range: tuple[float, float] = (nan, nan)
+    """Smallest and largest value of the parameter up to which branches are followed, in and beyond the range:
+    a branch that enters the range but was not found passes one of these values."""
 
 
 def solve_branches(
@@ -104,15 +109,20 @@ def _solve_branches_or_raise(
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, found, keeps_omega, unit)
-    crushed = (low > request.start, high < request.stop)
-    reasons = [BranchEndReason.crushed if end else BranchEndReason.range_end for end in crushed]
+    low_reason, high_reason = (
+        BranchEndReason.crushed if end else BranchEndReason.range_end
+        for end in (low > request.start, high < request.stop)
+    )
+    reasons = (low_reason, high_reason)
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
     accuracy = accuracy_beside_hopf_points(hopfs, request.accuracy)
-    limits = BranchLimits(hopfs, ends, (reasons[0], reasons[1]), accuracy, request.cycles, workspace, unit)
+    limits = BranchLimits(hopfs, ends, reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
     search = BranchSearch(limits, request.along)
-    search.follow_all(starts)
+    search.follow_within_range()
+    search.follow_into_range(regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin))
+    search.follow_through(starts)
     status, message = _status_and_message(found, search.curves, failures + search.failures, request)
     return BranchesOfRod(
         status=status,
@@ -121,6 +131,7 @@ def _solve_branches_or_raise(
         unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
         proved=found.proved_to_the_end,
         curves=tuple(search.curves),
+        followed_range=search.followed_range,
     )
 
 

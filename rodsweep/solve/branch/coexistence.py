@@ -43,12 +43,14 @@ class StableStates(IntEnum):
 class CoexistenceRow:
     """Outcome for a row of a phase diagram. straight_rod_row: outcome for the straight rod. stable_states:
     `StableStates` at each parameter value, (values,). special_points: special points of all branches.
-    message: for the user, or "". seconds: computing time."""
+    followed_range: smallest and largest value of the parameter up to which branches are followed, as in
+    `BranchesOfRod`. message: for the user, or "". seconds: computing time."""
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
     special_points: tuple[SpecialPoint, ...]
     status: CoexistenceStatus
+    followed_range: tuple[float, float]
     message: str = ""
     seconds: float = 0.0
 
@@ -82,6 +84,7 @@ def solve_coexistence(
         stable_states=states,
         special_points=special_points_of(branches),
         status=status,
+        followed_range=branches.followed_range,
         message="; ".join(filter(None, [message, _undecided_values_text(request.parameter_name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )

@@ -56,11 +56,15 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
         raise Unsolvable(start.message or "the cycle of the special point is not known")
     if not start.orbit.is_symmetric:
         limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
-    first = _first_cycle(start.orbit, name, limits)
+    return follow_in_both_directions(_first_cycle(start.orbit, name, limits), limits)
+
+
+def follow_in_both_directions(first: BranchCycle, limits: BranchLimits) -> BranchCurve:
+    """The branch through the cycle `first`, which has measured errors, to its ends in both directions."""
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), first, limits)
     if not curve.closed:
         left = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
-        behind = follow_from_cycle(BranchCurve(start_hopf=-1), _reversed(first), left)
+        behind = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), left)
         curve = behind.joined_with(curve)
     return curve
 
@@ -130,8 +134,8 @@ def _cycle_behind(tangent: _Tangent, distance: float, limits: BranchLimits) -> B
     return first_measured_cycle(found, tangent.scale, tangent.side, distance, accuracy)
 
 
-def _reversed(first: BranchCycle) -> BranchCycle:
-    """The first cycle of a branch, for the continuation in the opposite direction."""
-    known = first.derivatives
+def turned_back(cycle: BranchCycle) -> BranchCycle:
+    """The cycle of a branch, for the continuation in the opposite direction."""
+    known = cycle.derivatives
     turned = replace(known, tangent=-known.tangent, unit_tangent=-known.unit_tangent)
-    return replace(first, derivatives=turned)
+    return replace(cycle, derivatives=turned)

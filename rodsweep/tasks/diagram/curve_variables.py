@@ -176,6 +176,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     ]
     values: dict[str, Any] = value_lists(variables, rows, MAX_CYCLE_SPECIAL_POINTS)
     values |= {"cycle_special_count": len(result.special_points), "stable_states": result.stable_states}
+    values["cycle_followed_from"], values["cycle_followed_to"] = result.followed_range
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 

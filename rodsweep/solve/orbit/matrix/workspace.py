@@ -5,6 +5,8 @@ buffer. The buffer contains the factors of the last matrix. An earlier matrix ra
 are needed.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from math import inf
 from typing import NamedTuple
@@ -94,6 +96,22 @@ class NewtonWorkspace:
         """Starts to count the work anew. max_work: limit of the work until `release`, in multiplications."""
         self._max_work = max_work
         self._work = 0.0
+
+    @property
+    def work(self) -> float:
+        """Work since the last call of `limit_work`, in multiplications."""
+        return self._work
+
+    @contextmanager
+    def further_limit(self, work: float) -> Iterator[None]:
+        """In the `with` block the limit of the work is lower, if necessary, so that the block does at most
+        the given further `work`, in multiplications."""
+        outer = self._max_work
+        self._max_work = min(outer, self._work + work)
+        try:
+            yield
+        finally:
+            self._max_work = outer
 
     def add_work(self, work: float) -> None:
         """Counts the work of the next matrix; raises WorkLimitReached if the matrix exceeds the limit.

@@ -1,0 +1,225 @@
+"""A region of the continuation parameter beyond one end of the range, in which branches are followed but not
+stored.
+
+A branch may leave the range, turn back at a fold beyond its end, and enter the range again; and the branch of
+a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.
+Special points in the region are not located.
+
+A fold changes the number of multipliers outside the unit circle by one. Therefore a branch that moves away
+from the range comes back stable after one fold only if this number is 1, and is not followed otherwise.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from math import isnan
+
+from ...determinant.parameter_path import Path
+from ...discretization.stress.form import has_small_rotational_drag
+from ...model.crushing import uncrushed_interval
+from ...solve_progress import solve_part
+from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..point_outcome import FAILURES
+from .arc_length_step import BranchCycle
+from .branch_continuation import follow_from_cycle, index_of_passed_range_end
+from .branch_curve import BranchCurve, BranchPoint, RangePassage
+from .branch_end_reason import BranchEndReason
+from .branch_limits import BranchLimits
+from .branch_request import WORK_UNIT
+from .detached_branch import turned_back
+from .start.first_cycle import first_cycle
+from .start.hopf_point import HopfBranchStart, accuracy_beside_hopf_points, hopf_branch_start
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeyondRangeSettings:
+    """Settings for the continuation of branches beyond the range."""
+
+    relative_reach: float = 0.5
+    """Branches are followed up to (1 + this number) times the largest coordinate of the range and down to its
+    smallest coordinate divided by (1 + this number); along F down to 0, as there is no cycle without
+    force."""
+    max_cycles: int = 200
+    """Maximum number of cycles on all branches beyond one end of the range."""
+    min_work_limit: float = 100.0
+    """Smallest limit of the work beyond one end of the range, in `WORK_UNIT`: some seconds, ten times the
+    work on a usual branch. The limit is larger where the branches within the range needed more work."""
+
+
+BEYOND_RANGE_SETTINGS = BeyondRangeSettings()
+
+
+@dataclass(slots=True, eq=False)
+class RegionBeyond:
+    """The region beyond the end of the range with the given index: 0 below the smallest coordinate, 1 above
+    the largest. path: path of the continuation parameter. range_limits: limits of the branches within the
+    range. limits: limits of the branches in the region; their range is the region."""
+
+    path: Path
+    index: int
+    range_limits: BranchLimits
+    limits: BranchLimits
+    work_left: float = field(init=False)
+    """Work that may still be done in the region, in multiplications."""
+    followed_to: float = field(init=False)
+    """Coordinate in the region up to which branches are followed: a branch that enters the range but was not
+    found passes this coordinate."""
+    _ended_hopfs: set[int] = field(default_factory=set)
+    """Indices of the Hopf points of the region at which a followed branch ends."""
+
+    def __post_init__(self) -> None:
+        self.followed_to = self.limits.coordinate_range[self.index]
+        work = self.limits.workspace.work
+        self.work_left = max(work, WORK_UNIT * BEYOND_RANGE_SETTINGS.min_work_limit)
+        self._add_hopf_points()
+
+    @property
+    def range_end(self) -> float:
+        """Coordinate of the end of the range at which the region begins."""
+        return self.limits.coordinate_range[1 - self.index]
+
+    def stop_at(self, coordinate: float) -> None:
+        """Moves `followed_to` to `coordinate` if this is closer to the range, but not into the range."""
+        nearer, farther = (min, max) if self.index == 1 else (max, min)
+        self.followed_to = farther(self.range_end, nearer(self.followed_to, coordinate))
+
+    def entry_after(self, passage: RangePassage) -> RangePassage | None:
+        """The place where a branch that leaves the range at `passage` enters the range again; None if the
+        branch ends before, leaves the region at its other end, or is not followed further."""
+        if not _may_return_stable(passage.cycle, passage.accuracy):
+            return None
+        with solve_part(f"a branch beyond {self.path.text_at(self.range_end)}"), self._limited_work():
+            return self._entry(BranchCurve(start_hopf=-1), passage.cycle, passage.accuracy)
+
+    def entries_from_hopf_points(self) -> Iterator[RangePassage]:
+        """Yields the places where branches from the Hopf points of the region enter the range. A Hopf point
+        at which a followed branch ends is left out."""
+        for number, hopf in enumerate(self.limits.hopfs):
+            if number in self._ended_hopfs:
+                continue
+            where = self.path.text_at(hopf.parameter_coordinate)
+            with solve_part(f"branch from the Hopf point at {where}"), self._limited_work():
+                entry = self._entry_from_hopf_point(number, hopf)
+            if entry is not None:
+                yield entry
+
+    def _entry_from_hopf_point(self, number: int, hopf: HopfBranchStart) -> RangePassage | None:
+        """The place where the branch from the Hopf point `hopf` with the index `number` enters the range;
+        None as in `entry_after`."""
+        accuracy = accuracy_beside_hopf_points([hopf], self.limits.accuracy)
+        try:
+            first = first_cycle(hopf, accuracy, self.limits.workspace)
+        except FAILURES:
+            self.stop_at(hopf.parameter_coordinate)
+            return None
+        towards_range = hopf.direction if self.index == 0 else -hopf.direction
+        if towards_range < 0 and not _may_return_stable(first, accuracy):
+            return None
+        if index_of_passed_range_end(first, self.limits.coordinate_range) != 1 - self.index:
+            return self._entry(BranchCurve(start_hopf=number), first, accuracy)
+        # The Hopf point is so close to the range that the first cycle lies within the range.
+        limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
+        there = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
+        if there is None or there.index != self.index:
+            self.stop_at(hopf.parameter_coordinate)
+            return None
+        return replace(there, cycle=turned_back(there.cycle))
+
+    def _entry(self, curve: BranchCurve, first: BranchCycle, accuracy: float) -> RangePassage | None:
+        """Follows the branch `curve` from its first cycle `first` in the region; returns the place where it
+        enters the range, or None."""
+        curve = follow_from_cycle(curve, first, replace(self.limits, accuracy=accuracy))
+        self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
+        if curve.end_hopf >= 0:
+            self._ended_hopfs.add(curve.end_hopf)
+        if not curve.complete:
+            coordinates = [self.path.coordinate(point.at) for point in curve.points]
+            self.stop_at(max(coordinates) if self.index == 1 else min(coordinates))
+        there = curve.end_passage
+        return None if there is None or there.index == self.index else replace(there, index=self.index)
+
+    @contextmanager
+    def _limited_work(self) -> Iterator[None]:
+        """Counts the work of the `with` block, and limits it to `work_left`."""
+        workspace = self.limits.workspace
+        before = workspace.work
+        try:
+            with workspace.further_limit(self.work_left):
+                yield
+        finally:
+            self.work_left -= workspace.work - before
+
+    def _add_hopf_points(self) -> None:
+        """Finds the Hopf points of the region and their normal forms."""
+        value = self.path.parameter.value
+        low, high = sorted(map(value, self.limits.coordinate_range))
+        try:
+            found = find_axis_crossings(self.path, low, high, certify=False)
+        except FAILURES:
+            self.stop_at(self.range_end)
+            return
+        self._stop_where_search_is_incomplete(found)
+        hopfs = []
+        for crossing in found.thresholds:
+            known = (hopf.crossing for hopf in self.range_limits.hopfs)
+            if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in known):
+                continue
+            try:
+                unit = self.limits.min_coordinate_unit
+                hopfs.append(hopf_branch_start(self.path, crossing, self.limits.keeps_omega, unit))
+            except FAILURES:
+                self.stop_at(self.path.coordinate(crossing.value))
+        self.limits = replace(self.limits, hopfs=hopfs)
+
+    def _stop_where_search_is_incomplete(self, found: ThresholdSearchResult) -> None:
+        """Moves `followed_to` to the place beyond which `found` may lack Hopf points."""
+        if found.ended_early:
+            # The search begins at the smallest coordinate.
+            reached = max(map(self.path.coordinate, found.searched_interval))
+            self.stop_at(reached if self.index == 1 else self.range_end)
+        if not isnan(found.open_range[0]):
+            gap = [self.path.coordinate(value) for value in found.open_range]
+            self.stop_at(min(gap) if self.index == 1 else max(gap))
+
+
+def _may_return_stable(cycle: BranchCycle, accuracy: float) -> bool:
+    """Whether the cycles of a branch are stable after a fold beyond `cycle`, as far as multipliers tell.
+    accuracy: relative accuracy of the branch."""
+    return BranchPoint.from_cycle(cycle, accuracy).unstable_count in (1, -1)
+
+
+def regions_beyond(path: Path, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
+    """The regions beyond the ends of the range of `limits`. margin: smallest relative distance from the
+    crushing force."""
+    regions = (_region_beyond(path, index, limits, margin) for index in (0, 1))
+    return [region for region in regions if region is not None]
+
+
+def _region_beyond(path: Path, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
+    """The region beyond the end with the given index of the range of `limits`; None if no branch leads on
+    from there, because the force crushes the rod, the force is 0 or a pull, or the coordinate is 0. margin:
+    smallest relative distance from the crushing force."""
+    end = limits.coordinate_range[index]
+    if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
+        return None
+    factor = 1 + BEYOND_RANGE_SETTINGS.relative_reach
+    far = end * factor if index == 1 else end / factor * (path.name != "F")
+    value = path.parameter.value
+    least, largest = sorted((value(end), value(far)))
+    rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
+    low, high = uncrushed_interval(path.rod.build, rod, (path.name, least, largest), margin)
+    reached = [path.coordinate(low), path.coordinate(high)]
+    far = max(reached) if index == 1 else min(reached)
+    # The unknowns of a branch cannot change within the branch.
+    is_small = has_small_rotational_drag(path.rod_at(far))
+    if not low < high or is_small and not limits.keeps_omega:
+        return None
+    region_limits = replace(
+        limits,
+        hopfs=(),
+        coordinate_range=(end, far) if index == 1 else (far, end),
+        end_reasons=(BranchEndReason.range_end, BranchEndReason.range_end),
+        max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
+        locates_special_points=False,
+    )
+    return RegionBeyond(path, index, limits, region_limits)
