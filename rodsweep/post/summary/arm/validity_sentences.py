@@ -5,8 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
+from ....results.file.view import View
 from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
-from ....wording import count_of_total
+from ....results.layouts.thresholds import HOPF_CROSSING_CODES
+from ....wording import count_of_total, counted
 
 OTHER_PLANE = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -40,29 +42,53 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
     return "" if validity["model_applies"][0] == Validity.applies else validity_sentence(validity)
 
 
-def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "") -> str:
+def validity_sentence(validity: Mapping[str, np.ndarray], when: str = "", noun: str = "point") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
     largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. when: conditional clause.
+    noun: "point", or "row" for rows of a phase diagram.
     """
     applies, effect, excess = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     unknown = applies == VALIDITY_NOT_KNOWN
+    place = "on" if noun == "row" else "at"
+    everywhere = f" {place} all {counted(len(applies), noun)}" if len(applies) > 1 else ""
     if unknown.all():
-        where = f" at all {len(applies)} points" if len(applies) > 1 else ""
-        return f"whether the model applies is not known{where}{when}: {MISSED_MOTION}"
+        return f"whether the model applies is not known{everywhere}{when}: {MISSED_MOTION}"
     rest = (
-        f"; not known at {count_of_total(int(unknown.sum()), len(applies), 'point')}" if unknown.any() else ""
+        f"; not known {place} {count_of_total(int(unknown.sum()), len(applies), noun)}"
+        if unknown.any()
+        else ""
     )
     worst = Validity(int(applies.max()))
     affected = applies == worst
-    at = f" at {count_of_total(int(affected.sum()), len(applies), 'point')}"
-    if affected.all():
-        at = "" if len(applies) == 1 else f" at all {len(applies)} points"
+    some = f" {place} {count_of_total(int(affected.sum()), len(applies), noun)}"
+    at = everywhere if affected.all() else some
     if worst == Validity.applies:
-        everywhere = " at all points" if len(applies) > 1 else ""
-        return f"the model applies{everywhere if affected.all() else at}{when}{rest}"
+        return f"the model applies{at}{when}{rest}"
     verb = "does not apply" if worst == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(affected)[np.argmax(excess[affected])])
     name = NEGLECTED_EFFECTS[int(effect[index])].replace("_", " ")
     size = f"{'up to ' * int(affected.sum() > 1)}{excess[index]:.2g}"
     doubt = f", more than {DOUBTFUL_RATIO:g}" if worst == Validity.doubtful else ""
     return f"the model {verb}{at}{when}: {name} is {size} times its limit{doubt}{rest}"
+
+
+def row_clause(view: View, rows: np.ndarray) -> str:
+    """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
+    first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
+    whose motion is not known. rows: mask of the rows, (...,).
+
+    Loads along a row without Hopf point do not enter: `compression_lines` compares them.
+    """
+    if "crossing_at" not in view.variables:  # no rows of a phase diagram
+        return ""
+    rows = rows & (view.variables["model_applies"] != VALIDITY_NOT_KNOWN)
+    if not rows.any():
+        return ""
+    hopf = np.isin(view.variables["crossing_kind"][rows], HOPF_CROSSING_CODES).any(axis=-1)
+    at_rest = "at rest" if "F" in view.parameters else "at rest without load"
+    if not hopf.any():
+        return f", judged {at_rest}"
+    if len(hopf) == 1:
+        return ", judged at the first Hopf point"
+    remaining = "" if hopf.all() else f", and {at_rest} on {counted(int((~hopf).sum()), 'row')} without"
+    return f", judged at the first Hopf point of each row{remaining}"
