@@ -55,6 +55,13 @@ TWO_DIGITS = 0.06
 """Relative difference that two digits leave."""
 
 
+POINTS = r"(?: (?:at|on) (?:all )?NUMBER (?:of NUMBER )?(?:points?|rows?))?"
+JUDGED = (
+    r"(?P<judged>, judged at the first Hopf point(?: of each row)?"
+    r"(?:, and at rest without load on NUMBER rows? without)?|, judged at rest without load)?"
+)
+
+
 def random_arm(random, load=True, varied=False):
     """Quantities of an arm with units; some of them in a list of three where varied."""
     radius = 10 ** random.uniform(-3.3, -1.9)
@@ -496,10 +503,11 @@ def _of_one(view, text, loads, end):
 
 def _validity_line(view, page, fine):
     """The check of whether the model applies, and of the largest of what it leaves out."""
-    excess, applies = [], []
+    excess, applies, rests = [], [], []
     for i, q in enumerate(quantities_at_points(view)):
         arm = arm_of(q)
         rate, F, amplitude, cycles = _motion(view, fine, i)
+        rests.append(np.isnan(np.max(rate)) if view.task == "phase_diagram" else None)
         if "drag" in q and view.task != "phase_diagram":
             rate = np.asarray(rate) / scales_of(q)["tau2"]
             effects = neglected_effects(arm, rate, F, drag=arm.chosen_drag, amplitude=amplitude)
@@ -513,29 +521,43 @@ def _validity_line(view, page, fine):
     found, count = [], len(excess)
     for line, match in read(
         page,
-        r"^the model (does not apply|is doubtful)(?: at (?:all )?NUMBER (?:of NUMBER )?points?)?"
+        rf"^the model (does not apply|is doubtful){POINTS}{JUDGED}"
         r": .* is (?:up to )?NUMBER times its limit(?:, more than NUMBER)?"
-        r"(?:; not known at NUMBER of NUMBER points)?$",
+        r"(?:; not known (?:at|on) NUMBER of NUMBER (?:points|rows))?$",
     ):
         known = np.ravel(view.variables["model_applies"]) >= 0
         worst = max(np.array(applies)[known])
         there = known & (np.array(applies) == worst)
         why = [] if (worst == 2) == (match[1] == "does not apply") and worst else [f"validity is {worst}"]
         largest = np.max(np.array(excess)[there])
-        if abs(float(match[4]) - largest) > TWO_DIGITS * largest:
+        if abs(float(match[6]) - largest) > TWO_DIGITS * largest:
             why.append(f"it is {largest}")
-        if (worst == 1) != (match[5] is not None and float(match[5]) == DOUBTFUL_RATIO):
+        if (worst == 1) != (match[7] is not None and float(match[7]) == DOUBTFUL_RATIO):
             why.append(f"a model is doubtful above {DOUBTFUL_RATIO}")
+        why += _judged(match["judged"], match[5], rests)
         if match[2] and int(match[2]) != there.sum():
             why.append(f"at {there.sum()} points")
         if match[3] and int(match[3]) != count:
             why.append(f"of {count} points")
         found.append((line, "; ".join(why)))
-    for line, match in read(page, r"^the model applies(?: at all points)?$"):
-        found.append((line, f"{match[0]}: validity is {applies}" if max(applies) else ""))
-    for line, _ in read(page, r"^whether the model applies is not known(?: at all NUMBER points)?: "):
+    for line, match in read(page, rf"^the model applies{POINTS}{JUDGED}$"):
+        why = [f"{match[0]}: validity is {applies}"] if max(applies) else []
+        found.append((line, "; ".join(why + _judged(match["judged"], match[4], rests))))
+    for line, _ in read(page, rf"^whether the model applies is not known{POINTS}: "):
         found.append((line, "it is known" if (np.ravel(view.variables["status"]) == 0).any() else ""))
     return found or [(page[0], "nothing is said of whether the model applies")]
+
+
+def _judged(clause, number, rests):
+    """Why the clause on where the rows of a diagram were judged is wrong, in a list. rests: whether each row
+    has no Hopf point, None each for other tasks."""
+    if rests[0] is None:
+        return ["it is no diagram"] if clause else []
+    many, still = " of each row" * (len(rests) > 1), sum(rests)
+    rest = f", and at rest without load on {number} row{'s' * (still > 1)} without" * (still > 0)
+    true = f", judged at the first Hopf point{many}{rest}"
+    true = ", judged at rest without load" if still == len(rests) else true
+    return [] if clause == true and int(number or 0) in (0, still) else [f"{still} of {len(rests)} rest"]
 
 
 def _motion(view, fine, i):

@@ -2,12 +2,14 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from surveyed import few
 
 import rodsweep as rs
+from rodsweep.api.dataset import view_of_dataset
 from rodsweep.api.keyword_arguments import job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import (
@@ -18,7 +20,7 @@ from rodsweep.model.arm.neglected import (
 )
 from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
-from rodsweep.post.summary.arm.validity_sentences import validity_sentence
+from rodsweep.post.summary.arm.validity_sentences import row_clause, validity_sentence
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.arm import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
@@ -102,6 +104,45 @@ def test_a_short_list_of_crossings_of_a_diagram_hides_no_effect(crossings):
         for name, values in validity.items()
     }
     assert validity_sentence(mixed) == "the model applies at 1 of 3 points; not known at 2 of 3 points"
+
+
+ROW_THAT_RESTS = """
+task: phase_diagram
+phase_diagram: {curves: false}
+parameters:
+  arm: {length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1 kPa s, density_difference: 0 kg/m^3,
+    pressure: {start: 0 kPa, stop: STOP, num: 3}}
+  gamma3: [1.0e-3, 2.0e-3]
+"""
+"""The arm flutters at 2.36 kPa."""
+
+
+@pytest.mark.parametrize(
+    ("stop", "said"),
+    [
+        ("5 kPa", "the model is doubtful on all 2 rows, judged at the first Hopf point of each row: "),
+        ("2 kPa", "the model applies on all 2 rows, judged at rest without load"),
+    ],
+)
+def test_show_says_at_which_loads_a_row_was_judged(command, stop, said):
+    """Compression is doubtful above 1 kPa: a row without Hopf point "applies" where its loads are not."""
+    command.write("a.yaml", ROW_THAT_RESTS.replace("STOP", stop))
+    command.solved("a.yaml")
+    lines = command("show", "a.h5").stdout.splitlines()
+    assert any(line.startswith(said) for line in lines), lines[:6]
+    assert "above 1 kPa compression is more than 0.1 times its limit, and the model is doubtful" in lines
+
+
+def test_rows_with_and_without_a_hopf_point_are_counted():
+    """At k1 = 100 the Hopf point is at 4.3 kPa, beyond the range."""
+    arm = SILICONE | {"length": "10 cm", "viscosity": "1 kPa s", "pressure": rs.linspace("0 kPa", "4 kPa", 3)}
+    data = rs.sweep("phase_diagram", arm=arm, k1=[100.0, 1600.0], curves=False, progress=False)
+    view = view_of_dataset(data, Path("a.h5"))
+    every = np.ones(data.status.shape, bool)
+    assert row_clause(view, every) == (
+        ", judged at the first Hopf point of each row, and at rest without load on 1 row without"
+    )
+    assert row_clause(view, ~every) == ""
 
 
 def test_a_search_that_failed_is_no_arm_at_rest():
@@ -314,6 +355,8 @@ def test_show_of_a_diagram_says_above_which_load_an_arm_is_compressed_too_much(c
     assert all(line.startswith(said) for line in found)
     doubtful = "above 1 kPa compression is more than 0.1 times its limit, and the model is doubtful"
     assert lines.count(doubtful) == ("law" not in more)
+    judged = r"the model .* on all 2 rows, judged at the first Hopf point of each row(:|$)"
+    assert any(re.match(judged, line) for line in lines)  # these loads are smaller than most of the rows
 
 
 def test_lines_that_are_asked_for_over_an_arm_name_what_draws_them(command):

@@ -15,7 +15,7 @@ from ....wording import count_of_total, counted
 from .arm import errors_in_si, range_in_unit
 from .drag_range import arms_of_drags, drag_lines
 from .load_lines import ANSWER_DIGITS, compression_lines, extreme_arms_text, flutter_force_line
-from .validity_sentences import plane_lines, validity_sentence
+from .validity_sentences import plane_lines, row_clause, validity_sentence
 
 Lines = list[str]
 """Lines of text."""
@@ -48,7 +48,8 @@ def _validity_lines(view: View, computed: np.ndarray, rods: np.ndarray) -> Lines
         no_rods = ["none of these arms corresponds to a rod of the model; the statuses state the reasons"]
         return no_rods if computed.any() else []
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
-    caveat = validity_sentence(validity)
+    noun = "row" if "crossing_at" in view.variables else "point"
+    caveat = validity_sentence(validity, row_clause(view, rods), noun)
     inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
     if not inside.any():

@@ -5,8 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
+from ....results.file.view import View
 from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
-from ....wording import count_of_total
+from ....results.layouts.thresholds import HOPF_CROSSING_CODES
+from ....wording import count_of_total, counted
 
 OTHER_PLANE = (
     "the motion is in the plane of the height; where the height exceeds the width, the arm flutters first in "
@@ -40,31 +42,54 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
     return "" if validity["model_applies"][0] == Validity.applies else validity_sentence(validity)
 
 
-def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "") -> str:
+def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", noun: str = "point") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
     largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. condition: conditional clause.
+    noun: "point", or "row" for rows of a phase diagram.
     """
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     unknown = validities == VALIDITY_NOT_KNOWN
+    preposition = "on" if noun == "row" else "at"
+    count = len(validities)
+    everywhere = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if unknown.all():
-        points_text = f" at all {len(validities)} points" if len(validities) > 1 else ""
-        return f"whether the model applies is not known{points_text}{condition}: {MISSED_MOTION}"
+        return f"whether the model applies is not known{everywhere}{condition}: {MISSED_MOTION}"
     rest = (
-        f"; not known at {count_of_total(int(unknown.sum()), len(validities), 'point')}"
+        f"; not known {preposition} {count_of_total(int(unknown.sum()), count, noun)}"
         if unknown.any()
         else ""
     )
     worst_validity = Validity(int(validities.max()))
     is_affected = validities == worst_validity
-    place = f" at {count_of_total(int(is_affected.sum()), len(validities), 'point')}"
-    if is_affected.all():
-        place = "" if len(validities) == 1 else f" at all {len(validities)} points"
+    somewhere = f" {preposition} {count_of_total(int(is_affected.sum()), count, noun)}"
+    place = everywhere if is_affected.all() else somewhere
     if worst_validity == Validity.applies:
-        all_points = " at all points" if len(validities) > 1 else ""
-        return f"the model applies{all_points if is_affected.all() else place}{condition}{rest}"
+        return f"the model applies{place}{condition}{rest}"
     verdict = "does not apply" if worst_validity == Validity.does_not_apply else "is doubtful"
     index = int(np.flatnonzero(is_affected)[np.argmax(excesses[is_affected])])
     name = NEGLECTED_EFFECTS[int(effects[index])].replace("_", " ")
     size = f"{'up to ' * int(is_affected.sum() > 1)}{excesses[index]:.2g}"
     limit_text = f", more than {DOUBTFUL_RATIO:g}" if worst_validity == Validity.doubtful else ""
     return f"the model {verdict}{place}{condition}: {name} is {size} times its limit{limit_text}{rest}"
+
+
+def row_clause(view: View, rows: np.ndarray) -> str:
+    """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
+    first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
+    whose motion is not known. rows: mask of the rows, (...,).
+
+    Loads along a row without Hopf point do not enter: `compression_lines` compares them.
+    """
+    if "crossing_at" not in view.variables:  # no rows of a phase diagram
+        return ""
+    rows = rows & (view.variables["model_applies"] != VALIDITY_NOT_KNOWN)
+    if not rows.any():
+        return ""
+    hopf = np.isin(view.variables["crossing_kind"][rows], HOPF_CROSSING_CODES).any(axis=-1)
+    at_rest = "at rest" if "F" in view.parameters else "at rest without load"
+    if not hopf.any():
+        return f", judged {at_rest}"
+    if len(hopf) == 1:
+        return ", judged at the first Hopf point"
+    remaining = "" if hopf.all() else f", and {at_rest} on {counted(int((~hopf).sum()), 'row')} without"
+    return f", judged at the first Hopf point of each row{remaining}"
