@@ -112,8 +112,9 @@ def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
 def with_calibration(point: BranchCycle, calibration: BranchCalibration, accuracy: float) -> BranchCycle:
     """The cycle `point`, solved to a relative accuracy, with the errors of `calibration`, which was measured
     or interpolated at this cycle. In the result the number of unmeasured steps is 0."""
+    present = point.cycle
     cycle = cycle_with_calibrated_errors(
-        calibration.at_equal_parameter, point.cycle.converged_orbit, accuracy
+        calibration.at_equal_parameter, present.converged_orbit, accuracy, present.path
     )
     return replace(
         point, cycle=cycle, calibration=calibration, steps_since_measured=0, arc_since_measured=0.0

@@ -105,6 +105,11 @@ class CyclePath:
             "tip_theta_max": largest[2] if self.orbit.is_symmetric else max(largest[2], -least[2]),
         }
 
+    @cached_property
+    def measures(self) -> Measures:
+        """`measures_of` this path; the smallest stretch may take as long as a step of a branch."""
+        return measures_of(self)
+
     @property
     def tip_y_min(self) -> float:
         """Smallest y of the tip, in L; for a symmetric orbit minus the largest y."""

@@ -11,7 +11,7 @@ from math import inf
 import numpy as np
 
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.measures import CyclePath, measures_of
+from ...orbit.measures import CyclePath
 from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
@@ -43,7 +43,7 @@ def cycle_with_calibrated_errors(
     or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
 
     path = path or CyclePath(found.orbit)
-    measures = measures_of(path)
+    measures = path.measures
     errors = with_amplitude_rounding(calibration.errors(accuracy), found, measures)
     multipliers, trivial_error = multipliers_and_trivial_error(found)
     largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
