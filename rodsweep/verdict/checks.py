@@ -175,8 +175,8 @@ def reynolds_checks(number: Effect) -> list[Check]:
     validity = _validity_of_effect(number)
     remark = (
         "the drag law of slow flow applies",
-        "at wide beating the drag is somewhat larger than in the model",
-        "at wide beating the drag is larger than in the model, and the beating slower",
+        "at large amplitude the drag is somewhat larger than in the model",
+        "at large amplitude the drag is larger than in the model, and the motion slower",
     )[validity]
     value = f"{float(number.value):.2g}"
     return [Check(validity, f"Reynolds number: {value} if the tip moves by half the length; {remark}.")]

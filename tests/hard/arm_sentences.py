@@ -37,10 +37,10 @@ LOADS = ("pressure", "force")
 WITHOUT_CYCLE = {
     "straight": "does not beat",
     "unstable": "has an unstable cycle",
-    "torus": "beats without repeating",
+    "torus": "beats quasiperiodically (two frequencies)",
     "not_settled": "is not settled: no stable cycle was found, but a stable cycle may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
-    "failed": "is not known: the integration failed",
+    "failed": "is not known: the solve failed",
 }
 """What is said of arms of which none beats, by status."""
 SAID = {
@@ -897,7 +897,7 @@ class ArmTruth:
 
 
 def lost_by_flattening(q):
-    """Fraction of its bending stiffness that a tube loses at the curvature of wide beating.
+    """Fraction of its bending stiffness that a tube loses at the curvature of beating with large amplitude.
 
     The ring's radial displacement r z cos 2 theta, without extension, minimises the energies of bending the
     tube and the wall; the second moment is that of the displaced ring to first order in z.

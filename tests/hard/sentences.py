@@ -246,7 +246,7 @@ def failure_sentences(view, page):
 
 KINDS = {"F** (straight": "hopf", "restabilization (straight": "restabilization", "F* (straight": "onset"}
 ALONG = {
-    "the straight rod starts to beat, as": "hopf",
+    "the straight rod starts to flutter, as": "hopf",
     "the straight rod is stable again, as": "restabilization",
 }
 PLACE = rf"between ({NUMBER}) and ({NUMBER})|(?<!= )(?<![\w.+-])({NUMBER})(?= for | and | to |, on | \(\+-)"
@@ -551,7 +551,9 @@ def criticality_sentences(view, page, keywords, fine):
     worst = (both["landau"], both["growth_slope"], both["amplitude_coefficient"], both["frequency_slope"])
     found += at_most(page, "worst relative errors: c NUMBER, dw/dF NUMBER, a NUMBER, b NUMBER", *worst)
     side = v["criticality"].reshape(-1, extent)
-    for line, match in read(page, "^subcritical Hopf points for ([^:]*): (.*)$"):
+    for line, match in read(
+        page, "^subcritical Hopf points, with the amplitude coefficient a, for ([^:]*): (.*)$"
+    ):
         given = {name: float(x) for name, x in re.findall(rf"(\w+) = ({NUMBER}|inf)", match[1])}
         away = [
             sum(abs(columns[n][i] - x) / (1 + abs(x)) if np.isfinite(x) else 0 for n, x in given.items())
@@ -616,7 +618,7 @@ OUTCOMES = {
     "cycle": "beats",
     "straight": "stays straight",
     "unstable": "has an unstable cycle",
-    "torus": "beats with two frequencies",
+    "torus": "beats quasiperiodically (two frequencies)",
     "not_settled": "does not settle",
     "left_the_model": "leaves the model",
     "failed": "is not solved",
@@ -805,9 +807,11 @@ def diagram_sentences(view, page, keywords, fine):
             )
             repeated = sum(len(each) > 1 for each in of_kind)
             found += ranges(
-                page, rf"{start}: .*; a second time or more on \d+ of these rows, at F = RANGE", again
+                page, rf"{start}: .*; again further along the row on \d+ of these rows, at F = RANGE", again
             )
-            found += counts(page, rf"{start}: .*; a second time or more on NUMBER of these rows", repeated)
+            found += counts(
+                page, rf"{start}: .*; again further along the row on NUMBER of these rows", repeated
+            )
     found += _curve_sentences(view, page, row)
     if "stable_states" in v:
         found += _state_sentences(view, page, _states_of(view, row, fixed, table), row)

@@ -98,7 +98,7 @@ def test_a_change_that_no_search_has_located_lies_between_two_points():
     view.variables.update(hopf_variables("F", []))
     assert changes_on(view) == [BracketedThreshold(27.0, 28.0, "hopf")]
     (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
-    assert line == "F** (straight rod starts to beat): between 27 and 28"
+    assert line == "F** (straight rod starts to flutter): between 27 and 28"
 
 
 def test_a_point_on_a_hopf_point_makes_no_second_change():
@@ -272,7 +272,7 @@ def test_lines_over_a_parameter_hold_every_point_once_in_the_order_of_the_file()
 )
 def test_the_summary_tells_hopf_points_one_by_one_or_their_range(view, expected):
     (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
-    assert line == f"F** (straight rod starts to beat): {expected}"
+    assert line == f"F** (straight rod starts to flutter): {expected}"
 
 
 def test_the_summary_tells_every_window_of_flutter_on_a_line():
@@ -294,7 +294,7 @@ def test_show_tells_the_hopf_point_that_the_task_has_stored(command):
     view.variables["linear_growth_rate"][-1] *= -1
     store(view, command.directory / "arms.h5")
     shown = command("show", "arms.h5").stdout
-    assert "F** (straight rod starts to beat): 27.25000000000 (+- 3e-11)" in shown
+    assert "F** (straight rod starts to flutter): 27.25000000000 (+- 3e-11)" in shown
     assert "restabilization (straight rod is stable again): between 30 and 32" in shown
     assert "of 7 points: beats at 4 (F = 28 to 32), stays straight at 3 (F = 24 to 27)" in shown
     assert shown.index("beats at 4") < shown.index("status") < shown.index("parameter") < shown.index("BLAS")
@@ -309,7 +309,7 @@ def test_show_of_a_sweep_has_the_threshold_of_the_solver(command, ranks, gamma1)
     assert command("run", "c.yaml", ranks=ranks).returncode == 0
     shown = command("show", "c.h5").stdout
     text, error = re.search(
-        r"F\*\* \(straight rod starts to beat\): ([\d.]+) \(\+- ([\de.-]+)\)", shown
+        r"F\*\* \(straight rod starts to flutter\): ([\d.]+) \(\+- ([\de.-]+)\)", shown
     ).groups()
     assert abs(float(text) - WINDOW[0]) <= float(error) < 1e-11
 
@@ -326,4 +326,4 @@ def test_a_threshold_below_the_first_force_is_told(tmp_path):
         WINDOW[:1], rel=1e-12
     )
     (sentence,), _ = stability_lines(view, "F", stored.thresholds_up_to_end)
-    assert sentence.startswith("F** (straight rod starts to beat): 49.7580049161")
+    assert sentence.startswith("F** (straight rod starts to flutter): 49.7580049161")

@@ -29,7 +29,10 @@ def test_the_thresholds_of_the_demo_come_out_of_show(command):
     told = shown(command, (ROOT / "configs" / "fig2c.yaml").read_text())
     hopf, again = (
         float(re.search(rf"{re.escape(words)}: ([\d.]+) \(\+- \de-1[34]\)", told)[1])
-        for words in ("F** (straight rod starts to beat)", "restabilization (straight rod is stable again)")
+        for words in (
+            "F** (straight rod starts to flutter)",
+            "restabilization (straight rod is stable again)",
+        )
     )
     assert hopf == pytest.approx(HOPF, abs=1e-12)
     assert again == pytest.approx(STABLE_AGAIN, abs=1e-12)
@@ -100,7 +103,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     (line,) = lines_along(view.point_columns, "F")
     assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(40, 60, "hopf")]
     (told,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
-    assert told == "F** (straight rod starts to beat): between 40 and 60"
+    assert told == "F** (straight rod starts to flutter): between 40 and 60"
 
 
 def test_thresholds_of_several_lines_are_named_by_what_differs(command):
@@ -180,7 +183,7 @@ def test_rows_tell_first_changes_apart_from_later_ones_and_what_was_before_them(
     )
     told = shown(command, config.format(start=0))
     first = "onset of oscillations: on 2 of 2 rows, F = 22.471 to 24.0686, k1 = 140 to 200"
-    assert f"\n{first}; a second time or more on 1 of these rows, at F = 137.568\n" in told
+    assert f"\n{first}; again further along the row on 1 of these rows, at F = 137.568\n" in told
     command.write("c.yaml", config.format(start=30))
     command("run", "c.yaml", "--fresh")
     told = command("show", "c.h5").stdout
@@ -204,7 +207,7 @@ TWO_WINDOWS = {"k1": 179.13147682127965, "k2": 1731.448934345779, "gamma3": 0.00
 def test_a_second_window_of_flutter_is_in_the_answer(command):
     rod = ", ".join(f"{name}: {value!r}" for name, value in TWO_WINDOWS.items())
     text = shown(command, f"task: thresholds\nparameters: {{{rod}}}\n")
-    assert "beating from F = 49.785, stable again from F = 161.376, beating again from F = 174; " in text
+    assert "flutter from F = 49.785, stable again from F = 161.376, flutter again from F = 174; " in text
     answer = " ".join(str(rs.Rod(**TWO_WINDOWS).thresholds()).split())
     again = "stable again from F = 161.376 k3/L^2, flutter again from F = 174 k3/L^2 "
     assert again in answer

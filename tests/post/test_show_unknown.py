@@ -170,14 +170,14 @@ def test_beyond_a_search_that_ended_early_nothing_is_known(tmp_path, monkeypatch
     end = float(view.variables["F_end"].ravel()[0])
     lines = told(view)
     assert 30.0 < end < 60.0
-    assert "beating from F = 27.0372; 2 crossings up to F = " in lines
+    assert "flutter from F = 27.0372; 2 crossings up to F = " in lines
     assert f"; not known beyond F = {end:.6g}, where the search ended early" in lines
     assert f"searched up to F = {end:.15g}; the list of crossings is confirmed by counts" in lines
     answer = rs.Rod(k2=1e4, **{n: v for n, v in EARLY.items() if n != "F_max"}).thresholds(F_max=60.0)
     first = " ".join(str(answer).split("Rod(", 1)[0].split())
     assert first.endswith(f"; not known beyond F = {end:.6g} k3/L^2, where the search ended early")
     rods = told(view_of_sweep(tmp_path, "thresholds", k2=[5e3, 1e4], **EARLY))
-    assert "starts to beat): F = 27.0372 (k2 = 10000), at 1 of 2 rods, not known at 1 rod" in rods
+    assert "starts to flutter): F = 27.0372 (k2 = 10000), at 1 of 2 rods, not known at 1 rod" in rods
     assert "is stable again): at none of 2 rods, not known at 2 rods" in rods
     forms = told(view_of_sweep(tmp_path, "criticality", k2=[5e3, 1e4], **EARLY))
     assert "Hopf points at 1 of 2 rods (k2 = 10000), not known at 1 rod" in forms

@@ -161,7 +161,7 @@ def test_points_that_no_rod_covers_have_a_status_and_the_others_their_numbers(co
     assert (data.status.sel(young=1e5, length=[0.1, 0.11]) == 0).all()
     told = command("show", "a.h5").stdout
     assert "shorter than 10 radii" in told
-    assert "compresses the arm to nothing" in told
+    assert "compresses the arm to zero length" in told
 
 
 def test_a_bore_as_wide_as_the_arm_is_a_corner_of_the_map():

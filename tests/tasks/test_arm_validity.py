@@ -502,8 +502,13 @@ STATUSES = {
             "not_settled",
             "is not settled: no stable cycle was found, but a stable cycle may exist at 2 of 2",
         ),
-        ("torus", "left_the_model", "beats without repeating at 1 of 2", "is crushed somewhere"),
-        ("failed", "unstable", "is not known: the integration failed at 1 of 2", "has an unstable cycle"),
+        (
+            "torus",
+            "left_the_model",
+            "beats quasiperiodically (two frequencies) at 1 of 2",
+            "is crushed somewhere",
+        ),
+        ("failed", "unstable", "is not known: the solve failed at 1 of 2", "has an unstable cycle"),
     ),
     "spectrum": (
         (

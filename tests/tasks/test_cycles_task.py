@@ -389,8 +389,8 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
     told = limit_cycle_summary(view, view.variables["status"] >= 0)
     assert (
-        told.answer[0]
-        == "of 2 points: stays straight at 1 (F = 50), beats with two frequencies at 1 (F = 60)"
+        told.answer[0] == "of 2 points: stays straight at 1 (F = 50), "
+        "beats quasiperiodically (two frequencies) at 1 (F = 60)"
     )
     inside = "the unstable cycles inside the tori have a largest |Floquet multiplier| of 1.25"
     assert f"quasiperiodic motions: {inside}" in told.details

@@ -293,7 +293,7 @@ def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, cou
             "unknowns of the mesh per point: 60",
         ],
         "thresholds": [
-            "F** (straight rod starts to beat): F = 2 (",
+            "F** (straight rod starts to flutter): F = 2 (",
             "at all 6 rods; frequency 20 to 70 rad/tau2",
             "at all 6 rods; growth rate -6 to -1 1/tau2",
             "restabilization (straight rod is stable again): F = 3 (",

@@ -217,7 +217,7 @@ def test_show_answers_in_the_units_of_the_arm_before_those_without_dimension(com
     assert 1 < spread < 2  # in percent, then
     stated = re.search(r"frequency by up to (\d+) %", answer)
     assert float(stated[1]) == pytest.approx(100 * (spread - 1), abs=0.5)
-    assert "F** (straight rod starts to beat)" in rest
+    assert "F** (straight rod starts to flutter)" in rest
 
 
 def test_a_figure_has_a_band_over_the_drags_of_the_file(command, drawn):

@@ -18,7 +18,11 @@ from . import card
 
 PERIOD_SECONDS = 2.0
 """Duration of one period of a cycle on the screen, in seconds."""
-END_WORDS = {"cycle": "it beats", "straight": "it comes to rest", "torus": "it beats with two frequencies"}
+END_WORDS = {
+    "cycle": "it beats",
+    "straight": "it comes to rest",
+    "torus": "it beats quasiperiodically (two frequencies)",
+}
 """Clause for the state that a released arm reaches, by status. For other statuses the sentence of the status
 is used."""
 SHAPE_COLUMNS = ("x", "y", "number")

@@ -141,7 +141,7 @@ def _subcritical_lines(view: View) -> Iterator[str]:
             f"F = {rounded_text(F, dF)} (Hopf point {i + 1}, a = {rounded_text(x, abs(x) * dx)} L)"
             for F, dF, i, x, dx in zip(forces, absolute, indices, a, relative, strict=True)
         )
-        yield f"subcritical Hopf points for {name}: {texts}"
+        yield f"subcritical Hopf points, with the amplitude coefficient a, for {name}: {texts}"
     if len(rods) > MAX_LISTED_RODS:
         yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
 

@@ -27,7 +27,7 @@ OUTCOME_WORDS = {
     "cycle": "beats",
     "straight": "stays straight",
     "unstable": "has an unstable cycle",
-    "torus": "beats with two frequencies",
+    "torus": "beats quasiperiodically (two frequencies)",
     "not_settled": "does not settle",
     "left_the_model": "leaves the model",
     "failed": "is not solved",

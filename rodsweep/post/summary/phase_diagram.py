@@ -129,7 +129,7 @@ def lines_about_rows(view: View, computed: np.ndarray, line: str, row: str) -> l
             if is_later.any():
                 bound = "at least " * bool(unknown.any())
                 rows = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
-                text += f"; a second time or more on {rows}, at {line} = {later_text}"
+                text += f"; again further along the row on {rows}, at {line} = {later_text}"
             lines.append(text)
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & computed[..., np.newaxis]

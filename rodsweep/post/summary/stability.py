@@ -16,12 +16,12 @@ MAX_LISTED_LINES = 3
 printed."""
 FORCE_THRESHOLD_WORDS = {
     "onset": "F* (straight rod starts to oscillate, still stable)",
-    "hopf": "F** (straight rod starts to beat)",
+    "hopf": "F** (straight rod starts to flutter)",
     "restabilization": "restabilization (straight rod is stable again)",
 }
 """Phrase for a threshold along F, by kind."""
 OTHER_THRESHOLD_WORDS = {
-    "hopf": "the straight rod starts to beat, as {name} grows, at {name}",
+    "hopf": "the straight rod starts to flutter, as {name} grows, at {name}",
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Phrase for a threshold along any parameter other than F, by kind."""

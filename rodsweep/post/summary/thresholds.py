@@ -26,11 +26,11 @@ ENDED_EARLY = "ended_early"
 """Status of a search that stopped before the requested force."""
 FIRST_CROSSING_WORDS = {
     "onset": "decaying oscillation from",
-    "hopf": "beating from",
+    "hopf": "flutter from",
     "restabilization": "stable again from",
 }
 """Phrase before the force of the first crossing of each kind, in the summary of a single rod."""
-LATER_CROSSING_WORDS = {"hopf": "beating again from", "restabilization": "stable again from"}
+LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable again from"}
 """Phrase before the force of a later window of flutter: of its start and of its end."""
 
 

@@ -34,9 +34,13 @@ class BranchStatus(PointStatus):
         4,
         "the branches are complete, but a Hopf point may be missing: two Hopf points may nearly coincide, "
         "the search may have stopped before the end of the range, or a count of unstable modes may "
-        "disagree with the list; `certify: false` ignores the count",
+        "disagree with the list; `certify: false` accepts results without this proof",
     )
-    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search for Hopf points failed and nothing is stored; the message says why; try another accuracy "
+        "or a shorter range, or move a parameter slightly",
+    )
 
 
 def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:

@@ -10,8 +10,8 @@ class ThresholdStatus(PointStatus):
     not_certified = (
         1,
         "the thresholds are accurate, but a count of the unstable modes between them is undecided or "
-        "contradicts the list, or it is not proved which eigenvalue leads; `certify: false` accepts such a "
-        "list",
+        "contradicts the list, or it is not proved which eigenvalue leads; `certify: false` accepts results "
+        "without this proof",
     )
     window_open = (
         2,
@@ -24,7 +24,11 @@ class ThresholdStatus(PointStatus):
         "nearly coincide; use a larger number for the accuracy",
     )
     list_full = 4, "the list has no room for all thresholds; raise the option crossings"
-    failed = 5, "the search failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search failed and nothing is stored; the message says why; try another accuracy or a "
+        "shorter range, or move a parameter slightly",
+    )
     ended_early = (
         9,
         "only a part of the requested range is searched: the search ends, or on a row of a diagram begins, "

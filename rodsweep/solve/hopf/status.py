@@ -10,7 +10,7 @@ class CriticalityStatus(PointStatus):
     not_certified = (
         1,
         "the coefficients are accurate, but a count of the unstable modes between the Hopf points is "
-        "undecided or contradicts the list; `certify: false` accepts such a count",
+        "undecided or contradicts the list; `certify: false` accepts results without this proof",
     )
     window_open = (
         2,
@@ -24,7 +24,11 @@ class CriticalityStatus(PointStatus):
         "number for the accuracy",
     )
     list_full = 4, "the list has no room for all Hopf points; raise the option crossings"
-    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search for Hopf points failed and nothing is stored; the message says why; try another accuracy "
+        "or a shorter range, or move a parameter slightly",
+    )
     coefficients_failed = (
         6,
         "the normal form of a Hopf point could not be computed; the other Hopf points are stored; the "

@@ -10,7 +10,8 @@ class SpectrumStatus(PointStatus):
     not_certified = (
         1,
         "the eigenvalues are accurate, but no a-priori bound applies or the winding number could "
-        "not be proved, so an unstable mode may be missing; `certify: false` accepts such eigenvalues",
+        "not be proved, so an unstable mode may be missing; `certify: false` accepts results without "
+        "this proof",
     )
     undecided = (
         2,
@@ -27,4 +28,8 @@ class SpectrumStatus(PointStatus):
         "eigenvalues are missing: fewer are found than the winding number counts, or no mesh resolves all "
         "that may lead; no eigenvalue is stored; request more modes",
     )
-    failed = 5, "the solver failed, and results that it did not find are missing; the message says why"
+    failed = (
+        5,
+        "the solver failed, and results that it did not find are missing; the message says why; try another "
+        "accuracy, or move a parameter slightly",
+    )

@@ -38,7 +38,11 @@ class NoRodStatus(PointStatus):
         "known, so nothing is computed",
         True,
     )
-    crushed = CRUSHED, "the load compresses the arm to nothing, F >= k1, so nothing is computed", True
+    crushed = (
+        CRUSHED,
+        "the load F >= k1 compresses the arm to zero length (h1 = 0), so nothing is computed",
+        True,
+    )
     no_flutter = (
         NO_FLUTTER,
         "the load is relative to flutter, and with the likeliest drag the arm does not flutter, so nothing "

@@ -311,9 +311,8 @@ def test_show_counts_the_signs_of_many_rods_and_names_the_subcritical(command):
     assert "Hopf points at 3 of 4 rods" in told
     assert "first Hopf point of each rod: 3 supercritical;" in told
     assert "all Hopf points: 4 supercritical, 2 subcritical;" in told
-    assert (
-        "subcritical Hopf points for k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1: F = 85.5693 (" in told
-    )
+    rod = "k1 = 150, k2 = 10000, gamma3 = 0.0001, gamma1 = 1"
+    assert f"subcritical Hopf points, with the amplitude coefficient a, for {rod}: F = 85.5693 (" in told
 
 
 def test_file_has_a_value_where_there_is_a_hopf_point_and_none_elsewhere(command):

@@ -24,10 +24,10 @@ FAILED_STATUS = "failed"
 NO_CYCLE_WORDS = {
     "straight": "does not beat",
     "unstable": "has an unstable cycle",
-    "torus": "beats without repeating",
+    "torus": "beats quasiperiodically (two frequencies)",
     "not_settled": "is not settled: no stable cycle was found, but a stable cycle may exist",
     "left_the_model": "is crushed somewhere or loses its stiffness, where the model ends",
-    FAILED_STATUS: "is not known: the integration failed",
+    FAILED_STATUS: "is not known: the solve failed",
 }
 """Predicate for an arm without a stable cycle, by status."""
 
