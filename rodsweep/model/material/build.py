@@ -134,8 +134,8 @@ class Build:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
         shape.
         """
-        shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
-        return np.array(shares).reshape(tapers.shape)
+        forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
+        return np.array(forces).reshape(tapers.shape)
 
     def local_coefficients(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
@@ -176,9 +176,9 @@ class Build:
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_derivatives(
-        self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
+        self, sections: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
-        """Derivatives of the cross-sections `at` at points u, (points,), with respect to a parameter.
+        """Derivatives of the cross-sections `sections` at points u, (points,), with respect to a parameter.
 
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
         parameter, by name; the derivative of a missing name is 0.
@@ -189,14 +189,14 @@ class Build:
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))
         for i, name in enumerate(("k1", "k2", "k3")):
-            own = slopes.get(name, 0.0) / factors[name]
-            compliance[i] = own - at.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
+            derivative = slopes.get(name, 0.0) / factors[name]
+            compliance[i] = derivative - sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
         for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
-            own = slopes.get(name, 0.0) * factors[name]
-            drag[i] = own + at.drag[i] * RADIUS_POWERS.get(name, 0) * growth
-        load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
+            derivative = slopes.get(name, 0.0) * factors[name]
+            drag[i] = derivative + sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
+        load = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
-        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
+        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
 
     def _factors(self, taper: Any, u: Array) -> dict[str, Array]:
         """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the
@@ -210,9 +210,11 @@ class Build:
         if isinstance(taper, np.ndarray) or taper != 1:
             radius = 1 - (1 - taper) * u
             square = radius * radius  # a power of NumPy takes as long as ten products
-            powers = {2: square, 4: square * square}
-            for name, power in RADIUS_POWERS.items():
-                factors[name] = factors[name] * powers[power] if self.profile else powers[power]
+            radius_to_power = {2: square, 4: square * square}
+            for name, exponent in RADIUS_POWERS.items():
+                factors[name] = (
+                    factors[name] * radius_to_power[exponent] if self.profile else radius_to_power[exponent]
+                )
         return factors
 
 
@@ -221,19 +223,20 @@ def _smallest_factor_along(profile: Profile | None, taper: float, name: str) -> 
     """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
     the base.
     """
-    power = RADIUS_POWERS.get(name, 0)
+    exponent = RADIUS_POWERS.get(name, 0)
     # The power of the radius of a cone is monotone, so its minimum is at an end.
-    ends = min(1.0, taper**power)
+    ends = min(1.0, taper**exponent)
     if profile is None:
         return ends
     column = FACTOR_NAMES.index(name)
     rows = [
-        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
+        (1 - (1 - taper) * u) ** exponent * row[column]
+        for u, row in zip(profile.u, profile.rows, strict=True)
     ]
-    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
-    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
-    between = (1 - (1 - taper) * points) ** power * profile.factors_at(points)[column]
-    return min(*rows, float(between.min()))
+    fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
+    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
+    factors = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]
+    return min(*rows, float(factors.min()))
 
 
 DEFAULT_BUILD = Build()
