@@ -62,8 +62,8 @@ class Beam(RodOnMesh):
         return np.ascontiguousarray(crushed)
 
     def stresses(self, z: Values) -> Values:
-        scaled = self.layout.stresses(z)
-        return scaled / self._broadcast_sqrt_compliance(scaled)
+        scaled_stresses = self.layout.stresses(z)
+        return scaled_stresses / self._broadcast_sqrt_compliance(scaled_stresses)
 
     def state_of_stresses(self, S: Array) -> Array:
         """States z, (..., unknowns), of stresses S at all nodes, (3, ..., nodes + 1)."""

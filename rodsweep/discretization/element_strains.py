@@ -48,15 +48,15 @@ def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, 
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.jump_sides[j]
-        before = index_before_jump(node, element_nodes)
+        index = index_before_jump(node, element_nodes)
         for k in range(S.shape[1]):
             q = LawUnknowns(S[0, k, node], S[2, k, node])
             first = unknowns_before_jump(rod.law, sides, q)
-            beside = first, unknowns_behind_jump(sides, q, first)
+            unknowns_of_sides = first, unknowns_behind_jump(sides, q, first)
             for side in range(2):
-                out[0, k, before + side] = sides[side, 0] + sides[side, 1] * beside[side].q1
-                out[1, k, before + side] = sides[side, SHEAR_COLUMN] * S[1, k, node]
-                out[2, k, before + side] = sides[side, 2] * beside[side].q3
+                out[0, k, index + side] = sides[side, 0] + sides[side, 1] * unknowns_of_sides[side].q1
+                out[1, k, index + side] = sides[side, SHEAR_COLUMN] * S[1, k, node]
+                out[2, k, index + side] = sides[side, 2] * unknowns_of_sides[side].q3
 
 
 @compiled_for_vectors
@@ -75,7 +75,7 @@ def write_element_strain_changes(
     for j in range(len(rod.jumps)):
         node = rod.jumps[j]
         sides = rod.jump_sides[j]
-        before = index_before_jump(node, element_nodes)
+        index = index_before_jump(node, element_nodes)
         c1 = rod.compliance[0, node]
         c2 = rod.compliance[1, node]
         c3 = rod.compliance[2, node]
@@ -86,6 +86,6 @@ def write_element_strain_changes(
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
             changes = changes_beside_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
             for side in range(2):
-                out[0, k, before + side] = sides[side, 1] * changes[side].q1
-                out[1, k, before + side] = sides[side, SHEAR_COLUMN] * dq2
-                out[2, k, before + side] = sides[side, 2] * changes[side].q3
+                out[0, k, index + side] = sides[side, 1] * changes[side].q1
+                out[1, k, index + side] = sides[side, SHEAR_COLUMN] * dq2
+                out[2, k, index + side] = sides[side, 2] * changes[side].q3

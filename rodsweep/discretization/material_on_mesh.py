@@ -31,8 +31,10 @@ def material_at_nodes(rod: Rod, mesh: Mesh) -> Material:
     """
     if rod.is_uniform_and_linear:
         return rod.material
-    compliance, drag, rest = _mean_coefficients_at_nodes(rod.sections(mesh.points_inside_elements), mesh)
-    return Material(compliance, drag, rod.F, rest)
+    compliance, drag, rest_strain = _mean_coefficients_at_nodes(
+        rod.sections(mesh.points_inside_elements), mesh
+    )
+    return Material(compliance, drag, rod.F, rest_strain)
 
 
 def material_derivative_at_nodes(rod: Rod, name: str, mesh: Mesh) -> Material:
@@ -62,18 +64,21 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
     nodes.
     """
-    inside, at = _indices_beside_jumps(rod.build, mesh)
-    if not len(at):
+    indices, nodes = _indices_beside_jumps(rod.build, mesh)
+    if not len(nodes):
         return NO_JUMPS
-    points = mesh.points_inside_elements[inside]
-    weights = _nodes_and_weights_of_points(mesh)[1][inside]
+    points = mesh.points_inside_elements[indices]
+    weights = _nodes_and_weights_of_points(mesh)[1][indices]
     sections = rod.sections(points.ravel())
     c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
-    soft = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
-    shares = [values / values.sum(axis=1, keepdims=True) for values in (weights * soft[0], weights * soft[2])]
+    relative_compliances = rod.build.relative_compliances(rod.taper, points.ravel()).reshape(3, *points.shape)
+    fractions = [
+        values / values.sum(axis=1, keepdims=True)
+        for values in (weights * relative_compliances[0], weights * relative_compliances[2])
+    ]
     mean = weights / weights.sum(axis=1, keepdims=True)
-    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *shares, mean, c2], axis=-1)
-    return Jumps(at, np.ascontiguousarray(sides))
+    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *fractions, mean, c2], axis=-1)
+    return Jumps(nodes, np.ascontiguousarray(sides))
 
 
 def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
@@ -83,24 +88,24 @@ def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
     Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which the stress at a jump
     depends only on the mean strain.
     """
-    inside, at = _indices_beside_jumps(rod.build, mesh)
-    if rod.build.constitutive_law is LINEAR or not len(at):
+    indices, nodes = _indices_beside_jumps(rod.build, mesh)
+    if rod.build.constitutive_law is LINEAR or not len(nodes):
         return NO_JUMP_DERIVATIVE
-    changes = rod.section_derivatives(name, mesh.points_inside_elements[inside].ravel())
+    changes = rod.section_derivatives(name, mesh.points_inside_elements[indices].ravel())
     c1, _, c3 = changes.compliance
-    return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*inside.shape, 3))
+    return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*indices.shape, 3))
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (points, nodes) of the k jumps. points: indices in the `points_inside_elements` of the
-    points before and behind each jump, (k, 2). nodes: node of each jump, (k,). Cached.
+    points left and right of each jump, (k, 2). nodes: node of each jump, (k,). Cached.
     """
     jumps = build.jump_positions
     ends = np.array([e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64)
     nodes = np.array([mesh.node_ranges[e].start for e in ends], np.int64)
-    behind = nodes + ends
-    return np.stack([behind - 1, behind], axis=-1), nodes
+    right_indices = nodes + ends
+    return np.stack([right_indices - 1, right_indices], axis=-1), nodes
 
 
 def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, Array, Array]:
@@ -109,12 +114,12 @@ def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, 
     sections: the coefficients at the `points_inside_elements` of the mesh, or derivatives of the
     coefficients.
     """
-    rest = np.zeros_like(sections.drag)
-    rest[0] = sections.nu
-    compliance, drag, rest = (
-        _mean_at_nodes(values, mesh) for values in (sections.compliance, sections.drag, rest)
+    rest_strain = np.zeros_like(sections.drag)
+    rest_strain[0] = sections.nu
+    compliance, drag, rest_strain = (
+        _mean_at_nodes(values, mesh) for values in (sections.compliance, sections.drag, rest_strain)
     )
-    return compliance, drag, rest
+    return compliance, drag, rest_strain
 
 
 def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:

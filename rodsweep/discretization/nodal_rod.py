@@ -77,10 +77,10 @@ def nodal_rod(
     jumps: jumps of the material on this mesh.
     """
     size = mesh.node_count + 1
-    rest = _expanded_to_nodes(material.rest_strain, size)
+    rest_strain = _expanded_to_nodes(material.rest_strain, size)
     compliance = _expanded_to_nodes(material.compliance, size)
     resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, mesh, unknown_velocities)
-    return NodalRod(material.tip_stress, rest, compliance, *resistance, law, *jumps)
+    return NodalRod(material.tip_stress, rest_strain, compliance, *resistance, law, *jumps)
 
 
 def nodal_rod_derivative(
@@ -89,8 +89,8 @@ def nodal_rod_derivative(
     """The `NodalRodDerivative` of a mesh. change: derivative of the material by a parameter. sides:
     derivatives at the jumps, (k, 2, 3), as in `NodalRodDerivative`."""
     fields = change.rest_strain, change.compliance, change.drag
-    rest, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)
-    return NodalRodDerivative(change.tip_stress, rest, compliance, drag, sides)
+    rest_strain, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)
+    return NodalRodDerivative(change.tip_stress, rest_strain, compliance, drag, sides)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -116,11 +116,11 @@ def _drag_arrays(
     """
     drag = _expanded_to_nodes(drag, mesh.node_count + 1)
     mobility = np.zeros(drag.shape)
-    eliminated = [a for a in range(len(drag)) if a not in unknown_velocities]
-    mobility[eliminated] = 1 / drag[eliminated]
+    known_velocities = [a for a in range(len(drag)) if a not in unknown_velocities]
+    mobility[known_velocities] = 1 / drag[known_velocities]
     # The product of the two differentiations of the stress, D* and the weak D, does not depend on the state.
-    second = mesh.matrices.weak_derivative @ (mobility[:, :, None] * mesh.matrices.D)
-    return drag, mobility, second, np.array(unknown_velocities, np.int64)
+    laplacian = mesh.matrices.weak_derivative @ (mobility[:, :, None] * mesh.matrices.D)
+    return drag, mobility, laplacian, np.array(unknown_velocities, np.int64)
 
 
 def _expanded_to_nodes(field: Array, size: int) -> Array:

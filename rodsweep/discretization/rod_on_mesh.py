@@ -103,11 +103,11 @@ class RodOnMesh(ABC):
         """
         S = self.stresses(x)
         dS = self.stresses(change)
-        moved = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
+        dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strain_changes(
             _flatten_middle_axes(S),
-            _flatten_middle_axes(moved),
+            _flatten_middle_axes(dE),
             self.nodal_rod,
             self.mesh.element_nodes,
             _flatten_middle_axes(out),
@@ -137,8 +137,8 @@ class RodOnMesh(ABC):
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
-            for (q1, q3), (nu, c1, c3, _, _, share, _) in zip(sides, numbers, strict=True):
-                density[..., node] += share * self._strain_energy_density(nu, c1, c3, q1, q3)
+            for (q1, q3), (nu, c1, c3, _, _, weight, _) in zip(sides, numbers, strict=True):
+                density[..., node] += weight * self._strain_energy_density(nu, c1, c3, q1, q3)
         energy: Array = (density + c2 * S[1] ** 2 / 2) @ self.mesh.quadrature
         return energy
 
@@ -152,8 +152,10 @@ class RodOnMesh(ABC):
         h1 = nu + c1 * q1
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.
         ratio = np.where(load == 0, 1.0, law.shortening(load) / np.where(load == 0, 1.0, load))
-        push = q1 - F * ratio  # (h1 - 1)/c1
-        stored: Values = c1 * push**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
+        scaled_strain = q1 - F * ratio  # (h1 - 1)/c1
+        stored: Values = (
+            c1 * scaled_strain**2 * law.energy_over_square(h1) + law.bending_factor(h1) * c3 * q3**2 / 2
+        )
         return stored
 
     def stresses_on_mesh(self, target: Mesh, x: Array) -> Array:
@@ -184,9 +186,9 @@ class RodOnMesh(ABC):
         sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
         for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
             # The energy must be convex on each side; a section with the mean material does not exist.
-            before, behind = np.column_stack([numbers[:, :3], sides])
-            sections[node] = before
-            sections = np.vstack([sections, behind])
+            left, right = np.column_stack([numbers[:, :3], sides])
+            sections[node] = left
+            sections = np.vstack([sections, right])
         tangents = (stress_tangent(c.law, LocalSection(*row[:3]), *row[3:]) for row in sections)
         return all(T.M3 > 0 and T.N1 * T.M3 > T.N3 * T.M1 for T in tangents)
 

@@ -56,17 +56,19 @@ class StateLayout:
     def stresses(self, x: Values) -> Values:
         """Stresses of states x at all nodes, (components, ..., nodes + 1); stresses at the tip are 0."""
         S = np.zeros((self.components, *x.shape[:-1], self.node_count + 1), x.dtype)
-        known = x[..., : self.components * self.node_count].reshape(
+        unknown_stresses = x[..., : self.components * self.node_count].reshape(
             *x.shape[:-1], self.components, self.node_count
         )
-        S[..., :-1] = np.moveaxis(known, -2, 0)
+        S[..., :-1] = np.moveaxis(unknown_stresses, -2, 0)
         return S
 
     def velocities(self, x: Values) -> Values:
         """The unknown components of V of states x at all nodes, (unknown_velocities, ..., nodes + 1)."""
-        known = x[..., self.components * self.node_count :]
+        unknown_velocities = x[..., self.components * self.node_count :]
         return np.moveaxis(
-            known.reshape(*x.shape[:-1], len(self.unknown_velocities), self.node_count + 1), -2, 0
+            unknown_velocities.reshape(*x.shape[:-1], len(self.unknown_velocities), self.node_count + 1),
+            -2,
+            0,
         )
 
     def state(self, S: Values, V: Values) -> Values:
@@ -80,8 +82,8 @@ class StateLayout:
         """States x interpolated to another mesh. E: interpolation matrix from all nodes of the present mesh
         to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1).
         """
-        split = self.components * self.node_count
-        slices = [slice(first, first + self.node_count) for first in range(0, split, self.node_count)]
+        stress_count = self.components * self.node_count
+        slices = [slice(first, first + self.node_count) for first in range(0, stress_count, self.node_count)]
         parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
         return np.concatenate(
             [*parts, *(self.velocities(x) @ E.T if self.unknown_velocities else ())], axis=-1

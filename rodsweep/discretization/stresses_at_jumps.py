@@ -57,14 +57,14 @@ def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
-    for found, node, sides in zip(out, rod.jumps, rod.jump_sides, strict=True):
+    for stresses, node, sides in zip(out, rod.jumps, rod.jump_sides, strict=True):
         q1, q3 = (
             np.ascontiguousarray(S[a, ..., node]).ravel()
             for a in (STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX)
         )
-        flat = np.empty((4, q1.size))
-        write_unknowns_beside_jump(rod.law, sides, q1, q3, flat)
-        found[...] = flat.reshape(found.shape)
+        columns = np.empty((4, q1.size))
+        write_unknowns_beside_jump(rod.law, sides, q1, q3, columns)
+        stresses[...] = columns.reshape(stresses.shape)
     return out
 
 
@@ -76,10 +76,10 @@ def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     """
     fields: Array = S[..., mesh.element_nodes]
     for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
-        before = index_before_jump(int(node), mesh.element_nodes)
+        index = index_before_jump(int(node), mesh.element_nodes)
         for side, values in enumerate(sides):
             for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
-                fields[component, ..., before + side] = value
+                fields[component, ..., index + side] = value
     return fields
 
 
@@ -93,14 +93,14 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     """
     E = interpolation_matrix(source, target)
     out = S @ E.T
-    there = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
-    if len(there.nodes):
-        here = jumps_on_mesh(rod, source).nodes
+    target_jumps = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
+    if len(target_jumps.nodes):
+        source_nodes = jumps_on_mesh(rod, source).nodes
         for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):
             out[component] = (
                 S[component]
                 @ _discontinuous_interpolation(
-                    E, source, target, here, there.nodes, there.jump_sides[..., column]
+                    E, source, target, source_nodes, target_jumps.nodes, target_jumps.jump_sides[..., column]
                 ).T
             )
     return out
@@ -116,51 +116,58 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     """
     E = interpolation_matrix(source, target)
     out = S @ E.T
-    there = jumps_on_mesh(rod, target)
+    target_jumps = jumps_on_mesh(rod, target)
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
     sides_of_jumps = stresses_beside_jumps(nodal, S)
     for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
-        for side, of_side in enumerate(values):
+        for side, side_values in enumerate(values):
             rows = element == _element_behind(source, node) - 1 + side
-            for component, value in zip(JUMPING_COMPONENTS, of_side, strict=True):
+            for component, value in zip(JUMPING_COMPONENTS, side_values, strict=True):
                 out[component][..., rows] += (value - S[component, ..., node])[..., None] * E[rows, node]
-    for node, sides, values in zip(there.nodes, there.jump_sides, sides_of_jumps, strict=True):
+    for node, sides, values in zip(target_jumps.nodes, target_jumps.jump_sides, sides_of_jumps, strict=True):
         for i, component in enumerate(JUMPING_COMPONENTS):
-            shares = sides[:, SHARE_COLUMNS[i]]
-            out[component, ..., node] = np.tensordot(shares, values[:, i], 1)
+            fractions = sides[:, SHARE_COLUMNS[i]]
+            out[component, ..., node] = np.tensordot(fractions, values[:, i], 1)
     return out
 
 
 def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
-    E: Array, source: Mesh, target: Mesh, here: IntegerArray, there: IntegerArray, shares: Array
+    E: Array,
+    source: Mesh,
+    target: Mesh,
+    source_nodes: IntegerArray,
+    target_nodes: IntegerArray,
+    fractions: Array,
 ) -> Array:
     """The interpolation matrix E, (target nodes, source nodes), modified for a field that is discontinuous at
     jumps.
 
-    here, there: nodes of the jumps in `source` and `target`, (k,) each. shares: weights of both sides in the
-    mean at each jump, (k, 2).
+    source_nodes, target_nodes: nodes of the jumps in `source` and `target`, (k,) each. fractions: weights of
+    both sides in the mean at each jump, (k, 2).
     """
     # In elements with an end at a jump, E uses the mean at this end. Extrapolation from the other nodes
     # replaces this value.
     out = E.copy()
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
-    at_jumps = [_element_behind(source, node) for node in here]
+    elements_at_jumps = [_element_behind(source, node) for node in source_nodes]
 
     def row_of(side: int, *, to_first_node: bool) -> Array:
         p = source.orders[side]
-        return _extrapolation_weights(p, side in at_jumps, side + 1 in at_jumps, to_first_node)
+        return _extrapolation_weights(
+            p, side in elements_at_jumps, side + 1 in elements_at_jumps, to_first_node
+        )
 
-    for e, node in zip(at_jumps, here, strict=True):
+    for e, node in zip(elements_at_jumps, source_nodes, strict=True):
         for side in (e - 1, e):
             rows = element == side
             weights = out[rows, node].copy()
             out[rows, node] = 0.0
             out[rows, source.node_ranges[side]] += weights[:, None] * row_of(side, to_first_node=side == e)
-    for e, node, (before, behind) in zip(at_jumps, there, shares, strict=True):
+    for e, node, (left_weight, right_weight) in zip(elements_at_jumps, target_nodes, fractions, strict=True):
         # States contain the mean of both sides at the node of a jump.
         out[node] = 0.0
-        for side, share in ((e - 1, before), (e, behind)):
-            out[node, source.node_ranges[side]] += share * row_of(side, to_first_node=side == e)
+        for side, weight in ((e - 1, left_weight), (e, right_weight)):
+            out[node, source.node_ranges[side]] += weight * row_of(side, to_first_node=side == e)
     return out
 
 
@@ -170,16 +177,16 @@ def _element_behind(mesh: Mesh, node: int) -> int:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _extrapolation_weights(order: int, starts: bool, stops: bool, to_first_node: bool) -> Array:
+def _extrapolation_weights(order: int, jump_at_start: bool, jump_at_end: bool, to_start: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
     at jumps.
 
-    starts: whether a jump lies at the first node. stops: whether a jump lies at the last node. to_first_node:
-    whether to extrapolate to the first node; otherwise to the last node.
+    jump_at_start: whether a jump lies at the first node. jump_at_end: whether a jump lies at the last node.
+    to_start: whether to extrapolate to the first node; otherwise to the last node.
     """
     x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
-    used = slice(int(starts), order + 1 - int(stops))
+    used_nodes = slice(int(jump_at_start), order + 1 - int(jump_at_end))
     row = np.zeros(order + 1)
-    row[used] = lagrange_interpolation_matrix(x[used], np.array([-1.0 if to_first_node else 1.0]))[0]
+    row[used_nodes] = lagrange_interpolation_matrix(x[used_nodes], np.array([-1.0 if to_start else 1.0]))[0]
     return row

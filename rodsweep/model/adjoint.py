@@ -63,10 +63,10 @@ def tip_layer_factor(rod: Rod) -> float:
     return tanh(kappa) / kappa if square > 0 else tan(kappa) / kappa
 
 
-def hermitian_tip_coefficients(F: float, layer: float) -> tuple[float, float]:
+def hermitian_tip_coefficients(F: float, layer_factor: float) -> tuple[float, float]:
     """Returns (p, r), the factors in the tip term that (L + L+)/2 has in addition to L in weak form.
 
     The term is p (a theta - b y) - r a y at u = 1, with test functions (a, b) and fields (y, theta). p = F/2
-    in k3/L^2; r = (F^2/4) T in k3/L^3. layer: T as returned by `tip_layer_factor`.
+    in k3/L^2; r = (F^2/4) T in k3/L^3. layer_factor: T as returned by `tip_layer_factor`.
     """
-    return F / 2, F**2 / 4 * layer
+    return F / 2, F**2 / 4 * layer_factor

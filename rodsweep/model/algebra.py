@@ -43,12 +43,13 @@ class Algebra(NamedTuple):
 def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra:
     """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
-    leads = {(a, c) for a, _, c, _ in terms}
-    bends = {(c, other) for a, b, c, _ in terms for other in (a, b)}
-    forward, backward = (
-        tuple(tuple((i, j) in pairs for j in range(size)) for i in range(size)) for pairs in (leads, bends)
+    ad_pairs = {(a, c) for a, _, c, _ in terms}
+    coad_pairs = {(c, component) for a, b, c, _ in terms for component in (a, b)}
+    ad_pattern, coad_pattern = (
+        tuple(tuple((i, j) in pairs for j in range(size)) for i in range(size))
+        for pairs in (ad_pairs, coad_pairs)
     )
-    return Algebra(range(size), tuple(terms), forward, backward)
+    return Algebra(range(size), tuple(terms), ad_pattern, coad_pattern)
 
 
 def _cross_product_constants(out: int, left: int, right: int) -> list[StructureConstant]:
@@ -57,9 +58,9 @@ def _cross_product_constants(out: int, left: int, right: int) -> list[StructureC
     The first factor is the triple of components of E that starts at index `left`, the second factor the
     triple of V that starts at `right`, and the product the triple of ad_E V that starts at `out`.
     """
-    cyclic = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
-    positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic]
-    return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic]
+    cyclic_orders = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
+    positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic_orders]
+    return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic_orders]
 
 
 SE2 = algebra_from_constants(3, [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0)])

@@ -21,11 +21,11 @@ def uncrushed_interval(
     name, low, high = varied
     if name == "taper":
         return _smallest_uncrushed_taper(build, rod, (low, high), margin), high
-    share = build.relative_crushing_force(rod.get("taper", 1.0))
+    relative_force = build.relative_crushing_force(rod.get("taper", 1.0))
     if name == "F":
-        return low, min(high, (1 - margin) * share * rod["k1"])
+        return low, min(high, (1 - margin) * relative_force * rod["k1"])
     if name == "k1":
-        return max(low, rod["F"] / share * (1 + margin)), high
+        return max(low, rod["F"] / relative_force * (1 + margin)), high
     return low, high
 
 
@@ -35,13 +35,13 @@ def _smallest_uncrushed_taper(
     """Smallest taper of the interval at which the force does not crush the rod; the largest one if it crushes
     the rod everywhere."""
 
-    def holds(taper: float) -> bool:
+    def is_uncrushed(taper: float) -> bool:
         return (1 - margin) * build.relative_crushing_force(taper) * rod["k1"] > rod["F"]
 
     low, high = interval
-    if holds(low) or not holds(high):
-        return low if holds(low) else high
+    if is_uncrushed(low) or not is_uncrushed(high):
+        return low if is_uncrushed(low) else high
     while high - low > TAPER_ACCURACY * high:
         middle = (low + high) / 2
-        low, high = (low, middle) if holds(middle) else (middle, high)
+        low, high = (low, middle) if is_uncrushed(middle) else (middle, high)
     return high

@@ -70,8 +70,8 @@ def _interval_midpoints(build: Build) -> tuple[Array, Array]:
     each.
     """
     lengths = np.diff(build.breaks)
-    inside = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
-    points = (build.breaks[:-1, None] + lengths[:, None] * inside).ravel()
+    fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
+    points = (build.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
     return points, np.repeat(lengths / SAMPLES_PER_INTERVAL, SAMPLES_PER_INTERVAL)
 
 
@@ -95,8 +95,8 @@ def expected_unstable_count(rod: Rod) -> float:
 
     For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
     """
-    _, weights, local = sampled_arm(rod)
-    return float(weights @ np.sqrt(np.maximum(rod.F * local.c3 * local.g, 0.0))) / math.pi
+    _, weights, coefficients = sampled_arm(rod)
+    return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 
 
 def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Any, Any]:
@@ -111,14 +111,16 @@ def _largest_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[An
     # At the largest w the derivative of the dispersion relation with respect to K is 0:
     # (c2 + gamma3) w + 2 K = F g. Without K the relation is quadratic in w. In units of `unit` no allowed
     # force overflows.
-    total = c2 + gamma3
+    drag_sum = c2 + gamma3
     with np.errstate(over="ignore"):
         unit = np.maximum(top, relaxation)
-        drive = top / unit
+        relative_top = top / unit
         damping = relaxation / unit
-        damping = damping + np.sqrt(c2 * gamma3 * drive * drive + total * damping * drive + damping * damping)
-        denominator = total * drive + 2 * damping
-        return top * drive / denominator, np.sqrt(top * (damping / denominator))
+        damping = damping + np.sqrt(
+            c2 * gamma3 * relative_top * relative_top + drag_sum * damping * relative_top + damping * damping
+        )
+        denominator = drag_sum * relative_top + 2 * damping
+        return top * relative_top / denominator, np.sqrt(top * (damping / denominator))
 
 
 def _largest_sampled_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> tuple[Array, Array]:
@@ -127,14 +129,14 @@ def _largest_sampled_growth(top: Any, relaxation: Any, c2: Any, gamma3: Any) -> 
     product = c2 * gamma3
     K = top * K_FRACTIONS
     with np.errstate(all="ignore"):
-        drive = K * (top - K)
+        constant = K * (top - K)
         linear = (c2 + gamma3) * K + relaxation
-        spread = np.sqrt(linear**2 + 4 * product * drive)
+        root_of_discriminant = np.sqrt(linear**2 + 4 * product * constant)
         # The positive root r of product r^2 + linear r = drive. Each of the two formulas is free of
         # cancellation for one sign of `linear`.
-        slow = np.where(product > 0, (spread - linear) / (2 * product), 0.0)
-        rates = np.where(linear > 0, 2 * drive / (linear + spread), slow)
+        rates_if_damped = np.where(product > 0, (root_of_discriminant - linear) / (2 * product), 0.0)
+        rates = np.where(linear > 0, 2 * constant / (linear + root_of_discriminant), rates_if_damped)
     rates = np.where(rates > 0, rates, 0.0)
-    largest = rates.max(axis=-1)
+    max_rate = rates.max(axis=-1)
     fractions = K_FRACTIONS[rates.argmax(axis=-1)]
-    return largest, np.where(largest > 0, np.sqrt(top[..., 0] * fractions), 0.0)
+    return max_rate, np.where(max_rate > 0, np.sqrt(top[..., 0] * fractions), 0.0)

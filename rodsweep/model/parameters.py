@@ -209,20 +209,20 @@ CRUSHING_PARAMETERS = ("F", "k1")
 """Names of the force and of the stretch stiffness: a rod of linear material is crushed if F >= k1."""
 
 
-def parameter_names_except(varied: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """All names in `names` except `varied`. names: parameter names, by default the parameters of the
+def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
+    """All names in `names` except `excluded`. names: parameter names, by default the parameters of the
     transverse linear problem.
     """
-    return tuple(name for name in names if name != varied)
+    return tuple(name for name in names if name != excluded)
 
 
 def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
     """Class decorator that adds every parameter of `PARAMETERS`, in this order, as a field with its
     default.
     """
-    own = dict(cls.__annotations__)
+    own_annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
-        n: a for n, a in own.items() if n not in PARAMETERS
+        n: a for n, a in own_annotations.items() if n not in PARAMETERS
     }
     for name, parameter in PARAMETERS.items():
         if parameter.default is not None:

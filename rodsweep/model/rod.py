@@ -37,10 +37,10 @@ class Coefficients(NamedTuple):
 
 def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
     """Coefficients for parameter values by name, floats or arrays (n,) for n rods. Ranges are not checked."""
-    own = stiffnesses_and_drags_at_base(values)
-    F = own["F"]
-    k1 = own["k1"]
-    return Coefficients(F, stretch_of_straight_rod(F, k1), 1 / own["k2"], own["gamma3"])
+    base_values = stiffnesses_and_drags_at_base(values)
+    F = base_values["F"]
+    k1 = base_values["k1"]
+    return Coefficients(F, stretch_of_straight_rod(F, k1), 1 / base_values["k2"], base_values["gamma3"])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,9 +100,9 @@ class Rod:
             return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        local = rods[0].build.local_coefficients(values["F"], stiffnesses_and_drags_at_base(values), u)
-        whole = (len(rods), *u.shape)
-        return LocalCoefficients(*(x if x.shape == whole else np.broadcast_to(x, whole) for x in local))
+        coefficients = rods[0].build.local_coefficients(values["F"], stiffnesses_and_drags_at_base(values), u)
+        full = (len(rods), *u.shape)
+        return LocalCoefficients(*(x if x.shape == full else np.broadcast_to(x, full) for x in coefficients))
 
     @property
     def crushing_force(self) -> float:
@@ -242,6 +242,6 @@ class Rod:
         Keys are F, k1, k2, gamma1 and gamma3; keys of stiffnesses contain derivatives of compliances. Force,
         compliances and drags are products of coordinates: a derivative is the product of all other factors.
         """
-        others = stiffnesses_and_drags_at_base({**self.values, name: 1.0})
-        changing = PARAMETERS[name].scaled_names or (name,)
-        return {of: float(1 / others[of] if of in STIFFNESSES else others[of]) for of in changing}
+        unit_values = stiffnesses_and_drags_at_base({**self.values, name: 1.0})
+        keys = PARAMETERS[name].scaled_names or (name,)
+        return {key: float(1 / unit_values[key] if key in STIFFNESSES else unit_values[key]) for key in keys}

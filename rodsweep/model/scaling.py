@@ -20,10 +20,10 @@ def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any
     """
     if not SCALING_PAIRS:
         return values
-    own = dict(values)
-    for factor, of in SCALING_PAIRS:
-        own[of] = own[of] * values[factor]
-    return own
+    base_values = dict(values)
+    for factor, scaled_name in SCALING_PAIRS:
+        base_values[scaled_name] = base_values[scaled_name] * values[factor]
+    return base_values
 
 
 def stretch_of_straight_rod(F: Any, k1: Any) -> Any:

@@ -50,120 +50,121 @@ def unit_registry() -> "UnitRegistry":
     return UnitRegistry()
 
 
-def split_quantity(given: str) -> tuple[float, str]:
+def split_quantity(text: str) -> tuple[float, str]:
     """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a
     number.
 
     In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and
     not checked.
     """
-    found = NUMBER_AND_UNIT_PATTERN.fullmatch(given)
-    if not found:
+    match = NUMBER_AND_UNIT_PATTERN.fullmatch(text)
+    if not match:
         return math.nan, ""
-    return float(found[1]), found[2].replace("·", "*").replace(".", "*")
+    return float(match[1]), match[2].replace("·", "*").replace(".", "*")
 
 
-def quantity_in_si(name: str, given: GivenQuantity, unit: str, example: str) -> float:
-    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `given`.
+def quantity_in_si(name: str, quantity: GivenQuantity, unit: str, example: str) -> float:
+    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `quantity`.
 
     example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
     """
     allowed = f"a number with a unit, as in '{example}'"
-    if not isinstance(given, str):
-        value = _number_in_si(name, given, unit, allowed)
+    if not isinstance(quantity, str):
+        value = _number_in_si(name, quantity, unit, allowed)
     else:
-        number, written = split_quantity(given)
+        number, unit_text = split_quantity(quantity)
         if math.isnan(number):
-            raise InputError(f"{name} = '{given}' is not {allowed}")
-        if not written:
-            raise InputError(f"{name} = '{given}' has no unit; write {allowed}")
-        value = number * conversion_factor(f"{name} = '{given}'", written, unit, allowed)
+            raise InputError(f"{name} = '{quantity}' is not {allowed}")
+        if not unit_text:
+            raise InputError(f"{name} = '{quantity}' has no unit; write {allowed}")
+        value = number * conversion_factor(f"{name} = '{quantity}'", unit_text, unit, allowed)
     if not math.isfinite(value):
-        raise InputError(f"{name} = '{given}' is not a finite number")
+        raise InputError(f"{name} = '{quantity}' is not a finite number")
     return value
 
 
-def _number_in_si(name: str, given: Any, unit: str, allowed: str) -> float:
-    """Value in the SI unit `unit` of `given`, a number in SI or a pint quantity. Raises InputError for other
-    objects.
+def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
+    """Value in the SI unit `unit` of `quantity`, a number in SI or a pint quantity. Raises InputError for
+    other objects.
 
     name, allowed: name of the quantity and allowed texts, for messages.
     """
-    if hasattr(given, "to_base_units"):
-        return _number_in_si(name, given.magnitude, unit, allowed) * conversion_factor(
-            f"{name} = '{given!s:.60}'", f"{given.units:C}", unit, allowed
+    if hasattr(quantity, "to_base_units"):
+        return _number_in_si(name, quantity.magnitude, unit, allowed) * conversion_factor(
+            f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", unit, allowed
         )
     try:
-        if isinstance(given, bool | np.bool_ | complex) or np.ma.is_masked(given):
+        if isinstance(quantity, bool | np.bool_ | complex) or np.ma.is_masked(quantity):
             raise TypeError
-        return float(given)
+        return float(quantity)
     except (TypeError, ValueError, OverflowError):
-        shown = " ".join(str(given).split())
+        text = " ".join(str(quantity).split())
         raise InputError(
-            f"{name} = {shown:.60} is not one quantity; write {allowed}, or one number in {unit}"
+            f"{name} = {text:.60} is not one quantity; write {allowed}, or one number in {unit}"
         ) from None
 
 
-def conversion_factor(subject: str, written: str, unit: str, allowed: str) -> float:
-    """Number by which a value in the unit `written` is multiplied to get the value in `unit`.
+def conversion_factor(beginning: str, unit_text: str, unit: str, allowed: str) -> float:
+    """Number by which a value in the unit `unit_text` is multiplied to get the value in `unit`.
 
-    subject, allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of
+    beginning, allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of
     another dimension.
     """
-    if written.startswith(","):
-        raise InputError(f"{subject} has a decimal comma; write a point")
+    if unit_text.startswith(","):
+        raise InputError(f"{beginning} has a decimal comma; write a point")
     if (
-        len(written) > MAX_UNIT_LENGTH
-        or UNIT_TOKEN_PATTERN.sub("", written)
-        or POWER_OF_POWER_PATTERN.search(written)
+        len(unit_text) > MAX_UNIT_LENGTH
+        or UNIT_TOKEN_PATTERN.sub("", unit_text)
+        or POWER_OF_POWER_PATTERN.search(unit_text)
     ):
         raise InputError(
-            f"{subject} has the unit '{written[:MAX_UNIT_LENGTH]}', which is not understood; write {allowed}"
+            f"{beginning} has the unit '{unit_text[:MAX_UNIT_LENGTH]}', "
+            f"which is not understood; write {allowed}"
         )
-    if unit in LOAD_UNITS and written.endswith("flutter"):
+    if unit in LOAD_UNITS and unit_text.endswith("flutter"):
         raise InputError(
-            f"{subject} is not a load relative to flutter; write it like '1.2 of flutter' or "
+            f"{beginning} is not a load relative to flutter; write it like '1.2 of flutter' or "
             "'20 % below flutter', with a number of 0 or above"
         )
     units = unit_registry()
     from pint.errors import PintError
 
     try:
-        return _cached_conversion_factor(written, unit)
+        return _cached_conversion_factor(unit_text, unit)
     except PintError as error:
         is_known_unit = "from" in str(error)  # pint: "Cannot convert from ..." for another dimension
-        why = f"is not measured in {unit}" if is_known_unit else f"has the unknown unit '{written}'"
-        if is_known_unit and unit == "Pa*s" and units.Quantity(1.0, written).check("[length]**2/[time]"):
-            why = KINEMATIC_VISCOSITY_MESSAGE
-        raise InputError(f"{subject} {why}; {_suggestion(written, unit)}write {allowed}") from None
+        reason = f"is not measured in {unit}" if is_known_unit else f"has the unknown unit '{unit_text}'"
+        if is_known_unit and unit == "Pa*s" and units.Quantity(1.0, unit_text).check("[length]**2/[time]"):
+            reason = KINEMATIC_VISCOSITY_MESSAGE
+        raise InputError(f"{beginning} {reason}; {_suggestion(unit_text, unit)}write {allowed}") from None
     except Exception as error:  # pint's parser raises errors of many types for invalid units
         raise InputError(
-            f"{subject} has the unit '{written}', which is not understood; write {allowed}"
+            f"{beginning} has the unit '{unit_text}', which is not understood; write {allowed}"
         ) from error
 
 
 @lru_cache(CONVERSION_CACHE_SIZE)
-def _cached_conversion_factor(written: str, unit: str) -> float:
-    """Conversion factor from the unit `written` to `unit`, cached; raises the errors of pint."""
-    return float(unit_registry().Quantity(1.0, written).to(unit).magnitude)
+def _cached_conversion_factor(unit_text: str, unit: str) -> float:
+    """Conversion factor from the unit `unit_text` to `unit`, cached; raises the errors of pint."""
+    return float(unit_registry().Quantity(1.0, unit_text).to(unit).magnitude)
 
 
-def _suggestion(written: str, unit: str) -> str:
-    """The text "did you mean 'kPa'? " if `written` is a misspelt common unit with the dimension of `unit`;
+def _suggestion(unit_text: str, unit: str) -> str:
+    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt common unit with the dimension of `unit`;
     else "".
     """
-    squeezed = "".join(written.split()).casefold()
-    for common in COMMON_UNITS:
-        if "".join(common.split()).casefold() == squeezed and unit_registry()(common).check(
+    plain_text = "".join(unit_text.split()).casefold()
+    for common_unit in COMMON_UNITS:
+        if "".join(common_unit.split()).casefold() == plain_text and unit_registry()(common_unit).check(
             unit_registry()(unit)
         ):
-            return f"did you mean '{common}'? "
+            return f"did you mean '{common_unit}'? "
     return ""
 
 
-def unit_of(given: GivenQuantity, default: str) -> str:
+def unit_of(quantity: GivenQuantity, default: str) -> str:
     """The unit in the text of a quantity; `default` for a number or a text without a unit."""
-    return (split_quantity(given)[1] or default) if isinstance(given, str) else default
+    return (split_quantity(quantity)[1] or default) if isinstance(quantity, str) else default
 
 
 def value_in_unit(value: float, unit: str, si: str) -> float:
@@ -171,30 +172,30 @@ def value_in_unit(value: float, unit: str, si: str) -> float:
     return value / conversion_factor("", unit, si, "")
 
 
-def load_over_flutter(given: GivenQuantity) -> float | None:
+def load_over_flutter(text: GivenQuantity) -> float | None:
     """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter".
 
     None for a number, for any other text, and for 100 % or more below flutter.
     """
-    if not isinstance(given, str):
+    if not isinstance(text, str):
         return None
-    if found := MULTIPLE_OF_FLUTTER_PATTERN.fullmatch(given):
-        return float(found[1]) / (100.0 if found[2] else 1.0)
-    if (found := PERCENT_FROM_FLUTTER_PATTERN.fullmatch(given)) and (
-        found[2] == "above" or float(found[1]) < 100
+    if match := MULTIPLE_OF_FLUTTER_PATTERN.fullmatch(text):
+        return float(match[1]) / (100.0 if match[2] else 1.0)
+    if (match := PERCENT_FROM_FLUTTER_PATTERN.fullmatch(text)) and (
+        match[2] == "above" or float(match[1]) < 100
     ):
-        return 1.0 + (1.0 if found[2] == "above" else -1.0) * float(found[1]) / 100.0
+        return 1.0 + (1.0 if match[2] == "above" else -1.0) * float(match[1]) / 100.0
     return None
 
 
 def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
 
-    The SI prefix makes the number readable: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
+    The SI prefix makes the number prefixed: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
     0, inf or nan, returns (1.0, `unit`).
     """
     if not value or not math.isfinite(value):
         return 1.0, unit
-    readable = unit_registry().Quantity(value, unit).to_compact()
+    prefixed = unit_registry().Quantity(value, unit).to_compact()
     # Releases of pint use different characters for micro.
-    return float(readable.magnitude) / value, f"{readable.units:~}".replace("\u03bc", "\u00b5")
+    return float(prefixed.magnitude) / value, f"{prefixed.units:~}".replace("\u03bc", "\u00b5")

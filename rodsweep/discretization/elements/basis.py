@@ -22,13 +22,13 @@ def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
     (m,).
     """
     difference = points[:, None] - nodes[None, :]
-    hit = difference == 0
-    difference[hit] = 1.0
+    coincides = difference == 0
+    difference[coincides] = 1.0
     matrix = barycentric_weights(nodes) / difference
     # Second barycentric form: common factors cancel, and constants are reproduced exactly.
     matrix /= matrix.sum(axis=1, keepdims=True)
-    on_node = hit.any(axis=1)
-    matrix[on_node] = hit[on_node]
+    is_node = coincides.any(axis=1)
+    matrix[is_node] = coincides[is_node]
     return matrix
 
 

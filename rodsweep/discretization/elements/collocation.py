@@ -44,9 +44,10 @@ class CollocationMethod(NamedTuple):
         """Number of stages s."""
         return len(self.nodes)
 
-    def evaluation_matrix(self, at: Array) -> Array:
-        """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `at`, (m,), in [0, 1]."""
-        return lagrange_interpolation_matrix(np.append(0.0, self.nodes), at)
+    def evaluation_matrix(self, times: Array) -> Array:
+        """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `times`, (m,), in [0,
+        1]."""
+        return lagrange_interpolation_matrix(np.append(0.0, self.nodes), times)
 
 
 @cache

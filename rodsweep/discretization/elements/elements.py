@@ -113,9 +113,9 @@ class Elements:
     def evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + 1) from values at all nodes to values at `points`, (n,), in [0, 1]."""
         matrix = np.zeros((len(points), self.node_count + 1))
-        for e, inside, local in self.points_by_element(points):
+        for e, indices, coordinates in self.points_by_element(points):
             nodes = gauss_lobatto_rule(self.orders[e])[0]
-            matrix[inside, self.node_ranges[e]] = lagrange_interpolation_matrix(nodes, local)
+            matrix[indices, self.node_ranges[e]] = lagrange_interpolation_matrix(nodes, coordinates)
         return matrix
 
     def element_evaluation_matrix(self, points: Array) -> Array:
@@ -125,10 +125,10 @@ class Elements:
         A node between two elements has one value for each of the two elements.
         """
         matrix = np.zeros((len(points), self.element_nodes.size))
-        for e, inside, local in self.points_by_element(points):
+        for e, indices, coordinates in self.points_by_element(points):
             nodes = gauss_lobatto_rule(self.orders[e])[0]
             columns = slice(self.node_ranges[e].start + e, self.node_ranges[e].stop + e)
-            matrix[inside, columns] = lagrange_interpolation_matrix(nodes, local)
+            matrix[indices, columns] = lagrange_interpolation_matrix(nodes, coordinates)
         return matrix
 
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
@@ -139,16 +139,16 @@ class Elements:
         """
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
-            inside = np.nonzero(element == e)[0]
-            yield int(e), inside, 2 * (points[inside] - self.edges[e]) / self.lengths[e] - 1
+            indices = np.nonzero(element == e)[0]
+            yield int(e), indices, 2 * (points[indices] - self.edges[e]) / self.lengths[e] - 1
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def element_orders(elements: int, order: int, ratios: tuple[float, ...]) -> tuple[int, ...]:
     """Orders of `elements` elements: `order` times each of `ratios`, rounded up, between
     `ELEMENT_SETTINGS.min_reduced_order` and `order`; `order` for all elements if `ratios` is empty."""
-    least = min(ELEMENT_SETTINGS.min_reduced_order, order)
-    return tuple(max(least, ceil(ratio * order)) for ratio in ratios) or (order,) * elements
+    min_order = min(ELEMENT_SETTINGS.min_reduced_order, order)
+    return tuple(max(min_order, ceil(ratio * order)) for ratio in ratios) or (order,) * elements
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
@@ -159,5 +159,5 @@ def equal_edges(elements: int) -> tuple[float, ...]:
 
 def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:
     """Edges of the elements after every element between `edges` is halved."""
-    middles = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
-    return tuple(sorted([*edges, *middles]))
+    midpoints = [(a + b) / 2 for a, b in zip(edges[:-1], edges[1:], strict=True)]
+    return tuple(sorted([*edges, *midpoints]))

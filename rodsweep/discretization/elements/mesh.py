@@ -73,10 +73,12 @@ def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[fl
     nodes = elements.node_count
     weighted = np.zeros((nodes + 1, nodes + 1))
     total = np.zeros(nodes + 1)
-    for length, own, p in zip(elements.lengths, elements.node_ranges, elements.orders, strict=True):
+    for length, node_range, p in zip(elements.lengths, elements.node_ranges, elements.orders, strict=True):
         x, w = gauss_lobatto_rule(p)
-        weighted[own, own] += w[:, None] * differentiation_matrix(x)  # the length of the element cancels
-        total[own] += length / 2 * w
+        weighted[node_range, node_range] += w[:, None] * differentiation_matrix(
+            x
+        )  # the length of the element cancels
+        total[node_range] += length / 2 * w
     # At a node shared by two elements, D gives the mean of both slopes with the quadrature weights, so that W
     # D is the assembled matrix.
     D = weighted / total[:, None]

@@ -45,9 +45,9 @@ def hermite_coefficients(values: Array, slopes: Array) -> Complex:
     values, slopes: (m, ...); slopes are derivatives by the time in periods. The slopes distinguish the
     harmonics k and m - k, so twice as many harmonics are resolved as from values alone.
     """
-    flat = np.ascontiguousarray(values).reshape(len(values), -1)
+    columns = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
-    c: Complex = hermite_coefficients_of_columns(flat, rates, np.zeros(flat.shape[1]))
+    c: Complex = hermite_coefficients_of_columns(columns, rates, np.zeros(columns.shape[1]))
     return c.reshape(len(c), *values.shape[1:])
 
 
@@ -61,19 +61,19 @@ def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) 
     """
     nodes, columns = values.shape
     m = 2 * nodes if signs[0] != 0 else nodes
-    turns = _cosine_sine_table(m)
+    waves = _cosine_sine_table(m)
     cos = np.empty(nodes)
     sin = np.empty(nodes)
     f = values.T.copy()
     df = slopes.T.copy()
     c = np.zeros((m + 1, columns), np.complex128)
     for k in range(m + 1):
-        at = 0
+        index = 0
         for j in range(nodes):
-            cos[j] = turns[0, at]
-            sin[j] = turns[1, at]
+            cos[j] = waves[0, index]
+            sin[j] = waves[1, index]
             # A table of angles by index keeps rounding errors from adding up over the harmonics.
-            at += k if at + k < m else k - m
+            index += k if index + k < m else k - m
         for a in range(columns):
             # The second half of the period doubles or cancels the sum of a harmonic.
             factor = 2 * (1 + signs[a] * (1 - 2 * (k % 2))) / m
@@ -89,9 +89,9 @@ def hermite_coefficients_of_columns(values: Array, slopes: Array, signs: Array) 
                 D += cos[j] * df[a, j]
                 iD -= sin[j] * df[a, j]
             # Harmonics k and k - m have equal values at the m times but different slopes.
-            share = 1 - k / m
-            by_slope = 1 / (2 * np.pi * m)
-            c[k, a] = complex(factor * (share * S + by_slope * iD), factor * (share * iS - by_slope * D))
+            weight = 1 - k / m
+            unit = 1 / (2 * np.pi * m)
+            c[k, a] = complex(factor * (weight * S + unit * iD), factor * (weight * iS - unit * D))
     for a in range(columns):
         # The last harmonic is a sine with value 0 at all nodes; only slopes determine it.
         c[0, a], c[m, a] = c[0, a].real / 2, c[m, a] / 2
@@ -103,9 +103,9 @@ def _cosine_sine_table(count: int) -> Array:
     """Cosine and sine of 2 pi k/count for k = 0 ... count - 1, (2, count)."""
     waves = np.empty((2, count))
     for i in range(count):
-        turn = 2 * np.pi * i / count
-        waves[0, i] = np.cos(turn)
-        waves[1, i] = np.sin(turn)
+        angle = 2 * np.pi * i / count
+        waves[0, i] = np.cos(angle)
+        waves[1, i] = np.sin(angle)
     return waves
 
 
@@ -125,10 +125,10 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
     harmonics, columns = c.shape
     # Even harmonics come first, because odd harmonics change their sign after half a period.
     order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
-    odd = (harmonics + 1) // 2
+    even_count = (harmonics + 1) // 2
     steps = order % count
-    at = np.zeros(harmonics, np.int64)
-    turns = _cosine_sine_table(count)
+    angles = np.zeros(harmonics, np.int64)
+    waves = _cosine_sine_table(count)
     cos = np.empty(harmonics)
     sin = np.empty(harmonics)
     real = np.empty((columns, harmonics))
@@ -138,34 +138,34 @@ def series_samples_of_columns(c: Complex, count: int) -> Array:
             real[a, k] = c[order[k], a].real
             imaginary[a, k] = c[order[k], a].imag
     samples = np.empty((count, columns))
-    later = count // 2 if count % 2 == 0 else count
-    for i in range(later):
+    computed_count = count // 2 if count % 2 == 0 else count
+    for i in range(computed_count):
         for k in range(harmonics):
-            cos[k] = turns[0, at[k]]
-            sin[k] = turns[1, at[k]]
-            at[k] += steps[k] if at[k] + steps[k] < count else steps[k] - count
+            cos[k] = waves[0, angles[k]]
+            sin[k] = waves[1, angles[k]]
+            angles[k] += steps[k] if angles[k] + steps[k] < count else steps[k] - count
         for a in range(columns):
-            same = 0.0
-            other = 0.0
-            for k in range(odd):
-                same += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
-            for k in range(odd, harmonics):
-                other += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
-            samples[i, a] = same + other
-            if later < count:
-                samples[i + later, a] = same - other
+            even_sum = 0.0
+            odd_sum = 0.0
+            for k in range(even_count):
+                even_sum += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
+            for k in range(even_count, harmonics):
+                odd_sum += cos[k] * real[a, k] - sin[k] * imaginary[a, k]
+            samples[i, a] = even_sum + odd_sum
+            if computed_count < count:
+                samples[i + computed_count, a] = even_sum - odd_sum
     return samples
 
 
-def interpolate_samples(samples: Array, at: NDArray[np.floating]) -> Array:
-    """Trigonometric interpolant of samples, (N, ...), at the times `at`, (m,), in periods; shape (m, ...)."""
-    return series_values_at(fourier_coefficients(samples), at)
+def interpolate_samples(samples: Array, times: NDArray[np.floating]) -> Array:
+    """Trigonometric interpolant of samples, (N, ...), at `times`, (m,), in periods: (m, ...)."""
+    return series_values_at(fourier_coefficients(samples), times)
 
 
-def series_values_at(c: Complex, at: NDArray[np.floating]) -> Array:
-    """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at times `at`, (m,), in periods; shape (m, ...)."""
-    waves = np.exp(2j * np.pi * np.outer(at, np.arange(len(c))))
-    return (waves @ c.reshape(len(c), -1)).real.reshape(len(at), *c.shape[1:])
+def series_values_at(c: Complex, times: NDArray[np.floating]) -> Array:
+    """Re sum_k c_k exp(2 pi i k t), c: (harmonics, ...), at `times`, (m,), in periods: (m, ...)."""
+    waves = np.exp(2j * np.pi * np.outer(times, np.arange(len(c))))
+    return (waves @ c.reshape(len(c), -1)).real.reshape(len(times), *c.shape[1:])
 
 
 def time_derivative(samples: Array) -> Array:
@@ -184,7 +184,7 @@ def series_maxima(c: Complex, samples: Array) -> Array:
     c: (harmonics, m). samples: equidistant over a period, (n, m).
     """
     n, m = samples.shape
-    highest = np.empty(m)
+    maxima = np.empty(m)
     for column in range(m):
         t = float(np.argmax(samples[:, column])) / n
         for _ in range(TRIGONOMETRIC_MAXIMUM_SETTINGS.max_steps):
@@ -197,8 +197,8 @@ def series_maxima(c: Complex, samples: Array) -> Array:
             t -= step
             if abs(step) < TRIGONOMETRIC_MAXIMUM_SETTINGS.converged_step:
                 break
-        highest[column] = _series_value_slope_curvature(c[:, column], t)[0]
-    return highest
+        maxima[column] = _series_value_slope_curvature(c[:, column], t)[0]
+    return maxima
 
 
 @compiled_for_vectors
@@ -210,8 +210,8 @@ def series_minima(c: Complex, samples: Array) -> Array:
 @compiled_for_vectors
 def _series_value_slope_curvature(c: Complex, t: float) -> tuple[float, float, float]:
     """Returns (value, slope, curvature) of Re sum_k c_k exp(2 pi i k t) at the time t; c: (harmonics,)."""
-    turn = 2 * np.pi * t
-    step = complex(np.cos(turn), np.sin(turn))
+    angle = 2 * np.pi * t
+    step = complex(np.cos(angle), np.sin(angle))
     wave = complex(1.0, 0.0)
     value = 0.0
     slope = 0.0

@@ -58,15 +58,16 @@ class Resolution:
         return 3 * self.element_count * self.order
 
 
-def expected_wave_number(modes: int, most_amplified: float) -> float:
+def expected_wave_number(modes: int, amplified_wave_number: float) -> float:
     """Upper estimate of the largest wave number |q| of the leading modes, in 1/L.
 
-    modes: number of leading modes. most_amplified: |q| of the most amplified wave. Without load the n-th mode
-    has |q| near (n - 1/2) pi; under load the leading modes approach the most amplified wave. For the random
-    rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
+    modes: number of leading modes. amplified_wave_number: |q| of the most amplified wave. Without load the
+    n-th mode has |q| near (n - 1/2) pi; under load the leading modes approach the most amplified wave. For
+    the random rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
     """
     return hypot(
-        RESOLUTION_SETTINGS.wave_factor * most_amplified, (modes - RESOLUTION_SETTINGS.mode_offset) * pi
+        RESOLUTION_SETTINGS.wave_factor * amplified_wave_number,
+        (modes - RESOLUTION_SETTINGS.mode_offset) * pi,
     )
 
 
@@ -84,10 +85,12 @@ def required_order(wave_number: float, accuracy: float) -> float:
     """Order, not rounded up, of a single element that resolves exp(+-q u), |q| = wave_number, to the relative
     accuracy `accuracy`.
     """
-    fit = RESOLUTION_SETTINGS
-    further_digits = max(-log10(accuracy), fit.base_digits) - fit.base_digits
-    per_digit = fit.digit_intercept + fit.digit_slope * min(wave_number, fit.digit_slope_max_wave_number)
-    return fit.order_intercept + fit.order_slope * wave_number + further_digits * per_digit
+    settings = RESOLUTION_SETTINGS
+    further_digits = max(-log10(accuracy), settings.base_digits) - settings.base_digits
+    per_digit = settings.digit_intercept + settings.digit_slope * min(
+        wave_number, settings.digit_slope_max_wave_number
+    )
+    return settings.order_intercept + settings.order_slope * wave_number + further_digits * per_digit
 
 
 def resolution_for(wave_number: float, accuracy: float, largest_order: int | None = None) -> Resolution:

@@ -72,7 +72,7 @@ class ArmPencil:
         self._y_indices: NDArray[np.int64] = (
             np.arange(mesh.element_count)[:, None] * mesh.order + np.arange(mesh.order + 1) - 1
         )
-        self.rows, self.columns, where = self._sparsity_pattern()
+        self.rows, self.columns, entry_positions = self._sparsity_pattern()
         self._mesh_matrices = _MeshMatrices(
             value_matrix=value,
             slope_matrix=slope,
@@ -83,7 +83,7 @@ class ArmPencil:
             weights_over_half_length=wg * (2 / h[:, None]),
             weights_times_half_length=wg * h[:, None] / 2,
             node_masses=w * h[:, None] / 2,
-            entry_positions=where,
+            entry_positions=entry_positions,
             rows=self.rows,
             columns=self.columns,
         )
@@ -106,8 +106,8 @@ class ArmPencil:
         return self.mesh.evaluation_matrix(points)
 
     def _sparsity_pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
-        """Returns (rows, columns, where). rows, columns: row and column of each entry of the pattern, (nnz,)
-        each. where: index in the pattern of each entry of all element blocks, (m,).
+        """Returns (rows, columns, positions). rows, columns: row and column of each entry of the pattern,
+        (nnz,) each. positions: index in the pattern of each entry of all element blocks, (m,).
 
         Entries in the row or column of the clamp have the index nnz.
         """
@@ -119,12 +119,12 @@ class ArmPencil:
         pairs = [(y, s), (s, y), (theta, theta), (y, theta), (theta, s), (s, theta)]
         keys = [_flat_entry_positions(rows, columns, size) for rows, columns in pairs]
         keys += [(s * size + s).ravel(), np.array([(n - 1) * size + 2 * n - 1])]
-        every = np.concatenate(keys)
+        all_keys = np.concatenate(keys)
         diagonal = np.arange(size) * (size + 1)
-        pattern = np.unique(np.concatenate([every[every >= 0], diagonal]))
-        where = np.where(every < 0, len(pattern), np.searchsorted(pattern, every))
+        pattern = np.unique(np.concatenate([all_keys[all_keys >= 0], diagonal]))
+        positions = np.where(all_keys < 0, len(pattern), np.searchsorted(pattern, all_keys))
         rows, columns = np.divmod(pattern, size)
-        return rows.astype(np.int32), columns.astype(np.int32), where
+        return rows.astype(np.int32), columns.astype(np.int32), positions
 
 
 def _flat_entry_positions(
@@ -140,20 +140,22 @@ def _flat_entry_positions(
 
 
 @compiled
-def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tuple[Array, Array, Array]:
-    """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. local:
+def _pencil_of_coefficients(
+    F: float, coefficients: Array, matrices: _MeshMatrices
+) -> tuple[Array, Array, Array]:
+    """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. coefficients:
     coefficients of the arm at the Gauss points and then the nodes of each element, (6, elements, 2 order +
     1)."""
-    elements, order = pieces.weights_times_half_length.shape
+    elements, order = matrices.weights_times_half_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)
     turn = np.zeros(nodes + 1)
     least = np.zeros(nodes + 1)
     for e in range(elements):
         for i in range(order + 1):
-            mass = pieces.node_masses[e, i]
-            push[e * order + i] += mass * local[3, e, order + i]
-            turn[e * order + i] += mass * local[4, e, order + i]
+            mass = matrices.node_masses[e, i]
+            push[e * order + i] += mass * coefficients[3, e, order + i]
+            turn[e * order + i] += mass * coefficients[4, e, order + i]
             least[e * order + i] += mass * PENCIL_NORM_SETTINGS.min_angle_weight**2
     scale = np.empty(3 * nodes)
     B = np.zeros(3 * nodes)
@@ -162,46 +164,55 @@ def _pencil_of_coefficients(F: float, local: Array, pieces: _MeshMatrices) -> tu
         angle = max(turn[k + 1], least[k + 1])
         scale[k] = 1 / math.sqrt(push[k + 1])
         scale[nodes + k] = 1 / math.sqrt(angle)
-        weight = pieces.weights_times_half_length[k // order, k % order]
+        weight = matrices.weights_times_half_length[k // order, k % order]
         scale[2 * nodes + k] = 1 / math.sqrt(weight * PENCIL_NORM_SETTINGS.shear_weight**2)
         B[k] = 1.0
         B[nodes + k] = turn[k + 1] / angle
     # The last element of A collects the entries of the clamp, which are not used.
-    A = np.zeros(len(pieces.rows) + 1)
-    _add_entries(F, local, pieces, A)
-    for k in range(len(pieces.rows)):
-        A[k] *= scale[pieces.rows[k]] * scale[pieces.columns[k]]
+    A = np.zeros(len(matrices.rows) + 1)
+    _add_entries(F, coefficients, matrices, A)
+    for k in range(len(matrices.rows)):
+        A[k] *= scale[matrices.rows[k]] * scale[matrices.columns[k]]
     return A[:-1].copy(), B, scale[: 2 * nodes].copy().reshape(2, nodes)
 
 
 @compiled
-def _add_entries(F: float, local: Array, pieces: _MeshMatrices, A: Array) -> None:
+def _add_entries(F: float, coefficients: Array, matrices: _MeshMatrices, A: Array) -> None:
     """Adds the entries of all element blocks, in the order of `entry_positions`, to A.
 
-    F: follower force. local: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern,
-    then one for the clamp, (nnz + 1,).
+    F: follower force. coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the
+    pattern, then one for the clamp, (nnz + 1,).
     """
-    elements, order = pieces.weights_times_half_length.shape
-    value = pieces.value_matrix
-    where = pieces.entry_positions
-    at = _add_block(pieces.constant_entries, 0, where, A)
+    elements, order = matrices.weights_times_half_length.shape
+    value = matrices.value_matrix
+    positions = matrices.entry_positions
+    position = _add_block(matrices.constant_entries, 0, positions, A)
     for e in range(elements):
-        at = _add_block(
-            _bending_block(pieces.slope_matrix, pieces.weights_over_half_length[e] / local[2, e, :order]),
-            at,
-            where,
+        position = _add_block(
+            _bending_block(
+                matrices.slope_matrix, matrices.weights_over_half_length[e] / coefficients[2, e, :order]
+            ),
+            position,
+            positions,
             A,
         )
     for _ in range(elements):
-        at = _add_block(F * pieces.slope_value_matrix, at, where, A)
+        position = _add_block(F * matrices.slope_value_matrix, position, positions, A)
     for e in range(elements):
-        at = _add_block(value.T * (pieces.weights_times_half_length[e] * local[5, e, :order]), at, where, A)
+        position = _add_block(
+            value.T * (matrices.weights_times_half_length[e] * coefficients[5, e, :order]),
+            position,
+            positions,
+            A,
+        )
     for e in range(elements):
-        turned = pieces.weights_times_half_length[e] * local[0, e, :order]
-        at = _add_block(-turned.reshape(-1, 1) * value, at, where, A)
+        rotated = matrices.weights_times_half_length[e] * coefficients[0, e, :order]
+        position = _add_block(-rotated.reshape(-1, 1) * value, position, positions, A)
     for e in range(elements):
-        at = _add_block(-pieces.weights_times_half_length[e] * local[1, e, :order], at, where, A)
-    A[where[at]] -= F  # the follower force at the tip, -F a(1) theta(1)
+        position = _add_block(
+            -matrices.weights_times_half_length[e] * coefficients[1, e, :order], position, positions, A
+        )
+    A[positions[position]] -= F  # the follower force at the tip, -F a(1) theta(1)
 
 
 @compiled
@@ -219,13 +230,13 @@ def _bending_block(slope: Array, factors: Array) -> Array:
 
 
 @compiled
-def _add_block(block: Array, at: int, where: NDArray[np.int64], A: Array) -> int:
+def _add_block(block: Array, position: int, positions: NDArray[np.int64], A: Array) -> int:
     """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `entry_positions` of the
     entry after the block.
 
-    at: index in `entry_positions` of the first entry of the block.
+    position: index in `entry_positions` of the first entry of the block.
     """
     for entry in block.flat:
-        A[where[at]] += entry
-        at += 1
-    return at
+        A[positions[position]] += entry
+        position += 1
+    return position

@@ -40,9 +40,9 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     `accuracy`.
     """
     weights = sampled_arm(rod).weights
-    _, amplified = most_amplified_local_waves(rod)
-    at_rest = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
-    waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified, at_rest)
+    _, amplified_q = most_amplified_local_waves(rod)
+    unloaded_q = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
+    waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified_q, unloaded_q)
     elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
 
@@ -63,28 +63,28 @@ def _relative_wave_number(rod: Rod) -> Array:
     """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
     the same frequency along the arm.
     """
-    _, weights, local = sampled_arm(rod)
-    at_rest: Array = (local.gamma2 * local.c3) ** 0.25
-    return at_rest / (weights @ at_rest)
+    _, weights, coefficients = sampled_arm(rod)
+    wave_number: Array = (coefficients.gamma2 * coefficients.c3) ** 0.25
+    return wave_number / (weights @ wave_number)
 
 
-def _elements_for_wave(rod: Rod, turns: Array, accuracy: float, largest_order: int) -> Elements:
+def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, largest_order: int) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy.
 
-    turns: phase of the wave over each sample interval, |q| times length, (n,). largest_order: maximum order
+    phases: phase of the wave over each sample interval, |q| times length, (n,). largest_order: maximum order
     of an element.
     """
     breaks = rod.build.breaks
-    shares = turns.reshape(len(breaks) - 1, -1).sum(axis=1)
+    fractions = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges = [0.0]
-    largest = 0.0
-    for start, stop, share in zip(breaks[:-1], breaks[1:], shares, strict=True):
+    max_fraction = 0.0
+    for start, stop, fraction in zip(breaks[:-1], breaks[1:], fractions, strict=True):
         ratio = abs(log(_relative_radius_at(rod, stop) / _relative_radius_at(rod, start)))
-        needed = _element_count_for(float(share), accuracy, largest_order)
-        count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed)
+        needed_count = _element_count_for(float(fraction), accuracy, largest_order)
+        count = max(1, ceil(ratio / log(ARM_RESOLUTION_SETTINGS.max_radius_ratio)), needed_count)
         edges += _graded_edges(rod, start, stop, count)
-        largest = max(largest, float(share) / count)
-    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(largest, 1.0), accuracy)))
+        max_fraction = max(max_fraction, float(fraction) / count)
+    order = max(RESOLUTION_SETTINGS.min_order, ceil(required_order(hypot(max_fraction, 1.0), accuracy)))
     return Elements(
         tuple(edges), order + (0 if rod.is_uniform else ARM_RESOLUTION_SETTINGS.profile_order_increase)
     )
@@ -103,11 +103,11 @@ def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     return ArmMesh(tuple(edges), ceil(RESOLUTION_SETTINGS.refinement_ratio / 2 * mesh.order))
 
 
-def _element_count_for(share: float, accuracy: float, largest_order: int) -> int:
+def _element_count_for(phase: float, accuracy: float, largest_order: int) -> int:
     """Number of elements of the order `largest_order` that resolve an interval in which the phase of the wave
-    grows by `share`, to the relative accuracy `accuracy`."""
+    grows by `phase`, to the relative accuracy `accuracy`."""
     count = 1
-    while required_order(share / count, accuracy) > largest_order:
+    while required_order(phase / count, accuracy) > largest_order:
         count += 1
     return count
 

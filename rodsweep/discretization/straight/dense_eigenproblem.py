@@ -63,23 +63,27 @@ class DenseEigenproblem:
 
 def dense_eigenproblem(rod: Rod, pencil: AnyPencil) -> DenseEigenproblem:
     """The dense eigenproblem of the rod `rod` on the mesh of `pencil`."""
-    found = pencil.matrices(rod)
+    matrices = pencil.matrices(rod)
     A = np.zeros((pencil.unknown_count, pencil.unknown_count))
-    A[pencil.rows, pencil.columns] = found.A
+    A[pencil.rows, pencil.columns] = matrices.A
     return DenseEigenproblem(
-        rod, pencil if isinstance(pencil, Pencil) else pencil.mesh, A, found.B, found.displacement_factors
+        rod,
+        pencil if isinstance(pencil, Pencil) else pencil.mesh,
+        A,
+        matrices.B,
+        matrices.displacement_factors,
     )
 
 
 def _points_inside_elements(mesh: Elements, points: Array) -> Array:
     """The points, (n,), each moved just inside the element to which `Elements.points_by_element` assigns the
     point."""
-    moved = np.array(points, dtype=float)
-    for e, inside, local in mesh.points_by_element(points):
-        position = mesh.edges[e] + mesh.lengths[e] * (local + 1) / 2
-        moved[inside] = np.clip(
+    points_inside = np.array(points, dtype=float)
+    for e, indices, coordinates in mesh.points_by_element(points):
+        position = mesh.edges[e] + mesh.lengths[e] * (coordinates + 1) / 2
+        points_inside[indices] = np.clip(
             position,
             mesh.edges[e] + ELEMENT_SETTINGS.end_distance,
             mesh.edges[e + 1] - ELEMENT_SETTINGS.end_distance,
         )
-    return moved
+    return points_inside

@@ -45,11 +45,11 @@ def element_numbering(elements: int, order: int, components: tuple[int, ...]) ->
     velocities = [PLANE_COMPONENT_COUNT * last + c * (last + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
-    inside = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
-    ends = np.setdiff1d(np.arange(len(node)), inside)
+    interior_nodes = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
+    ends = np.setdiff1d(np.arange(len(node)), interior_nodes)
     ends = ends[np.argsort(node[ends], kind="stable")]
-    between = np.arange(elements)[:, None] * width + np.arange(len(ends))
+    interface_indices = np.arange(elements)[:, None] * width + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)
-    exists = np.ones(between[-1, -1] + 1, bool)
-    exists[between[-1]] = unknowns[-1, ends] < unknown
-    return ElementNumbering(unknowns, inside, ends, between, exists)
+    exists = np.ones(interface_indices[-1, -1] + 1, bool)
+    exists[interface_indices[-1]] = unknowns[-1, ends] < unknown
+    return ElementNumbering(unknowns, interior_nodes, ends, interface_indices, exists)

@@ -61,7 +61,7 @@ class StraightElements:
     @cached_property
     def A(self) -> Array:
         """Contribution of one element to the matrix A of the mixed form, (local, local)."""
-        each = np.eye(PLANE_COMPONENT_COUNT)
+        identity = np.eye(PLANE_COMPONENT_COUNT)
         block = np.ix_(self.components, self.components)
         material = self.form.rod.material
         E = material.rest_strain[:, None]
@@ -70,12 +70,12 @@ class StraightElements:
         # Local unknowns: stresses at all nodes, then velocities; `half` components of each.
         half = len(self.components)
         nodes = np.arange(len(W))
-        at_nodes = np.zeros((2 * half, 2 * half))
-        at_nodes[:half, half:] = ad(E, each)[block]
-        at_nodes[half:, :half] = (coad(E, each) + coad(np.diag(material.compliance), Sigma))[block]
-        at_nodes[half:, half:] = -np.diag(material.drag)[block]
+        local_block = np.zeros((2 * half, 2 * half))
+        local_block[:half, half:] = ad(E, identity)[block]
+        local_block[half:, :half] = (coad(E, identity) + coad(np.diag(material.compliance), Sigma))[block]
+        local_block[half:, half:] = -np.diag(material.drag)[block]
         A = np.zeros((2 * half, len(W), 2 * half, len(W)))
-        A[:, nodes, :, nodes] = W[:, None, None] * at_nodes
+        A[:, nodes, :, nodes] = W[:, None, None] * local_block
         for stress in range(half):
             A[stress, :, half + stress] -= WD.T
             A[half + stress, :, stress] += WD
@@ -159,11 +159,11 @@ class _InteriorElimination:
     @classmethod
     def from_matrix(cls, K: Complex, numbering: ElementNumbering) -> Self:
         """The elimination of the interior unknowns from an element matrix K, (local, local)."""
-        inside = numbering.interior_positions
+        interior = numbering.interior_positions
         ends = numbering.interface_positions
-        factors = lu_factorisation(K[np.ix_(inside, inside)])
-        K_ie = K[np.ix_(inside, ends)]
-        K_ei = K[np.ix_(ends, inside)]
+        factors = lu_factorisation(K[np.ix_(interior, interior)])
+        K_ie = K[np.ix_(interior, ends)]
+        K_ei = K[np.ix_(ends, interior)]
         solved = solve_factorised(factors, K_ie)
         adjoint = solve_factorised(factors, K_ei.conj().T, adjoint=True)
         return cls(
@@ -208,7 +208,7 @@ class ElementFactors:
         numbering = self.elements.numbering
         elimination = self.interior
         is_unknown = numbering.is_unknown
-        inside = numbering.state_indices[:, numbering.interior_positions]
+        interior = numbering.state_indices[:, numbering.interior_positions]
         ends = numbering.state_indices[:, numbering.interface_positions]
         b = np.append(b, 0)
         x = np.zeros(len(b), complex)
@@ -217,13 +217,13 @@ class ElementFactors:
         b_e[numbering.interface_indices] = b[ends]
         if elimination is not None:
             K_ei, solved_K_ie = elimination.coupling_matrices(adjoint)
-            solved_b_i = solve_factorised(elimination.interior_factors, b[inside].T, adjoint).T
+            solved_b_i = solve_factorised(elimination.interior_factors, b[interior].T, adjoint).T
             np.subtract.at(b_e, numbering.interface_indices, solved_b_i @ K_ei.T)
         x_e[is_unknown] = solve_factorised(self.interface, b_e[is_unknown], adjoint)
         x[ends] = x_e[numbering.interface_indices]
         if elimination is not None:
             # x_i = K_ii^-1 (b_i - K_ie x_e)
-            x[inside] = solved_b_i - x_e[numbering.interface_indices] @ solved_K_ie.T
+            x[interior] = solved_b_i - x_e[numbering.interface_indices] @ solved_K_ie.T
         return x[:-1]
 
 
@@ -233,11 +233,11 @@ def lu_factorisation(K: Complex) -> LU:
     return factors, pivots
 
 
-def solve_factorised(factors: LU, right: Values, adjoint: bool = False) -> Complex:
-    """The solution x of K x = right, or of K^H x = right if `adjoint`. factors: LU factorisation of K,
-    (n, n). right: (n,) or (n, m).
+def solve_factorised(factors: LU, right_side: Values, adjoint: bool = False) -> Complex:
+    """The solution x of K x = right_side, or of K^H x = right_side if `adjoint`. factors: LU factorisation of
+    K, (n, n). right_side: (n,) or (n, m).
     """
-    x, _ = zgetrs(*factors, right, trans=2 if adjoint else 0)
+    x, _ = zgetrs(*factors, right_side, trans=2 if adjoint else 0)
     return x
 
 

@@ -54,8 +54,8 @@ class LawDerivativesAtRest:
     def third_derivative_form(self, S: Values, T: Values, R: Values) -> Values:
         """The third derivative of s, a trilinear form, applied to S, T and R; all (3, ..., nodes + 1)."""
         out = np.zeros(np.broadcast(S, T, R).shape, np.result_type(S, T, R))
-        mixed = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
-        out[0] = self.N111 * S[0] * T[0] * R[0] + self.N133 * mixed
+        mixed_sum = S[0] * T[2] * R[2] + S[2] * T[0] * R[2] + S[2] * T[2] * R[0]
+        out[0] = self.N111 * S[0] * T[0] * R[0] + self.N133 * mixed_sum
         out[2] = self.M113 * (S[2] * T[0] * R[0] + S[0] * T[2] * R[0] + S[0] * T[0] * R[2])
         out[2] += self.M333 * S[2] * T[2] * R[2]
         return out
@@ -74,10 +74,12 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     bending_slope = law.bending_factor_slope(nu)
     bending_curvature = law.bending_factor_second_derivative(nu)
     # The force compresses the straight arm: d nu/dF = -c1/(dN/dS1).
-    moved = -c1 / stiffness
+    nu_derivative = -c1 / stiffness
     ones = np.ones_like(nu)
-    change = ForceDerivatives(moved, np.array([slope * moved, 0 * ones, bending_slope * moved]))
-    found = LawDerivativesAtRest(
+    change = ForceDerivatives(
+        nu_derivative, np.array([slope * nu_derivative, 0 * ones, bending_slope * nu_derivative])
+    )
+    derivatives = LawDerivativesAtRest(
         is_nonlinear=law is not LINEAR,
         tangent=np.array([stiffness, ones, bending]),
         force_derivatives=change,
@@ -89,39 +91,39 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
         M113=bending_curvature * c1**2,
         M333=0 * ones,
     )
-    if found.is_nonlinear and len(nodal.jumps):
-        _write_derivatives_at_jumps(found, law, nodal)
-    return found
+    if derivatives.is_nonlinear and len(nodal.jumps):
+        _write_derivatives_at_jumps(derivatives, law, nodal)
+    return derivatives
 
 
-def _write_derivatives_at_jumps(found: LawDerivativesAtRest, law: Law, nodal: NodalRod) -> None:
-    """Writes the derivatives of the law at the nodes where the material jumps into `found`. nodal: the rod at
-    the nodes.
+def _write_derivatives_at_jumps(derivatives: LawDerivativesAtRest, law: Law, nodal: NodalRod) -> None:
+    """Writes the derivatives of the law at the nodes where the material jumps into `derivatives`. nodal: the
+    rod at the nodes.
     """
-    at = nodal.jumps
+    nodes = nodal.jumps
     sides = nodal.jump_sides
     nu = sides[..., 0]
     c1 = sides[..., 1]
     means = sides[..., 5]
-    shares = np.moveaxis(sides[..., 3:5], -1, 0)
+    fractions = np.moveaxis(sides[..., 3:5], -1, 0)
     T = np.array([law.stiffness(nu), law.bending_factor(nu)])
     slopes = np.array([law.stiffness_slope(nu), law.bending_factor_slope(nu)])
     first, second, third = derivatives_by_mean_unknowns(law, sides)
-    moved = -c1 / T[0]
-    tangent = 1 / (shares / T).sum(axis=-1)
-    for component, (own, change) in enumerate(
-        zip(tangent, tangent**2 * (shares * slopes * moved / T**2).sum(axis=-1), strict=True)
+    nu_derivative = -c1 / T[0]
+    tangent = 1 / (fractions / T).sum(axis=-1)
+    for component, (value, force_derivative) in enumerate(
+        zip(tangent, tangent**2 * (fractions * slopes * nu_derivative / T**2).sum(axis=-1), strict=True)
     ):
-        found.tangent[2 * component, at] = own
-        found.force_derivatives.tangent[2 * component, at] = change
-    found.force_derivatives.nu[at] = (means * moved).sum(axis=-1)
-    found.N11[at] = second[:, 0, 0, 0]
-    found.N33[at] = second[:, 0, 1, 1]
-    found.M13[at] = second[:, 1, 0, 1]
-    found.N111[at] = third[:, 0, 0, 0, 0]
-    found.N133[at] = third[:, 0, 0, 1, 1]
-    found.M113[at] = third[:, 1, 0, 0, 1]
-    found.M333[at] = third[:, 1, 1, 1, 1]
+        derivatives.tangent[2 * component, nodes] = value
+        derivatives.force_derivatives.tangent[2 * component, nodes] = force_derivative
+    derivatives.force_derivatives.nu[nodes] = (means * nu_derivative).sum(axis=-1)
+    derivatives.N11[nodes] = second[:, 0, 0, 0]
+    derivatives.N33[nodes] = second[:, 0, 1, 1]
+    derivatives.M13[nodes] = second[:, 1, 0, 1]
+    derivatives.N111[nodes] = third[:, 0, 0, 0, 0]
+    derivatives.N133[nodes] = third[:, 0, 0, 1, 1]
+    derivatives.M113[nodes] = third[:, 1, 0, 0, 1]
+    derivatives.M333[nodes] = third[:, 1, 1, 1, 1]
 
 
 DerivativeTensors = tuple[Array, Array, Array]
@@ -136,12 +138,12 @@ def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
     The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
     M(q1, q3) are the inverse of (N, M) -> (q1, q3).
     """
-    shares = sides[..., 3:5]
+    fractions = sides[..., 3:5]
     unknowns = inverse_function_derivatives(
         _derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0))
     )
-    mean = [np.einsum("ksa,ksa...->ka...", shares, each) for each in unknowns]
-    return inverse_function_derivatives((mean[0], mean[1], mean[2]))
+    mean_derivatives = [np.einsum("ksa,ksa...->ka...", fractions, derivative) for derivative in unknowns]
+    return inverse_function_derivatives((mean_derivatives[0], mean_derivatives[1], mean_derivatives[2]))
 
 
 def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> DerivativeTensors:
@@ -156,24 +158,24 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> Deriv
     second[..., 1, 0, 1] = second[..., 1, 1, 0] = law.bending_factor_slope(nu) * c1
     third[..., 0, 0, 0, 0] = law.stiffness_second_derivative(nu) * c1**2
     bending = law.bending_factor_second_derivative(nu)
-    for mixed in ((0, 1, 1), (1, 0, 1), (1, 1, 0)):
-        third[(..., 0, *mixed)] = bending * c1 * c3
-    for mixed in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
-        third[(..., 1, *mixed)] = bending * c1**2
+    for indices in ((0, 1, 1), (1, 0, 1), (1, 1, 0)):
+        third[(..., 0, *indices)] = bending * c1 * c3
+    for indices in ((1, 0, 0), (0, 1, 0), (0, 0, 1)):
+        third[(..., 1, *indices)] = bending * c1**2
     return first, second, third
 
 
-def inverse_function_derivatives(of: DerivativeTensors) -> DerivativeTensors:
-    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. of: derivatives
-    of f.
+def inverse_function_derivatives(derivatives: DerivativeTensors) -> DerivativeTensors:
+    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. derivatives:
+    derivatives of f.
     """
-    f1, f2, f3 = of
+    f1, f2, f3 = derivatives
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)
-    inner = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
+    composed = np.einsum("...ijkl,...jb,...kc,...ld->...ibcd", f3, g1, g1, g1)
     # The second derivative of g is needed for each pair of the three directions.
-    for places in ("bcd", "bdc", "cdb"):
-        pair = places[:2]
-        last = places[2]
-        inner = inner + np.einsum(f"...ijk,...j{pair},...k{last}->...ibcd", f2, g2, g1)
-    return g1, g2, -np.einsum("...ai,...ibcd->...abcd", g1, inner)
+    for axes in ("bcd", "bdc", "cdb"):
+        pair = axes[:2]
+        last = axes[2]
+        composed = composed + np.einsum(f"...ijk,...j{pair},...k{last}->...ibcd", f2, g2, g1)
+    return g1, g2, -np.einsum("...ai,...ibcd->...abcd", g1, composed)

@@ -61,25 +61,27 @@ def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
     mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.first_mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.element_count))
-    found = _leading_eigenvalues(rod, mesh, order, modes)
+    eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
     while True:
         order += LONGITUDINAL_MODE_SETTINGS.order_increase
         # No a-priori bound of the error holds for every profile, so the error is estimated from a second
         # order.
-        finer = _leading_eigenvalues(rod, mesh, order, modes)
-        error = np.abs(finer / found - 1)
+        finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
+        error = np.abs(finer_eigenvalues / eigenvalues - 1)
         if (
             error.max() <= LONGITUDINAL_MODE_SETTINGS.converged_difference
             or order >= LONGITUDINAL_MODE_SETTINGS.max_order
         ):
-            return finer, error + LONGITUDINAL_MODE_SETTINGS.rounding
-        found = finer
+            return finer_eigenvalues, error + LONGITUDINAL_MODE_SETTINGS.rounding
+        eigenvalues = finer_eigenvalues
 
 
 def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
     """The leading eigenvalues w, (modes,), from elements with `order` strains each."""
-    sizes = np.linalg.svd(_displacement_matrix(rod, np.asarray(mesh.edges), order), compute_uv=False)
-    rates: Array = -1 / sizes[:modes] ** 2
+    singular_values = np.linalg.svd(
+        _displacement_matrix(rod, np.asarray(mesh.edges), order), compute_uv=False
+    )
+    rates: Array = -1 / singular_values[:modes] ** 2
     return rates
 
 
@@ -88,21 +90,23 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
 
     edges: edges of the elements, (elements + 1,). order: number of strains per element.
     """
-    strains, of_strains = gauss_legendre_rule(order)
+    strain_points, strain_weights = gauss_legendre_rule(order)
     points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
     halves = np.diff(edges)[:, None] / 2
-    middles = (edges[1:] + edges[:-1])[:, None] / 2
-    here, there = (rod.sections((middles + halves * x).ravel()) for x in (strains, points))
-    tangent = rod.build.constitutive_law.stiffness(here.nu) / here.compliance[0]
-    scale = np.sqrt(tangent * (halves * of_strains).ravel())
-    root = np.sqrt(there.drag[0] * (halves * weights).ravel())
+    midpoints = (edges[1:] + edges[:-1])[:, None] / 2
+    sections_at_strains, sections_at_points = (
+        rod.sections((midpoints + halves * x).ravel()) for x in (strain_points, points)
+    )
+    tangent = rod.build.constitutive_law.stiffness(sections_at_strains.nu) / sections_at_strains.compliance[0]
+    scale = np.sqrt(tangent * (halves * strain_weights).ravel())
+    root = np.sqrt(sections_at_points.drag[0] * (halves * weights).ravel())
     count = len(halves)
-    before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * of_strains)
-    integral = np.broadcast_to(before, (count, len(points), count, order)).copy()
-    own = np.arange(count)
+    elements_before = np.tril(np.ones((count, count)), -1)[:, None, :, None] * (halves * strain_weights)
+    integral = np.broadcast_to(elements_before, (count, len(points), count, order)).copy()
+    diagonal = np.arange(count)
     # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
     # not apply.
-    integral[own, :, own, :] = halves[:, :, None] * _lagrange_integrals(order, points)
+    integral[diagonal, :, diagonal, :] = halves[:, :, None] * _lagrange_integrals(order, points)
     matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
     return matrix
 

@@ -98,10 +98,10 @@ class MixedForm:
         stresses = slice(self.stress_count)
         velocities = slice(self.stress_count, None)
         WD = -self.mesh.matrices.weak_derivative.T
-        each = np.eye(PLANE_COMPONENT_COUNT)
+        identity = np.eye(PLANE_COMPONENT_COUNT)
         A = self._coupling_matrix()
-        A[stresses, velocities] -= np.kron(each, WD.T[:N])
-        A[velocities, stresses] += np.kron(each, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
+        A[stresses, velocities] -= np.kron(identity, WD.T[:N])
+        A[velocities, stresses] += np.kron(identity, WD[:, :N]) * self.law_derivatives.tangent[:, :N].ravel()
         A[velocities, velocities] -= np.diag((self.nodal_rod.drag * self.mesh.quadrature).ravel())
         return A
 
@@ -113,13 +113,13 @@ class MixedForm:
         W = self.mesh.quadrature
         change = self.law_derivatives.force_derivatives
         E = axial_field(change.nu)
-        moved = broadcast_to_field(change.tangent, S) * S
+        dE = broadcast_to_field(change.tangent, S) * S
         Sigma = axial_field(-np.ones(len(W)))
-        at_rest = broadcast_to_field(self.nodal_rod.rest_strain, S)
+        rest_strain = broadcast_to_field(self.nodal_rod.rest_strain, S)
         # F enters through the strain at rest, the tangent at rest, and Sigma1 = -F.
-        forces = coad(broadcast_to_field(E, S), self._linearised_law(S)) + coad(at_rest, moved)
+        forces = coad(broadcast_to_field(E, S), self._linearised_law(S)) + coad(rest_strain, dE)
         forces = forces + coad(self._compliance_times_stress(S), broadcast_to_field(Sigma, S))
-        return self.state(W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(moved))
+        return self.state(W * ad(broadcast_to_field(E, V), V), W * forces + self._weighted_derivative(dE))
 
     @cached_property
     def tip_y_row(self) -> Array:
@@ -156,11 +156,11 @@ class MixedForm:
         W = self.mesh.quadrature
         forces: Values = W * (coad(CS, self._linearised_law(T)) + coad(CT, self._linearised_law(S)))
         if self.law_derivatives.is_nonlinear:
-            second = self.law_derivatives.second_derivative_form(S, T)
+            second_derivative = self.law_derivatives.second_derivative_form(S, T)
             forces = (
                 forces
-                + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second)
-                + self._weighted_derivative(second)
+                + W * coad(broadcast_to_field(self.nodal_rod.rest_strain, S), second_derivative)
+                + self._weighted_derivative(second_derivative)
             )
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
@@ -168,16 +168,16 @@ class MixedForm:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns), for states X, Y, Z; 0
         for a linear law.
         """
-        S, T, R = (self.stresses_and_velocities(each)[0] for each in (X, Y, Z))
+        S, T, R = (self.stresses_and_velocities(state)[0] for state in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law_derivatives
-        third = law.third_derivative_form(S, T, R)
+        third_derivative = law.third_derivative_form(S, T, R)
         forces = W * coad(
-            broadcast_to_field(self.nodal_rod.rest_strain, S), third
-        ) + self._weighted_derivative(third)
-        for one, two, three in ((S, T, R), (T, R, S), (R, S, T)):
+            broadcast_to_field(self.nodal_rod.rest_strain, S), third_derivative
+        ) + self._weighted_derivative(third_derivative)
+        for first, second, third_factor in ((S, T, R), (T, R, S), (R, S, T)):
             forces = forces + W * coad(
-                self._compliance_times_stress(one), law.second_derivative_form(two, three)
+                self._compliance_times_stress(first), law.second_derivative_form(second, third_factor)
             )
         return self.state(np.zeros_like(forces), forces)
 
@@ -201,7 +201,7 @@ class MixedForm:
         """
         N = self.mesh.node_count
         W = self.mesh.quadrature[:-1]
-        each = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
+        identity = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
         E = self.nodal_rod.rest_strain[:, None, :N]
         C = self.nodal_rod.compliance[:, None, :N]
         T = self.law_derivatives.tangent[:, None, :N]
@@ -210,10 +210,10 @@ class MixedForm:
         v = np.arange(self.stress_count, self.unknown_count).reshape(PLANE_COMPONENT_COUNT, N + 1)[:, :N]
         matrix = np.zeros((self.unknown_count, self.unknown_count))
         # The tip contributes nothing: s = 0, and E enters only the equation of S(1), which is not solved.
-        matrix[s[:, None], v[None]] = W * ad(E, each)
-        own = each * np.swapaxes(T, 0, 1)
-        strained = each * np.swapaxes(C, 0, 1)
-        matrix[v[:, None], s[None]] = W * (coad(E, own) + coad(strained, Sigma))
+        matrix[s[:, None], v[None]] = W * ad(E, identity)
+        stress_part = identity * np.swapaxes(T, 0, 1)
+        strain_part = identity * np.swapaxes(C, 0, 1)
+        matrix[v[:, None], s[None]] = W * (coad(E, stress_part) + coad(strain_part, Sigma))
         return matrix
 
 

@@ -95,9 +95,9 @@ class Pencil(Elements):
         """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
         unknowns^2).
         """
-        whole = np.zeros((6, self.unknown_count**2))
-        whole[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
-        return whole
+        dense = np.zeros((6, self.unknown_count**2))
+        dense[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
+        return dense
 
     def matrices(self, rod: Rod) -> PencilMatrices:
         """The matrices of the pencil of the rod `rod`."""
@@ -118,8 +118,8 @@ class Pencil(Elements):
         """Factors that convert the unknowns of a rod to y and theta at the nodes, clamp excluded,
         (2, nodes).
         """
-        push = 1 / np.sqrt(self.nodal_masses)
-        return np.stack([push, push / angle_weight(rod.rotational_drag)])
+        inverse_root = 1 / np.sqrt(self.nodal_masses)
+        return np.stack([inverse_root, inverse_root / angle_weight(rod.rotational_drag)])
 
 
 def finite_eigenvalue_count(rod: Rod, nodes: int) -> int:
@@ -166,9 +166,9 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
     result = np.empty((len(points), vectors.shape[1]), complex)
-    for e, inside, local in mesh.points_by_element(points):
-        own = slice(e * mesh.order, (e + 1) * mesh.order)
-        result[inside] = lagrange_interpolation_matrix(nodes, local) @ values[own]
+    for e, indices, coordinates in mesh.points_by_element(points):
+        rows = slice(e * mesh.order, (e + 1) * mesh.order)
+        result[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ values[rows]
     return result
 
 
@@ -179,9 +179,9 @@ def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Comp
     nodes, _ = gauss_lobatto_rule(mesh.order)
     derivative = 2 * differentiation_matrix(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
-    for e, inside, local in mesh.points_by_element(points):
+    for e, indices, coordinates in mesh.points_by_element(points):
         changes = derivative @ values[mesh.node_ranges[e]] / mesh.lengths[e]
-        result[inside] = lagrange_interpolation_matrix(nodes, local) @ changes
+        result[indices] = lagrange_interpolation_matrix(nodes, coordinates) @ changes
     return result
 
 
@@ -197,14 +197,14 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
     mass = np.zeros(n + 1)
     entries: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
     for e in range(elements):
-        local = np.arange(e * order, (e + 1) * order + 1)
-        mass[local] += w * h / 2
-        keep = local > 0
-        y = local[keep] - 1
+        nodes = np.arange(e * order, (e + 1) * order + 1)
+        mass[nodes] += w * h / 2
+        is_unclamped = nodes > 0
+        y = nodes[is_unclamped] - 1
         theta = n + y
         s = 2 * n + np.arange(e * order, (e + 1) * order)
-        test = value[:, keep]
-        test_slope = slope[:, keep]
+        test = value[:, is_unclamped]
+        test_slope = slope[:, is_unclamped]
         weight = wg * h / 2
         entries += [
             (0, y, s, -test_slope.T * wg),
@@ -231,14 +231,14 @@ def _assemble_blocks(elements: int, order: int, entries: list, mass: Array, scal
     """
     size = 3 * elements * order
     diagonal = np.arange(size)
-    key = [diagonal * size + diagonal]
-    key += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in entries]
-    pattern, where = np.unique(np.concatenate(key), return_inverse=True)
+    keys = [diagonal * size + diagonal]
+    keys += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in entries]
+    pattern, positions = np.unique(np.concatenate(keys), return_inverse=True)
     rows, columns = np.divmod(pattern, size)
-    pieces = np.zeros((6, len(pattern)))
-    at = size
-    for piece, _, _, block in entries:
-        np.add.at(pieces[piece], where[at : at + block.size], block.ravel())
-        at += block.size
-    pieces *= scale[rows] * scale[columns]
-    return Pencil(equal_edges(elements), order, rows.astype(np.int32), columns.astype(np.int32), pieces, mass)
+    terms = np.zeros((6, len(pattern)))
+    position = size
+    for term, _, _, block in entries:
+        np.add.at(terms[term], positions[position : position + block.size], block.ravel())
+        position += block.size
+    terms *= scale[rows] * scale[columns]
+    return Pencil(equal_edges(elements), order, rows.astype(np.int32), columns.astype(np.int32), terms, mass)

@@ -53,28 +53,28 @@ def tip_layer_ratio(rod: Rod) -> float:
     value = lagrange_interpolation_matrix(x, points)
     slope = value @ differentiation_matrix(x)
     lengths = np.diff(edges)
-    local = rod.local_coefficients(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
-    stiffness = 1 / local.c3 * weights * (2 / lengths)[:, None]
-    foundation = local.g * local.nu / local.c2 * weights * (lengths / 2)[:, None]
+    coefficients = rod.local_coefficients(edges[:-1, None] + lengths[:, None] * (points + 1) / 2)
+    stiffness = 1 / coefficients.c3 * weights * (2 / lengths)[:, None]
+    foundation = coefficients.g * coefficients.nu / coefficients.c2 * weights * (lengths / 2)[:, None]
     total = 0.0
-    for bend, press in zip(stiffness, foundation, strict=True):
-        K = (slope.T * bend) @ slope + (value.T * press) @ value
+    for element_stiffness, element_foundation in zip(stiffness, foundation, strict=True):
+        K = (slope.T * element_stiffness) @ slope + (value.T * element_foundation) @ value
         total = _ratio_at_right_end(K, total)
     return total
 
 
-def _ratio_at_right_end(K: Array, before: float) -> float:
-    """The ratio d/m of `tip_layer_ratio` at the right end of an element. before: d/m at the left end.
+def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
+    """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end.
 
     K: stiffness matrix of the element, (nodes, nodes).
     """
     # At the clamp (before = 0) d is not an unknown; otherwise all previous elements act as a spring of
     # stiffness 1/before.
-    if before == 0:
+    if left_ratio == 0:
         K = K[1:, 1:]
     else:
         K = K.copy()
-        K[0, 0] += 1 / before
+        K[0, 0] += 1 / left_ratio
     load = np.zeros(len(K))
     load[-1] = 1.0
     return float(np.linalg.solve(K, load)[-1])
@@ -85,14 +85,14 @@ def _element_edges(rod: Rod) -> Array:
     of shorter elements towards the tip.
     """
     breaks = rod.build.breaks
-    pieces = zip(breaks, breaks[1:], strict=False)
-    middles = np.concatenate(
-        [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in pieces]
+    intervals = zip(breaks, breaks[1:], strict=False)
+    midpoints = np.concatenate(
+        [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in intervals]
     )
-    local = rod.local_coefficients(middles)
-    waves = sqrt(float(np.abs(local.g * local.nu / local.c2 * local.c3).max()))
+    coefficients = rod.local_coefficients(midpoints)
+    waves = sqrt(float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max()))
     count = min(max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length)), TIP_LAYER_SETTINGS.max_equal_elements)
-    equal = np.linspace(0.0, 1.0, count + 1)
+    equal_edges = np.linspace(0.0, 1.0, count + 1)
     halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER_SETTINGS.max_length / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
-    return np.unique(np.concatenate([breaks, equal, towards_tip]))
+    return np.unique(np.concatenate([breaks, equal_edges, towards_tip]))

@@ -33,8 +33,8 @@ class WholeRodMatrices:
     def state_indices(self) -> NDArray[np.int_]:
         """Indices in a state of the unknowns of `components`, (n,)."""
         size = self.form.mesh.node_count + 1
-        marks = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
-        return np.flatnonzero(self.form.layout.state(marks, marks))
+        mask = np.isin(np.arange(PLANE_COMPONENT_COUNT), self.components)[:, None] * np.ones(size)
+        return np.flatnonzero(self.form.layout.state(mask, mask))
 
     @cached_property
     def A(self) -> Array:

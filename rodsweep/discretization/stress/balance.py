@@ -65,8 +65,8 @@ def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
             S[0, i], S[2, i] = stress_at_jump(c.law, c.jump_sides[k], S[0, i], S[2, i])
             k += 1
         else:
-            at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
-            S[0, i], S[2, i] = stress_beyond_rest(c.law, at, S[0, i], S[2, i])
+            material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+            S[0, i], S[2, i] = stress_beyond_rest(c.law, material, S[0, i], S[2, i])
 
 
 @UnrolledOverAlgebra
@@ -178,9 +178,11 @@ def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: Nod
             dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.jump_sides[k], change.jump_sides[k], q1, q3)
             k += 1
             continue
-        at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
-        moved = LocalSection(change.rest_strain[0, i], change.compliance[0, i], change.compliance[2, i])
-        dS[0, i], dS[2, i] = stress_change(c.law, at, moved, q1, q3)
+        material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+        material_derivative = LocalSection(
+            change.rest_strain[0, i], change.compliance[0, i], change.compliance[2, i]
+        )
+        dS[0, i], dS[2, i] = stress_change(c.law, material, material_derivative, q1, q3)
 
 
 @UnrolledOverAlgebra
@@ -211,8 +213,8 @@ def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays woul
                 for a in g.components:
                     force[a] += m.D[i, j] * dS[a, j]
         for a, b, o, sign in g.structure_constants:
-            along = change.tip_stress[a] + dS[a, i]
-            force[o] -= sign * (dE[b] * (c.tip_stress[a] + S[a, i]) + E[b, i] * along)
+            stress_derivative = change.tip_stress[a] + dS[a, i]
+            force[o] -= sign * (dE[b] * (c.tip_stress[a] + S[a, i]) + E[b, i] * stress_derivative)
         dV = [c.mobility[a, i] * force[a] for a in g.components]
         rate = [0.0 for _ in g.components]
         for a, b, o, sign in g.structure_constants:

@@ -66,20 +66,20 @@ def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
             T = tangent_at_jump(c.law, c.jump_sides[k], x[p1], x[p3])
             k += 1
         else:
-            at = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
-            T = stress_tangent(c.law, at, x[p1], x[p3])
-        for r in range(len(J)):
-            by_pull = P[r, p1]
-            by_moment = P[r, p3]
+            material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
+            T = stress_tangent(c.law, material, x[p1], x[p3])
+        for row in range(len(J)):
+            by_pull = P[row, p1]
+            by_moment = P[row, p3]
             # T - 1, because J already has the derivative of a linear law, T = 1.
-            J[r, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1
-            J[r, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
+            J[row, p1] += by_pull * (T.N1 - 1) + by_moment * T.M1
+            J[row, p3] += by_pull * T.N3 + by_moment * (T.M3 - 1)
 
 
 @UnrolledOverAlgebra
 def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
-    at: tuple[Array, Array, Array],
+    fields: tuple[Array, Array, Array],
     J: Array,
     tip: Array,
     compliance: Array,
@@ -88,28 +88,28 @@ def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the derivative of the equations with respect to S, for a linear law, into J and tip.
 
-    at: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0 give
-    the part P. J: (unknowns, unknowns). tip: (d, unknowns).
+    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0
+    give the part P. J: (unknowns, unknowns). tip: (d, unknowns).
     """
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
-    _write_velocity_derivatives(g, at, slopes, compliance, c)
-    _write_rate_derivatives(g, at, slopes, J, tip, compliance, c, m)
+    _write_velocity_derivatives(g, fields, slopes, compliance, c)
+    _write_rate_derivatives(g, fields, slopes, J, tip, compliance, c, m)
     for k in range(len(c.unknown_velocities)):
-        _write_unknown_velocity_columns(g, k, at[0], J, tip, c, m)
-        _write_unknown_velocity_rows(g, k, at, J, compliance, c, m)
+        _write_unknown_velocity_columns(g, k, fields[0], J, tip, c, m)
+        _write_unknown_velocity_rows(g, k, fields, J, compliance, c, m)
 
 
 @UnrolledOverAlgebra
 def _write_velocity_derivatives(
-    g: Algebra, at: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
+    g: Algebra, fields: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
     """Writes the derivatives of the velocities with respect to the stresses of the same node into the nonzero
     blocks of slopes.
 
     slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with D is not
-    included. at, compliance: as in `_write_linear_law_jacobian`.
+    included. fields, compliance: as in `_write_linear_law_jacobian`.
     """
-    E, S, _ = at
+    E, S, _ = fields
     for i in range(slopes.shape[2]):
         B = [[0.0 for _ in g.components] for _ in g.components]
         for a, b, o, sign in g.structure_constants:
@@ -125,7 +125,7 @@ def _write_velocity_derivatives(
 @UnrolledOverAlgebra
 def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
     g: Algebra,
-    at: tuple[Array, Array, Array],
+    fields: tuple[Array, Array, Array],
     slopes: Array,
     J: Array,
     tip: Array,
@@ -135,39 +135,41 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
 ) -> None:
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
 
-    at, compliance: as in `_write_linear_law_jacobian`. slopes: result of `_write_velocity_derivatives`.
+    fields, compliance: as in `_write_linear_law_jacobian`. slopes: result of `_write_velocity_derivatives`.
     """
     n = len(m.weights) - 1
-    E, _, V = at
+    E, _, V = fields
     for i in range(n + 1):
         A = [[0.0 for _ in g.components] for _ in g.components]  # weighted
         for a, b, o, sign in g.structure_constants:
             A[a][o] += sign * m.weights[i] * E[b, i]
-        ahead = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
+        rate_block = [[A[a][o] * c.mobility[o, i] for o in g.components] for a in g.components]
         rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(n):
                 # -D^T W Gamma^-1 D does not depend on the state and is computed once per rod.
                 rows[a][stress_index(a, j, n)] = c.mobility_laplacian[a, i, j]
         for j in range(n):
-            weak = m.weak_derivative[i, j]
+            weak_entry = m.weak_derivative[i, j]
             slope = m.D[i, j]
             for a, b in g.distinct_pairs:
-                back = weak * slopes[a, b, j] if g.coad_pattern[a][b] else 0.0
-                rows[a][stress_index(b, j, n)] = back + (ahead[a][b] * slope if g.ad_pattern[a][b] else 0.0)
+                coupling = weak_entry * slopes[a, b, j] if g.coad_pattern[a][b] else 0.0
+                rows[a][stress_index(b, j, n)] = coupling + (
+                    rate_block[a][b] * slope if g.ad_pattern[a][b] else 0.0
+                )
         # The stress of the tip is prescribed and has no column.
         if i < n:
-            same = [[0.0 for _ in g.components] for _ in g.components]
+            diagonal_block = [[0.0 for _ in g.components] for _ in g.components]
             for a, b, o, sign in g.structure_constants:
-                same[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
+                diagonal_block[a][b] += sign * m.weights[i] * compliance[b, i] * V[o, i]
             for a, o in g.distinct_pairs:
                 for b in g.components:
                     # Unrolling leaves out pairs that are 0 for every strain.
                     if g.ad_pattern[a][o] and g.coad_pattern[o][b]:
-                        same[a][b] += A[a][o] * slopes[o, b, i]
+                        diagonal_block[a][b] += A[a][o] * slopes[o, b, i]
             for a in g.components:
                 for b in g.components:
-                    rows[a][stress_index(b, i, n)] += same[a][b]
+                    rows[a][stress_index(b, i, n)] += diagonal_block[a][b]
 
 
 @UnrolledOverAlgebra
@@ -181,15 +183,15 @@ def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
     """
     size = len(m.weights)
     n = len(m.weights) - 1
-    of = c.unknown_velocities[k]
+    component = c.unknown_velocities[k]
     first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
         rows = [J[stress_index(a, i, n)] if i < n else tip[a] for a in g.components]
         for a in g.components:
             for j in range(size):
-                rows[a][first + j] = m.weak_derivative[i, j] if of == a else 0.0
+                rows[a][first + j] = m.weak_derivative[i, j] if component == a else 0.0
         for a, b, o, sign in g.structure_constants:
-            if o == of:
+            if o == component:
                 rows[a][first + i] += sign * m.weights[i] * E[b, i]
 
 
@@ -197,7 +199,7 @@ def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
 def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra,
     k: int,
-    at: tuple[Array, Array, Array],
+    fields: tuple[Array, Array, Array],
     J: Array,
     compliance: Array,
     c: NodalRod,
@@ -205,22 +207,22 @@ def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
 
-    at, compliance: as in `_write_linear_law_jacobian`.
+    fields, compliance: as in `_write_linear_law_jacobian`.
     """
     size = len(m.weights)
     n = len(m.weights) - 1
-    of = c.unknown_velocities[k]
-    E, S, _ = at
+    component = c.unknown_velocities[k]
+    E, S, _ = fields
     first = velocity_index(k, 0, g.dimension, n)
     for i in range(size):
         row = J[first + i]
         w = m.weights[i]
         row[:] = 0.0
         for j in range(n):
-            row[stress_index(of, j, n)] = w * m.D[i, j]
-        row[first + i] = -w * c.drag[of, i]
+            row[stress_index(component, j, n)] = w * m.D[i, j]
+        row[first + i] = -w * c.drag[component, i]
         if i < n:
             for a, b, o, sign in g.structure_constants:
-                if o == of:
+                if o == component:
                     row[stress_index(a, i, n)] -= w * sign * E[b, i]
                     row[stress_index(b, i, n)] -= w * sign * compliance[b, i] * (c.tip_stress[a] + S[a, i])

@@ -38,8 +38,8 @@ def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
     n = roots.shape[1] - 1
     for a in range(d):
         for i in range(n):
-            at = stress_index(a, i, n)
-            x[at] = z[at] / roots[a, i]
+            index = stress_index(a, i, n)
+            x[index] = z[index] / roots[a, i]
 
 
 @compiled_for_vectors
@@ -62,9 +62,9 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
     inverse = np.empty(unknowns)
     for a in range(d):
         for i in range(size - 1):
-            at = stress_index(a, i, size - 1)
-            inverse[at] = 1 / roots[a, i]
-            scale[at] = inverse[at] / m.weights[i]
+            index = stress_index(a, i, size - 1)
+            inverse[index] = 1 / roots[a, i]
+            scale[index] = inverse[index] / m.weights[i]
     for p in range(unknowns):
         for q in range(unknowns):
             out[q, p] = scale[p] * inverse[q] * J[p, q]

@@ -39,12 +39,12 @@ class TipMatrices(NamedTuple):
 def tip_matrices(mesh: Elements) -> TipMatrices:
     """The `TipMatrices` of a mesh, cached."""
     points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
-    each = [shape_integration_matrices(order, points) for order in mesh.orders]
+    matrices = [shape_integration_matrices(order, points) for order in mesh.orders]
     return TipMatrices(
-        values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in each]),
-        angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in each]),
-        gauss_weights=np.ascontiguousarray(each[0].integrals_to_nodes[:, -1]),
-        element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in each]),
+        values_at_gauss_points=np.concatenate([m.values_at_gauss_points for m in matrices]),
+        angles_at_gauss_points=np.concatenate([m.angles_at_gauss_points for m in matrices]),
+        gauss_weights=np.ascontiguousarray(matrices[0].integrals_to_nodes[:, -1]),
+        element_integrals=np.concatenate([m.angles_at_nodes[:, -1] for m in matrices]),
         element_lengths=np.ascontiguousarray(mesh.lengths),
         element_nodes=mesh.element_nodes,
         element_starts=np.append(0, np.cumsum([order + 1 for order in mesh.orders])),
@@ -68,11 +68,11 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
         theta = 0.0
         dx = 0.0
         dy = 0.0
-        turn = 0.0
+        angle_rate = 0.0
         for e in range(len(m.element_lengths)):
             length = m.element_lengths[e]
             _write_fields_at_gauss_points(strains[:, k], m, e, theta, fields[:3])
-            _write_fields_at_gauss_points(rates[:, k], m, e, turn, fields[3:])
+            _write_fields_at_gauss_points(rates[:, k], m, e, angle_rate, fields[3:])
             for g in range(points):
                 cos = np.cos(fields[2, g])
                 sin = np.sin(fields[2, g])
@@ -87,28 +87,31 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
                 dy += w * (sin * fields[3, g] + cos * fields[4, g]) + u * fields[5, g]
             for j in range(m.element_starts[e], m.element_starts[e + 1]):
                 theta += length * m.element_integrals[j] * strains[2, k, j]
-                turn += length * m.element_integrals[j] * rates[2, k, j]
+                angle_rate += length * m.element_integrals[j] * rates[2, k, j]
         tip[k, 0] = x
         tip[k, 1] = y
         tip[k, 2] = theta
         velocity[k, 0] = dx
         velocity[k, 1] = dy
-        velocity[k, 2] = turn
+        velocity[k, 2] = angle_rate
 
 
 @compiled_for_vectors
-def _write_fields_at_gauss_points(nodal: Array, m: TipMatrices, e: int, start: float, fields: Array) -> None:
+def _write_fields_at_gauss_points(
+    strains: Array, m: TipMatrices, e: int, start_angle: float, fields: Array
+) -> None:
     """Writes h1, h2 and theta at the Gauss points of element e into fields, (3, g).
 
-    nodal: (h1, h2, Pi) at the nodes of all elements, (3, m). start: theta at the left end of the element.
+    strains: (h1, h2, Pi) at the nodes of all elements, (3, m). start_angle: theta at the left end of the
+    element.
     """
     fields[:2] = 0.0
-    fields[2] = start
+    fields[2] = start_angle
     length = m.element_lengths[e]
     for j in range(m.element_starts[e], m.element_starts[e + 1]):
-        h1 = nodal[0, j]
-        h2 = nodal[1, j]
-        Pi = nodal[2, j]
+        h1 = strains[0, j]
+        h2 = strains[1, j]
+        Pi = strains[2, j]
         for g in range(len(m.gauss_weights)):
             fields[0, g] += h1 * m.values_at_gauss_points[j, g]
             fields[1, g] += h2 * m.values_at_gauss_points[j, g]

@@ -86,8 +86,7 @@ class SlenderArm:
     def shape(self) -> Shape:
         """Cross-sections and Young's moduli along the arm."""
         if self.si_segments:
-            own = self.si.young
-            return shape_of_segments([(L, each, own if E is None else E) for L, each, E in self.si_segments])
+            return shape_of_segments([(L, section, E or self.si.young) for L, section, E in self.si_segments])
         if self.tip_radius is not None:
             return shape_of_cone(self.si.length, self.si.radius, self.si.tip_radius, self.si.young)
         return Shape(self.si.length, (Station(1.0, self._uniform_section, self.si.young),))
@@ -214,7 +213,7 @@ class SlenderArm:
     def drags_along(self, drag: Drag) -> tuple[Drag, ...]:
         """Drag at every station of `shape`. drag: the estimate at the base, one of `drags`."""
         index = self.drags.index(drag)
-        return tuple(self.shape.drags_at(each, self.si.viscosity)[index] for each in self.shape.stations)
+        return tuple(self.shape.drags_at(place, self.si.viscosity)[index] for place in self.shape.stations)
 
     @property
     def chosen_drag(self) -> Drag:

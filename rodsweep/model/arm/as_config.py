@@ -27,11 +27,13 @@ def material_config_of(arm: SlenderArm) -> dict[str, Any]:
     Possible keys are law, section and profile.
     """
     build = arm.build
-    words = {
+    values_and_defaults = {
         "law": (build.law, DEFAULT_BUILD.law),
         "section": (build.section, DEFAULT_BUILD.section),
     }
-    material: dict[str, Any] = {name: own for name, (own, default) in words.items() if own != default}
+    material: dict[str, Any] = {
+        name: value for name, (value, default) in values_and_defaults.items() if value != default
+    }
     if build.profile is not None:
         columns = (build.profile.u, *zip(*build.profile.rows, strict=True))
         material["profile"] = dict(zip(("u", *FACTOR_NAMES), map(list, columns), strict=True))

@@ -108,12 +108,16 @@ def drag_estimates(viscosity: float, length: float, radius: float, half_height: 
     length, radius, half_height: in m.
     """
     slenderness = length / radius
-    least = min_rotational_drag(1.0, half_height)
-    most = max_rotational_drag(1.0, half_height)
+    min_rotational = min_rotational_drag(1.0, half_height)
+    max_rotational = max_rotational_drag(1.0, half_height)
     translations = (gray_hancock_drag(1.0, slenderness), lighthill_drag(1.0, slenderness))
     # All estimates are for viscosity 1, because drag is proportional to the viscosity.
-    members = [(*cox_drag(1.0, slenderness), (least * most) ** 0.5)]
-    members += [(*translation, rotational) for translation in translations for rotational in (least, most)]
+    members = [(*cox_drag(1.0, slenderness), (min_rotational * max_rotational) ** 0.5)]
+    members += [
+        (*translation, rotational)
+        for translation in translations
+        for rotational in (min_rotational, max_rotational)
+    ]
     return tuple(
         Drag(viscosity=viscosity, axial=axial, across=across, rotational=rotational)
         for axial, across, rotational in members

@@ -106,21 +106,20 @@ def neglected_effects(
     Weight is included if the arm has a density difference, flattening of the wall if the arm has a bore.
     """
     drag = smallest_drag(arm) if drag is None else drag
-    motion, force, wide = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
-    motion = abs(motion)
+    omega, forces, y_over_L = np.broadcast_arrays(*(np.asarray(x, float) for x in (rate, F, amplitude)))
+    omega = abs(omega)
     effects = [
-        arm_inertia_effect(arm, motion, drag),
-        fluid_inertia_effect(arm, motion, drag),
-        compression_effect(arm, force),
-        reynolds_number_effect(arm, motion, wide),
+        arm_inertia_effect(arm, omega, drag),
+        fluid_inertia_effect(arm, omega, drag),
+        compression_effect(arm, forces),
+        reynolds_number_effect(arm, omega, y_over_L),
     ]
     if not isnan(arm.si.density_difference):
-        effects.append(weight_effect(arm, force))
-    tubes = [each.section for each in arm.shape.stations if isinstance(each.section, Tube)]
+        effects.append(weight_effect(arm, forces))
+    tubes = [station.section for station in arm.shape.stations if isinstance(station.section, Tube)]
     if tubes:
-        walls = [
-            wall_flattening_effect(arm.si.length, t.radius, t.inner_radius, arm.poisson, wide) for t in tubes
-        ]
+        L = arm.si.length
+        walls = [wall_flattening_effect(L, t.radius, t.inner_radius, arm.poisson, y_over_L) for t in tubes]
         effects.append(max(walls, key=lambda effect: np.fmax.reduce(np.ravel(effect.value))))
     return tuple(effects)
 
@@ -130,8 +129,8 @@ def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.
 
     of_cycles: whether to include effects that change only limit cycles.
     """
-    counted = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
-    return np.maximum.reduce(list(counted))
+    validities = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
+    return np.maximum.reduce(list(validities))
 
 
 def smallest_drag(arm: SlenderArm) -> Drag:
@@ -147,9 +146,9 @@ def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) ->
 def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm. rate: omega in rad/s; `rate` and
     the effect: (...,)."""
-    along = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
+    stations_and_drags = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
-    value = max(arm.mass_at(station) / own.gamma2 for station, own in along) * rate
+    value = max(arm.mass_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags) * rate
     # omega ~ 1/viscosity and gamma2 ~ viscosity, so the value is proportional to 1/viscosity^2.
     factor = np.sqrt(value / INERTIA_LIMIT)
     return Effect(name="inertia of the arm", value=value, limit=INERTIA_LIMIT, viscosity_factor=factor)
@@ -158,7 +157,7 @@ def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
     """Phase lag of the drag, caused by the inertia of the fluid. rate: angular frequency in rad/s; `rate` and
     the effect: (...,)."""
-    logarithm = 4 * pi * arm.si.viscosity / max(own.gamma2 for own in arm.drags_along(drag))
+    logarithm = 4 * pi * arm.si.viscosity / max(local_drag.gamma2 for local_drag in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length
     s = arm.si.fluid_density * rate / (arm.si.viscosity * k**2)
@@ -182,8 +181,8 @@ def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
 
     F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression.
     """
-    share = arm.crushing_force / arm.k1
-    return np.asarray(F, float) / share if share < inf else np.full(np.shape(F), np.nan)
+    fraction = arm.crushing_force / arm.k1
+    return np.asarray(F, float) / fraction if fraction < inf else np.full(np.shape(F), np.nan)
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:

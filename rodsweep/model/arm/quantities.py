@@ -74,34 +74,34 @@ ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 """All variables of an arm in a result file, except the parameters of the arm as a rod."""
 
 
-def arm_quantity_in_si(name: str, given: GivenQuantity | None) -> float:
+def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
     """Value in SI of the quantity `name` in UNITS; nan for a missing quantity and for a load relative to
     flutter.
 
     Raises InputError, naming the quantity, for an invalid value.
     """
-    if given is None or (name in LOADS and load_over_flutter(given) is not None):
+    if quantity is None or (name in LOADS and load_over_flutter(quantity) is not None):
         return float("nan")
-    value = quantity_in_si(name, given, *UNITS[name])
+    value = quantity_in_si(name, quantity, *UNITS[name])
     if not (QUANTITIES[name].may_be_nonpositive or value > 0):
         solid = "; leave it out for a solid arm" if name == "inner_radius" and value == 0 else ""
-        raise InputError(f"{quoted_quantity(name, given)} is not above 0{solid}")
+        raise InputError(f"{quoted_quantity(name, quantity)} is not above 0{solid}")
     return value
 
 
-def quoted_quantity(name: str, given: GivenQuantity) -> str:
+def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
     """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
     user wrote it, a number with its SI unit.
     """
-    if isinstance(given, str):
-        return f"{name} = '{given}'"
-    return f"{name} = {quantity_in_si(name, given, *UNITS[name]):.6g} {UNITS[name][0]}"
+    if isinstance(quantity, str):
+        return f"{name} = '{quantity}'"
+    return f"{name} = {quantity_in_si(name, quantity, *UNITS[name]):.6g} {UNITS[name][0]}"
 
 
-def radius_of_diameter(name: str, known: Collection[str]) -> str:
-    """The quantity in `known` that is half of the diameter `name`, such as inner_radius for inner_diameter;
+def radius_of_diameter(name: str, names: Collection[str]) -> str:
+    """The quantity in `names` that is half of the diameter `name`, such as inner_radius for inner_diameter;
     "" if `name` is no diameter, or its radius is not known.
     """
-    plain = name.lower().replace("-", "_").removeprefix("outer_")
-    radius = plain.replace("diameter", "radius")
-    return radius if radius != plain and radius in known else ""
+    plain_name = name.lower().replace("-", "_").removeprefix("outer_")
+    radius = plain_name.replace("diameter", "radius")
+    return radius if radius != plain_name and radius in names else ""

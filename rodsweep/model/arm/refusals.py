@@ -53,9 +53,9 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
     if arm.drag not in DRAG_NAMES:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")
     texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))
-    for name, word, allowed in texts:
-        if not isinstance(word, str):
-            raise InputError(f"{name} = {word!r:.60} is not a text; write {allowed}")
+    for name, value, allowed in texts:
+        if not isinstance(value, str):
+            raise InputError(f"{name} = {value!r:.60} is not a text; write {allowed}")
     try:
         law_of(arm.law, arm.section)
     except ValueError as error:
@@ -93,17 +93,17 @@ def _refuse_sections(arm: "SlenderArm") -> None:
     BoreTooWide if the bore is too wide.
     """
     sides = (arm.width, arm.height)
-    for name, why in (
+    for name, reason in (
         ("inner_radius", "a rectangular section has no bore"),
         ("tip_radius", "only a cone has a tip radius"),
     ):
         if getattr(arm, name) is not None and arm.radius is None:
-            raise InputError(f"{arm.text_of(name)} needs a radius; {why}")
+            raise InputError(f"{arm.text_of(name)} needs a radius; {reason}")
     if (arm.radius is None) == (sides == (None, None)) or (arm.radius is None and None in sides):
         sizes = ("radius", "width", "height")
-        given = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
+        given_sizes = " and ".join(name for name in sizes if getattr(arm, name) is not None) or "no size"
         raise InputError(
-            f"radius: give either a radius, or width and height, or segments; the arm has {given}"
+            f"radius: give either a radius, or width and height, or segments; the arm has {given_sizes}"
         )
     if arm.si.inner_radius >= arm.si.radius:
         raise BoreTooWide(f"{arm.text_of('inner_radius')} is not below {arm.text_of('radius')}")
@@ -134,16 +134,16 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
                 f"{arm.text_of(name)} and segments are both given; give one of them, because every segment "
                 "has its own radius"
             )
-    pieces = arm.si_segments
-    total = sum(piece.length for piece in pieces)
-    for number, piece in enumerate(pieces, 1):
-        if piece.young is None and arm.young is None:
+    segments = arm.si_segments
+    total = sum(segment.length for segment in segments)
+    for number, segment in enumerate(segments, 1):
+        if segment.young is None and arm.young is None:
             raise InputError(
                 f"segments, number {number}: young is missing; give young for this segment or for the arm"
             )
-        if piece.length < MIN_ROW_DISTANCE * total:
+        if segment.length < MIN_ROW_DISTANCE * total:
             raise InputError(
-                f"segments, number {number}: the length is {piece.length / total:.2g} of the arm's length; "
+                f"segments, number {number}: the length is {segment.length / total:.2g} of the arm's length; "
                 f"it must be at least {MIN_ROW_DISTANCE:g}, so make this segment longer or leave it out"
             )
     if arm.length is not None and not abs(arm.si.length - total) <= LENGTH_TOLERANCE * total:
@@ -161,19 +161,21 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
     Raises NotSlender for an arm that is too short.
     """
     if arm.si.density_difference <= -arm.si.fluid_density:
-        given = arm.text_of("density_difference")
-        least = f"{-arm.si.fluid_density:.4g} kg/m^3"
-        raise InputError(f"{given} gives the arm no positive mass; the difference must be above {least}")
+        density_text = arm.text_of("density_difference")
+        min_density = f"{-arm.si.fluid_density:.4g} kg/m^3"
+        raise InputError(
+            f"{density_text} gives the arm no positive mass; the difference must be above {min_density}"
+        )
     length = "segments: their length" if arm.length is None else arm.text_of("length")
     try:
         slenderness = arm.shape.length / arm.shape.largest_drag_radius
-        fine = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
+        is_representable = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
         # The drags of too short an arm mean nothing, and are not always numbers.
         if slenderness >= LEAST_SLENDERNESS:
-            fine = fine and bool(arm.build)
+            is_representable = is_representable and bool(arm.build)
     except (ArithmeticError, ValueError):
-        fine = False
-    if not fine:
+        is_representable = False
+    if not is_representable:
         raise InputError(
             f"{length}, with this section and Young's modulus, makes stiffnesses or the unit of force "
             "overflow or underflow; check the units"
@@ -199,14 +201,14 @@ def refuse_crushed(arm: "SlenderArm") -> None:
 
     An arm without load, or with a load given relative to flutter, is not checked.
     """
-    loaded = arm.load
-    if loaded is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
+    load = arm.load
+    if load is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return
     limit = arm.crushing_force * arm.load_scale
-    si = UNITS[loaded][0]
-    unit = unit_of(getattr(arm, loaded), si)
-    where = "the weakest section of" if arm.shape.varies else ""
+    si = UNITS[load][0]
+    unit = unit_of(getattr(arm, load), si)
+    place = "the weakest section of" if arm.shape.varies else ""
     raise InputError(
-        f"{arm.text_of(loaded)} crushes {f'{where} the arm'.strip()}; the load on a linear material must be "
+        f"{arm.text_of(load)} crushes {f'{place} the arm'.strip()}; the load on a linear material must be "
         f"below {float(f'{value_in_unit(limit, unit, si):.4g}'):g} {unit}"
     )

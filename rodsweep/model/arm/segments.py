@@ -42,27 +42,27 @@ class WrittenSegment:
         return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
 
 
-def segment_texts(given: Any) -> tuple[str, ...]:
-    """Texts of all segments of an arm, the input of `segments_of`. given: the user's value of `segments`.
+def segment_texts(segments: Any) -> tuple[str, ...]:
+    """Texts of all segments of an arm, the input of `segments_of`. segments: the user's value of `segments`.
 
     Raises InputError, beginning with "segments", for an invalid segment.
     """
-    if isinstance(given, str | Mapping):
-        given = [given]
-    if hasattr(given, "tolist"):  # an array of texts
-        given = given.tolist()
-    if isinstance(given, Sequence) and not given:
+    if isinstance(segments, str | Mapping):
+        segments = [segments]
+    if hasattr(segments, "tolist"):  # an array of texts
+        segments = segments.tolist()
+    if isinstance(segments, Sequence) and not segments:
         raise InputError(f"segments has no segment; write each segment as in '{EXAMPLE_SEGMENT}'")
-    if not isinstance(given, Sequence):
+    if not isinstance(segments, Sequence):
         raise InputError(
-            f"segments = {str(given):.60} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
+            f"segments = {str(segments):.60} is not a list; write each segment as in '{EXAMPLE_SEGMENT}'"
         )
-    if len(given) > MAX_SEGMENTS:
-        raise InputError(f"segments: {len(given)} are given; an arm has at most {MAX_SEGMENTS}")
-    written = [written_segment(number, each) for number, each in enumerate(given, 1)]
-    for number, each in enumerate(written, 1):
-        _segment_in_si(number, each)
-    return tuple(map(str, written))
+    if len(segments) > MAX_SEGMENTS:
+        raise InputError(f"segments: {len(segments)} are given; an arm has at most {MAX_SEGMENTS}")
+    quantities = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
+    for number, segment in enumerate(quantities, 1):
+        _segment_in_si(number, segment)
+    return tuple(map(str, quantities))
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
@@ -72,71 +72,78 @@ def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
     )
 
 
-def written_segment(number: int, given: Any) -> WrittenSegment:
-    """Quantities of a segment. given: a text or a mapping. Raises InputError for an unknown or a missing key.
+def written_segment(number: int, segment: Any) -> WrittenSegment:
+    """Quantities of a segment. segment: a text or a mapping. Raises InputError for an unknown or a missing
+    key.
 
     number: position of the segment, counted from 1 at the base, for messages.
     """
-    where = f"segments, number {number}"
-    found = dict(_quantities_by_name(where, given))
-    for name in found:
+    place = f"segments, number {number}"
+    quantities = dict(_quantities_by_name(place, segment))
+    for name in quantities:
         if name not in SEGMENT_KEYS:
             radius = radius_of_diameter(name, SEGMENT_KEYS)
-            hint = f"give {radius}, half of it" if radius else f"a segment has {', '.join(SEGMENT_KEYS)}"
-            raise InputError(f"{where}: unknown key {name}; {hint}")
+            advice = f"give {radius}, half of it" if radius else f"a segment has {', '.join(SEGMENT_KEYS)}"
+            raise InputError(f"{place}: unknown key {name}; {advice}")
     for name in ("length", "radius"):
-        if found.get(name) is None:
-            raise InputError(f"{where}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
-    return WrittenSegment({name: found[name] for name in SEGMENT_KEYS if found.get(name) is not None})
+        if quantities.get(name) is None:
+            raise InputError(f"{place}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
+    return WrittenSegment(
+        {name: quantities[name] for name in SEGMENT_KEYS if quantities.get(name) is not None}
+    )
 
 
-def _quantities_by_name(where: str, given: Any) -> Mapping[str, GivenQuantity]:
-    """Quantities of a segment by name. given: a mapping or a text. Raises InputError, beginning with `where`,
-    if invalid.
+def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]:
+    """Quantities of a segment by name. segment: a mapping or a text. Raises InputError, beginning with
+    `place`, if invalid.
     """
-    if isinstance(given, Mapping):
-        return {str(name): value for name, value in given.items()}
-    length, colon, parts = str(given).partition(":")
-    if not isinstance(given, str) or not colon:
+    if isinstance(segment, Mapping):
+        return {str(name): value for name, value in segment.items()}
+    length, colon, parts = str(segment).partition(":")
+    if not isinstance(segment, str) or not colon:
         raise InputError(
-            f"{where}: {str(given)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
+            f"{place}: {str(segment)!r:.60} is not a segment; write a segment as in '{EXAMPLE_SEGMENT}'"
         )
-    found: dict[str, GivenQuantity] = {"length": length.strip()}
+    quantities: dict[str, GivenQuantity] = {"length": length.strip()}
     for part in parts.split(","):
         text_of = SEGMENT_QUANTITY_PATTERN.fullmatch(part)
         if text_of is None:
             raise InputError(
-                f"{where}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
+                f"{place}: {part.strip()!r:.60} is not a quantity; write a segment as in '{EXAMPLE_SEGMENT}'"
             )
         name = text_of[1].replace("-", "_").replace(" ", "_")
-        if name in found:
-            raise InputError(f"{where}: {name} is given twice; give it once")
-        found[name] = text_of[2]
-    return found
+        if name in quantities:
+            raise InputError(f"{place}: {name} is given twice; give it once")
+        quantities[name] = text_of[2]
+    return quantities
 
 
-def _segment_in_si(number: int, written: WrittenSegment) -> ArmSegment:
-    """The segment `written` in SI units. number: its position, for messages. Raises InputError for a value
+def _segment_in_si(number: int, segment: WrittenSegment) -> ArmSegment:
+    """The segment `segment` in SI units. number: its position, for messages. Raises InputError for a value
     out of range, and BoreTooWide if the bore is too wide.
     """
-    given = written.quantities
-    where = f"segments, number {number}"
+    quantities = segment.quantities
+    place = f"segments, number {number}"
     try:
-        length, radius, inner, young = (arm_quantity_in_si(name, given.get(name)) for name in SEGMENT_KEYS)
+        length, radius, inner, young = (
+            arm_quantity_in_si(name, quantities.get(name)) for name in SEGMENT_KEYS
+        )
     except InputError as error:
-        raise InputError(f"{where}: {error}") from None
-    if "inner_radius" not in given:
-        return ArmSegment(length, Circle(radius), young if "young" in given else None)
+        raise InputError(f"{place}: {error}") from None
+    if "inner_radius" not in quantities:
+        return ArmSegment(length, Circle(radius), young if "young" in quantities else None)
     if inner >= radius:
-        bore, outer = (quoted_quantity(name, given[name]) for name in ("inner_radius", "radius"))
-        raise BoreTooWide(f"{where}: {bore} is not below {outer}")
-    return ArmSegment(length, Tube(radius, inner), young if "young" in given else None)
+        bore, outer = (quoted_quantity(name, quantities[name]) for name in ("inner_radius", "radius"))
+        raise BoreTooWide(f"{place}: {bore} is not below {outer}")
+    return ArmSegment(length, Tube(radius, inner), young if "young" in quantities else None)
 
 
-def _value_with_unit(name: str, given: GivenQuantity) -> str:
+def _value_with_unit(name: str, quantity: GivenQuantity) -> str:
     """Value of the quantity `name` as text with its unit."""
     from .quantities import UNITS
 
     return (
-        given.strip() if isinstance(given, str) else f"{arm_quantity_in_si(name, given)!r} {UNITS[name][0]}"
+        quantity.strip()
+        if isinstance(quantity, str)
+        else f"{arm_quantity_in_si(name, quantity)!r} {UNITS[name][0]}"
     )

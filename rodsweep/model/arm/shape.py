@@ -69,12 +69,12 @@ class Shape:
     @property
     def varies(self) -> bool:
         """Whether the cross-section or Young's modulus varies along the arm."""
-        return any(each[1:] != self.base[1:] for each in self.stations)
+        return any(station[1:] != self.base[1:] for station in self.stations)
 
     @property
     def largest_drag_radius(self) -> float:
         """The largest drag radius along the arm, in m."""
-        return max(each.section.drag_radius for each in self.stations)
+        return max(station.section.drag_radius for station in self.stations)
 
     def drags_at(self, station: Station, viscosity: float) -> tuple[Drag, ...]:
         """Drag estimates at a station, in the order of DRAG_NAMES. viscosity: in Pa s."""
@@ -92,7 +92,7 @@ class Shape:
             return None
         if self.taper != 1:
             return self._cone_profile(drag)
-        ends = [0.0, *(each.end for each in self.stations)]
+        ends = [0.0, *(place.end for place in self.stations)]
         u = list[float]()
         rows = list[tuple[float, ...]]()
         for start, station in zip(ends, self.stations, strict=False):
@@ -111,15 +111,18 @@ class Shape:
 
         drag: index of the drag estimate in DRAG_NAMES.
         """
-        pieces = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
+        count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
-        radii = self.taper ** (np.arange(pieces + 1) / pieces)
+        radii = self.taper ** (np.arange(count + 1) / count)
         u = (1 - radii) / (1 - self.taper)
-        base = self.drags_at(self.base, 1.0)[drag]
+        base_drag = self.drags_at(self.base, 1.0)[drag]
         rows = list[tuple[float, ...]]()
         for radius in (radii * self.base.section.drag_radius).tolist():
-            own = drag_estimates(1.0, self.length, radius, radius)[drag]
-            factors = {"gamma1": own.axial / base.axial, "gamma2": own.across / base.across}
+            local_drag = drag_estimates(1.0, self.length, radius, radius)[drag]
+            factors = {
+                "gamma1": local_drag.axial / base_drag.axial,
+                "gamma2": local_drag.across / base_drag.across,
+            }
             rows.append(tuple(factors.get(name, 1.0) for name in FACTOR_NAMES))
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
@@ -128,11 +131,11 @@ class Shape:
 
         poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
         """
-        own, base = (
-            np.array(self._stiffnesses_and_drags(each, poisson, drag)) for each in (station, self.base)
+        values, base_values = (
+            np.array(self._stiffnesses_and_drags(place, poisson, drag)) for place in (station, self.base)
         )
         with np.errstate(all="ignore"):
-            return tuple((own / base).tolist())
+            return tuple((values / base_values).tolist())
 
     def _stiffnesses_and_drags(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
@@ -163,17 +166,17 @@ class Shape:
         """
         h, area, stiffness = self._sections_at_midpoints()
         # Integrals up to a midpoint include half of the interval around the midpoint.
-        own = area * h
-        beyond = np.cumsum(own[::-1])[::-1] - own / 2
+        volume = area * h
+        volume_beyond = np.cumsum(volume[::-1])[::-1] - volume / 2
         theta = np.ones(len(h))
-        ratio = before = 0.0
+        ratio = previous_ratio = 0.0
         for _ in range(BUCKLING_MAX_ITERATIONS):
-            load = beyond * theta * h
-            turn = (np.cumsum(load[::-1])[::-1] - load / 2) * h / stiffness
-            theta = np.cumsum(turn) - turn / 2
-            before, ratio = ratio, float(theta[-1])
+            load = volume_beyond * theta * h
+            angle_step = (np.cumsum(load[::-1])[::-1] - load / 2) * h / stiffness
+            theta = np.cumsum(angle_step) - angle_step / 2
+            previous_ratio, ratio = ratio, float(theta[-1])
             theta /= ratio
-            if abs(ratio - before) <= BUCKLING_TOLERANCE * ratio:
+            if abs(ratio - previous_ratio) <= BUCKLING_TOLERANCE * ratio:
                 break
         return weight * ratio
 
@@ -188,11 +191,11 @@ class Shape:
             area = base.section.area * radius ** RADIUS_POWERS["k1"]
             stiffness = base.young * base.section.second_moment * radius ** RADIUS_POWERS["k3"]
             return np.full(len(u), self.length / len(u)), area, stiffness
-        each = max(4, BUCKLING_NODE_COUNT // len(self.stations))
+        count = max(4, BUCKLING_NODE_COUNT // len(self.stations))
         lengths = np.diff([0.0, *(station.end for station in self.stations)]) * self.length
         areas = [station.section.area for station in self.stations]
         stiffnesses = [station.young * station.section.second_moment for station in self.stations]
-        return np.repeat(lengths / each, each), np.repeat(areas, each), np.repeat(stiffnesses, each)
+        return np.repeat(lengths / count, count), np.repeat(areas, count), np.repeat(stiffnesses, count)
 
 
 def shape_of_cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
@@ -201,12 +204,14 @@ def shape_of_cone(length: float, radius: float, tip_radius: float, young: float)
     return Shape(length, ends, tip_radius / radius)
 
 
-def shape_of_segments(pieces: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
+def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
     """Shape of an arm made of segments.
 
-    pieces: (length in m, section, Young's modulus in Pa) of each segment, from the base to the tip.
+    segments: (length in m, section, Young's modulus in Pa) of each segment, from the base to the tip.
     """
-    ends = np.cumsum([length for length, _, _ in pieces])
-    shares = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
-    stations = [Station(u, section, young) for u, (_, section, young) in zip(shares, pieces, strict=True)]
+    ends = np.cumsum([length for length, _, _ in segments])
+    fractions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
+    stations = [
+        Station(u, section, young) for u, (_, section, young) in zip(fractions, segments, strict=True)
+    ]
     return Shape(float(ends[-1]), tuple(stations))

@@ -35,8 +35,8 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
     z = 1j * np.asarray(s, float)
     series = z * (3 / 4 - z * (5 / 12 - z * (7 / 24 - z * (9 / 40))))
     with np.errstate(invalid="ignore", divide="ignore"):  # nan where nothing moves; 1/z is not used at 0
-        closed = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
-    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series, closed)))
+        integral = 0.5 + (1 - 1 / z) * np.log1p(z) / 2
+    return np.asarray(0.0 - np.angle(logarithm - np.where(z.imag < MAX_SERIES_FREQUENCY, series, integral)))
 
 
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
@@ -45,11 +45,11 @@ def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
 
     logarithm: Lambda = 4 pi eta/gamma2.
     """
-    low = log(LOWEST_FREQUENCY)
-    high = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
+    low_log = log(LOWEST_FREQUENCY)
+    high_log = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):
-        edges = np.linspace(low, high, SUBINTERVAL_COUNT + 1)
-        below = np.count_nonzero(drag_phase_lag(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
-        low = float(edges[below])
-        high = float(edges[below + 1])
-    return exp(high)
+        edges = np.linspace(low_log, high_log, SUBINTERVAL_COUNT + 1)
+        index = np.count_nonzero(drag_phase_lag(np.exp(edges[1:-1]), logarithm) < phase)  # the phase rises
+        low_log = float(edges[index])
+        high_log = float(edges[index + 1])
+    return exp(high_log)

@@ -49,11 +49,11 @@ _texts_at_first_use: dict[FunctionType, FunctionText] = {}
 def cache_directories() -> list[Path]:
     """Directories for compiled code, in order of preference: a directory under NUMBA_CACHE_DIR if this is
     set, otherwise in the package, then under XDG_CACHE_HOME or ~/.cache."""
-    if folder := os.environ.get("NUMBA_CACHE_DIR"):
-        return [Path(folder) / "rodsweep"]
+    if directory := os.environ.get("NUMBA_CACHE_DIR"):
+        return [Path(directory) / "rodsweep"]
     caches = [PACKAGE_DIRECTORY / "__pycache__"]
-    if folder := os.environ.get("XDG_CACHE_HOME"):
-        caches.append(Path(folder) / "rodsweep")
+    if directory := os.environ.get("XDG_CACHE_HOME"):
+        caches.append(Path(directory) / "rodsweep")
     else:
         with suppress(RuntimeError):  # the user has no home directory
             caches.append(Path.home() / ".cache" / "rodsweep")
@@ -97,8 +97,8 @@ class KernelCache(_Cache):
         changed since the first use of the function. If no directory is writable, a warning is issued.
         """
         name = self._cache_file_name(sig, data.codegen, {})
-        changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
-        if data.library.has_dynamic_globals or data.lifted or changed:
+        has_changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
+        if data.library.has_dynamic_globals or data.lifted or has_changed:
             return
         content = dumps(data._reduce())
         failures = []
@@ -145,21 +145,21 @@ def _warn_once(sentence: str) -> None:
 def _read(path: Path) -> bytes | None:
     """Content of the cache file `path` without its checksum; None if the file is missing or damaged."""
     try:
-        held = path.read_bytes()
+        checked_bytes = path.read_bytes()
     except OSError:
         return None
-    checksum = held[:DIGEST_BYTES]
-    content = held[DIGEST_BYTES:]
+    checksum = checked_bytes[:DIGEST_BYTES]
+    content = checked_bytes[DIGEST_BYTES:]
     return content if sha256(content).digest() == checksum else None
 
 
 def _write(path: Path, content: bytes) -> None:
     """Writes `content` to the file `path` atomically: other processes see the complete file or no file."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    unfinished = path.with_name(f".{uuid4().hex}")
+    temporary_file = path.with_name(f".{uuid4().hex}")
     try:
-        unfinished.write_bytes(sha256(content).digest() + content)
-        os.replace(unfinished, path)
+        temporary_file.write_bytes(sha256(content).digest() + content)
+        os.replace(temporary_file, path)
     except OSError:
-        unfinished.unlink(missing_ok=True)
+        temporary_file.unlink(missing_ok=True)
         raise

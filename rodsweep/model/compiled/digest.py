@@ -52,19 +52,19 @@ def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
     return Kernel(function, repr(sorted((name, _in_fixed_order(value)) for name, value in options.items())))
 
 
-def kernel_digest(kernel: Kernel, parts: TextCache) -> str:
-    """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. parts: cache of the
+def kernel_digest(kernel: Kernel, cache: TextCache) -> str:
+    """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. cache: cache of the
     texts of functions, which is filled.
     """
     texts: dict[FunctionType, str] = {}
-    due = [kernel]
-    while due:
-        function, options = due.pop()
+    pending = [kernel]
+    while pending:
+        function, options = pending.pop()
         if function not in texts:
-            part = parts.get(function) or _text_of_function(function, options)
-            parts[function] = part
-            texts[function] = part.text
-            due += part.called_kernels
+            text_of_function = cache.get(function) or _text_of_function(function, options)
+            cache[function] = text_of_function
+            texts[function] = text_of_function.text
+            pending += text_of_function.called_kernels
     return sha256("\n".join(texts.values()).encode()).hexdigest()
 
 
@@ -76,25 +76,25 @@ def type_text(numba_type: Any) -> str:
     """
     if isinstance(numba_type, types.Callable):
         raise TypeError(f"kernels take no functions as arguments: {numba_type}")
-    inner = numba_type.types if isinstance(numba_type, types.BaseTuple) else ()
+    items = numba_type.types if isinstance(numba_type, types.BaseTuple) else ()
     if hasattr(numba_type, "dtype") and numba_type.dtype is not numba_type:
-        inner = (*inner, numba_type.dtype)
+        items = (*items, numba_type.dtype)
     fields = getattr(numba_type, "fields", "")
-    own = _qualified_name(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
-    return f"{type(numba_type).__name__} {own} {numba_type} {fields} ({', '.join(map(type_text, inner))})"
+    name = _qualified_name(numba_type.instance_class) if isinstance(numba_type, types.BaseNamedTuple) else ""
+    return f"{type(numba_type).__name__} {name} {numba_type} {fields} ({', '.join(map(type_text, items))})"
 
 
 def _text_of_function(function: FunctionType, options: str) -> FunctionText:
     """Name, options, bytecode and global values of a function as text, and the kernels that it calls."""
     lines = [_qualified_name(function), options]
     values = _ValueTextConverter(function)
-    cells = [cell.cell_contents for cell in function.__closure__ or ()]
-    lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cells))
+    cell_contents = [cell.cell_contents for cell in function.__closure__ or ()]
+    lines += map(values.text, (function.__defaults__, function.__kwdefaults__, *cell_contents))
     for code in _code_objects(function.__code__):
         instructions = list(dis.get_instructions(code))
         lines += _code_lines(code, instructions)
-        read = _values_read(function, instructions)
-        lines += [f"{name} = {values.text(value)}" for name, value in read.items()]
+        read_values = _values_read(function, instructions)
+        lines += [f"{name} = {values.text(value)}" for name, value in read_values.items()]
     return FunctionText("\n".join(lines), values.called_kernels)
 
 
@@ -104,19 +104,21 @@ def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]
 
     Raises NameError for a name that is neither a global name nor a builtin.
     """
-    read = {}
-    for here, after in pairwise(instructions):
-        if here.opname in GLOBAL_READ_INSTRUCTIONS and here.argval in function.__globals__:
-            value = function.__globals__[here.argval]
-            if isinstance(value, CompiledSettings) and after.opname == "LOAD_ATTR":
-                read[f"{here.argval}.{after.argval}"] = getattr(value, after.argval)
+    values = {}
+    for instruction, next_instruction in pairwise(instructions):
+        if instruction.opname in GLOBAL_READ_INSTRUCTIONS and instruction.argval in function.__globals__:
+            value = function.__globals__[instruction.argval]
+            if isinstance(value, CompiledSettings) and next_instruction.opname == "LOAD_ATTR":
+                values[f"{instruction.argval}.{next_instruction.argval}"] = getattr(
+                    value, next_instruction.argval
+                )
             else:
-                read[here.argval] = value
-        elif here.opname in GLOBAL_READ_INSTRUCTIONS and not hasattr(builtins, here.argval):
+                values[instruction.argval] = value
+        elif instruction.opname in GLOBAL_READ_INSTRUCTIONS and not hasattr(builtins, instruction.argval):
             raise NameError(
-                f"{_qualified_name(function)} reads {here.argval}, which its module does not define"
+                f"{_qualified_name(function)} reads {instruction.argval}, which its module does not define"
             )
-    return read
+    return values
 
 
 def _code_objects(code: CodeType) -> Iterator[CodeType]:
@@ -137,8 +139,8 @@ def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list
     lines.append(code.co_exceptiontable.hex())
     for instruction in instructions:
         value = instruction.argval
-        shown = value.co_name if isinstance(value, CodeType) else repr(_in_fixed_order(value))
-        lines.append(f"{instruction.opname} {shown}")
+        argument = value.co_name if isinstance(value, CodeType) else repr(_in_fixed_order(value))
+        lines.append(f"{instruction.opname} {argument}")
     return lines
 
 
@@ -153,8 +155,8 @@ class _ValueTextConverter:
     function: the function. called_kernels: kernels found among the converted values.
     """
 
-    def __init__(self, user: FunctionType) -> None:
-        self.function = user
+    def __init__(self, function: FunctionType) -> None:
+        self.function = function
         self.called_kernels: list[Kernel] = []
 
     def text(self, value: Any) -> str:

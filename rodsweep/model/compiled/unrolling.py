@@ -61,22 +61,22 @@ class UnrolledOverAlgebra(Generic[P, R]):
         for argument in definition.args.args:
             argument.annotation = None
         namespace = {"__name__": self.function.__module__}
-        others = set()
+        called_functions = set()
         for name in {part.id for part in ast.walk(definition) if isinstance(part, ast.Name)}:
             value = self.function.__globals__.get(name)
             if isinstance(value, UnrolledOverAlgebra):
-                others.add(name)
+                called_functions.add(name)
                 namespace[name] = value.compiled_for(g)
             elif name in self.function.__globals__:
                 namespace[name] = value
         tree.body = [
             _UnrollingTransformer(
-                {first: g, **ALWAYS_KNOWN_VALUES}, _UnrollingState(set(), others, {}, {})
+                {first: g, **ALWAYS_KNOWN_VALUES}, _UnrollingState(set(), called_functions, {}, {})
             ).visit(definition)
         ]
         exec(compile(ast.fix_missing_locations(tree), self.function.__code__.co_filename, "exec"), namespace)
-        written: Any = namespace[definition.name]
-        return written
+        function: Any = namespace[definition.name]
+        return function
 
 
 class _UnrollingState(NamedTuple):
@@ -98,13 +98,13 @@ class _UnrollingTransformer(ast.NodeVisitor):
     are unrolled.
     """
 
-    def __init__(self, known: Mapping[str, Any], shared: _UnrollingState) -> None:
-        self.known_values = known
-        self.shared_state = shared
+    def __init__(self, known_values: Mapping[str, Any], state: _UnrollingState) -> None:
+        self.known_values = known_values
+        self.shared_state = state
 
     def visit(self, node: ast.AST) -> Any:
-        reads = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
-        if reads and self._has_known_value(node) and isinstance(value := self._evaluate(node), int | float):
+        is_read = isinstance(node, ast.expr) and not isinstance(getattr(node, "ctx", None), ast.Store)
+        if is_read and self._has_known_value(node) and isinstance(value := self._evaluate(node), int | float):
             return ast.copy_location(ast.Constant(value), node)
         return super().visit(node)
 
@@ -118,14 +118,14 @@ class _UnrollingTransformer(ast.NodeVisitor):
     def visit_For(self, node: ast.For) -> Any:
         if not self._has_known_value(node.iter):
             return self.generic_visit(node)
-        leaves = ast.Break | ast.Continue | ast.Return
-        if node.orelse or any(isinstance(part, leaves) for part in ast.walk(node)):
+        jump_statements = ast.Break | ast.Continue | ast.Return
+        if node.orelse or any(isinstance(part, jump_statements) for part in ast.walk(node)):
             raise TypeError(f"line {node.lineno}: an unrolled loop has no break, continue, return or else")
-        turns = [
+        iterations = [
             self._with_loop_variable(node.target, item)._visit_all(node.body)
             for item in self._evaluate(node.iter)
         ]
-        return [statement for turn in turns for statement in turn]
+        return [statement for iteration in iterations for statement in iteration]
 
     def visit_If(self, node: ast.If) -> Any:
         if not self._has_known_value(node.test):
@@ -144,13 +144,13 @@ class _UnrollingTransformer(ast.NodeVisitor):
             return self.generic_visit(node)
         self.shared_state.unrolled_lists.add(target.id)
         loop = value.generators[0]
-        written = []
+        assignments = []
         for index, item in enumerate(self._evaluate(loop.iter)):
             name = ast.copy_location(ast.Name(f"{target.id}_{index}", ast.Store()), target)
-            one = ast.copy_location(ast.Assign([name], value.elt), node)
-            made = self._with_loop_variable(loop.target, item).visit(one)
-            written += made if isinstance(made, list) else [made]
-        return written
+            assignment = ast.copy_location(ast.Assign([name], value.elt), node)
+            copies = self._with_loop_variable(loop.target, item).visit(assignment)
+            assignments += copies if isinstance(copies, list) else [copies]
+        return assignments
 
     def visit_Subscript(self, node: ast.Subscript) -> Any:
         inner = self.visit(node.value)
@@ -159,10 +159,10 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return ast.copy_location(ast.Subscript(inner, self.visit(node.slice), node.ctx), node)
 
     def visit_Call(self, node: ast.Call) -> Any:
-        made = self.generic_visit(node)
-        if isinstance(made.func, ast.Name) and made.func.id in self.shared_state.unrolled_functions:
-            made.args = made.args[1:]
-        return made
+        call = self.generic_visit(node)
+        if isinstance(call.func, ast.Name) and call.func.id in self.shared_state.unrolled_functions:
+            call.args = call.args[1:]
+        return call
 
     def _with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
         """The transformer for the body of one loop iteration, in which the loop variable `target` has the
@@ -173,8 +173,8 @@ class _UnrollingTransformer(ast.NodeVisitor):
         )
 
     def _visit_all(self, parts: Iterable[Any]) -> list[Any]:
-        made = [self._visit_if_node(part) for part in parts]
-        return [part for some in made for part in (some if isinstance(some, list) else [some])]
+        copies = [self._visit_if_node(part) for part in parts]
+        return [part for copy in copies for part in (copy if isinstance(copy, list) else [copy])]
 
     def _visit_if_node(self, part: Any) -> Any:
         return self.visit(part) if isinstance(part, ast.AST) else part
@@ -188,8 +188,8 @@ class _UnrollingTransformer(ast.NodeVisitor):
         """Names in a syntax node and all its children, cached."""
         names = self.shared_state.names_read.get(node)
         if names is None:
-            own = {node.id} if isinstance(node, ast.Name) else ()
-            names = frozenset(own).union(*map(self._names_read_by, ast.iter_child_nodes(node)))
+            own_name = {node.id} if isinstance(node, ast.Name) else ()
+            names = frozenset(own_name).union(*map(self._names_read_by, ast.iter_child_nodes(node)))
             self.shared_state.names_read[node] = names
         return names
 

@@ -132,8 +132,8 @@ class Build:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
         shape.
         """
-        shares = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
-        return np.array(shares).reshape(tapers.shape)
+        forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
+        return np.array(forces).reshape(tapers.shape)
 
     def local_coefficients(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
@@ -176,9 +176,9 @@ class Build:
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_derivatives(
-        self, at: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
+        self, sections: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
-        """Derivatives of the cross-sections `at` at points u, (points,), with respect to a parameter.
+        """Derivatives of the cross-sections `sections` at points u, (points,), with respect to a parameter.
 
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
         parameter, by name; the derivative of a missing name is 0.
@@ -189,14 +189,14 @@ class Build:
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))
         for i, name in enumerate(("k1", "k2", "k3")):
-            own = slopes.get(name, 0.0) / factors[name]
-            compliance[i] = own - at.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
+            derivative = slopes.get(name, 0.0) / factors[name]
+            compliance[i] = derivative - sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
         for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
-            own = slopes.get(name, 0.0) * factors[name]
-            drag[i] = own + at.drag[i] * RADIUS_POWERS.get(name, 0) * growth
-        load = slopes.get("F", 0.0) * at.compliance[0] + F * compliance[0]
+            derivative = slopes.get(name, 0.0) * factors[name]
+            drag[i] = derivative + sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
+        load = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
-        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(at.nu))
+        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
 
 
 DEFAULT_BUILD = Build()

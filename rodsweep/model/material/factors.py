@@ -55,9 +55,10 @@ def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, A
     if isinstance(taper, np.ndarray) or taper != 1:
         radius = 1 - (1 - taper) * u
         square = radius * radius  # a power of NumPy takes as long as ten products
-        powers = {2: square, 4: square * square}
-        for name, power in RADIUS_POWERS.items():
-            factors[name] = factors[name] * powers[power] if profile else powers[power]
+        radius_to_power = {2: square, 4: square * square}
+        for name, exponent in RADIUS_POWERS.items():
+            factor = radius_to_power[exponent]
+            factors[name] = factors[name] * factor if profile else factor
     return factors
 
 
@@ -66,16 +67,17 @@ def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> f
     """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
     the base.
     """
-    power = RADIUS_POWERS.get(name, 0)
+    exponent = RADIUS_POWERS.get(name, 0)
     # The power of the radius of a cone is monotone, so its minimum is at an end.
-    ends = min(1.0, taper**power)
+    ends = min(1.0, taper**exponent)
     if profile is None:
         return ends
     column = FACTOR_NAMES.index(name)
     rows = [
-        (1 - (1 - taper) * u) ** power * row[column] for u, row in zip(profile.u, profile.rows, strict=True)
+        (1 - (1 - taper) * u) ** exponent * row[column]
+        for u, row in zip(profile.u, profile.rows, strict=True)
     ]
-    inside = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
-    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * inside).ravel()
-    between = (1 - (1 - taper) * points) ** power * profile.factors_at(points)[column]
-    return min(*rows, float(between.min()))
+    fractions = (np.arange(FACTOR_SAMPLE_COUNT) + 0.5) / FACTOR_SAMPLE_COUNT
+    points = (profile.breaks[:-1, None] + np.diff(profile.breaks)[:, None] * fractions).ravel()
+    factors = (1 - (1 - taper) * points) ** exponent * profile.factors_at(points)[column]
+    return min(*rows, float(factors.min()))

@@ -66,23 +66,25 @@ def _solve_tangent_system(T: Tangent, N: float, M: float) -> LawUnknowns:
 
 
 @compiled
-def _largest_step_fraction(at: LocalSection, q1: float, step: float) -> float:
+def _largest_step_fraction(material: LocalSection, q1: float, step: float) -> float:
     """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STRETCH_RATIO times h1 before the
     step.
 
-    at, q1: section and unknown before the step. step: change of q1.
+    material, q1: section and unknown before the step. step: change of q1.
     """
-    h = at.nu + at.c1 * q1
-    change = at.c1 * step
+    h = material.nu + material.c1 * q1
+    change = material.c1 * step
     if h + change >= MIN_STRETCH_RATIO * h:
         return 1.0
     return (MIN_STRETCH_RATIO - 1) * h / change
 
 
 @compiled
-def _is_negligible(step: LawUnknowns, at: LawUnknowns) -> bool:
-    """Whether a Newton step is small enough to stop; at: the unknowns after the step."""
-    return abs(step.q1) <= CONVERGED_STEP * abs(at.q1) and abs(step.q3) <= CONVERGED_STEP * abs(at.q3)
+def _is_negligible(step: LawUnknowns, unknowns: LawUnknowns) -> bool:
+    """Whether a Newton step is small enough to stop; unknowns: the unknowns after the step."""
+    return abs(step.q1) <= CONVERGED_STEP * abs(unknowns.q1) and abs(step.q3) <= CONVERGED_STEP * abs(
+        unknowns.q3
+    )
 
 
 @compiled
@@ -94,26 +96,27 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """
     if law == LINEAR_LAW:
         return q
-    one = _section_of_side(sides[0])
-    other = _section_of_side(sides[1])
+    base_side = _section_of_side(sides[0])
+    tip_side = _section_of_side(sides[1])
     # The mean is prescribed, so db = -ratio da.
     ratio1 = sides[0, 3] / sides[1, 3]
     ratio3 = sides[0, 4] / sides[1, 4]
     a = q
     for _ in range(MAX_ITERATIONS):
         b = unknowns_behind_jump(sides, q, a)
-        s = stress_beyond_rest(law, one, a.q1, a.q3)
-        t = stress_beyond_rest(law, other, b.q1, b.q3)
-        S = stress_tangent(law, one, a.q1, a.q3)
-        T = stress_tangent(law, other, b.q1, b.q3)
+        s = stress_beyond_rest(law, base_side, a.q1, a.q3)
+        t = stress_beyond_rest(law, tip_side, b.q1, b.q3)
+        S = stress_tangent(law, base_side, a.q1, a.q3)
+        T = stress_tangent(law, tip_side, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
         J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
         step = _solve_tangent_system(J, t.N - s.N, t.M - s.M)
         # No side may be crushed by a step, since the neo-Hookean stress is infinite at h1 = 0.
-        share = min(
-            _largest_step_fraction(one, a.q1, step.q1), _largest_step_fraction(other, b.q1, -ratio1 * step.q1)
+        fraction = min(
+            _largest_step_fraction(base_side, a.q1, step.q1),
+            _largest_step_fraction(tip_side, b.q1, -ratio1 * step.q1),
         )
-        a = LawUnknowns(a.q1 + share * step.q1, a.q3 + share * step.q3)
+        a = LawUnknowns(a.q1 + fraction * step.q1, a.q3 + fraction * step.q3)
         if _is_negligible(step, a):
             break
     return a
@@ -199,16 +202,20 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
-    moved1 = 0.0
-    moved3 = 0.0
+    q1_derivative = 0.0
+    q3_derivative = 0.0
     for i in range(2):
-        at = _section_of_side(sides[i])
-        x = a if i == 0 else b
-        own = stress_change(law, at, _section_of_side(change[i]), x.q1, x.q3)
+        material = _section_of_side(sides[i])
+        unknowns = a if i == 0 else b
+        stress_derivative = stress_change(
+            law, material, _section_of_side(change[i]), unknowns.q1, unknowns.q3
+        )
         # At fixed stress the unknowns of this side would change by -back. A change of the stress keeps the
         # mean unknowns fixed.
-        back = _solve_tangent_system(stress_tangent(law, at, x.q1, x.q3), own.N, own.M)
-        moved1 += sides[i, 3] * back.q1
-        moved3 += sides[i, 4] * back.q3
-    out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), moved1, moved3)
+        unknowns_derivative = _solve_tangent_system(
+            stress_tangent(law, material, unknowns.q1, unknowns.q3), stress_derivative.N, stress_derivative.M
+        )
+        q1_derivative += sides[i, 3] * unknowns_derivative.q1
+        q3_derivative += sides[i, 4] * unknowns_derivative.q3
+    out = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), q1_derivative, q3_derivative)
     return Stress(out.q1, out.q3)

@@ -132,8 +132,8 @@ def law_of(law: str, section: str) -> Law:
     if (law, section) not in LAWS:
         sections = [s for name, s in LAWS if name == law]
         if not sections:
-            known = " or ".join(dict.fromkeys(name for name, _ in LAWS))
-            raise ValueError(f"law = {law} is not known; it must be {known}")
-        known = " or ".join(sections)
-        raise ValueError(f"section = {section} is not known for law = {law}; it must be {known}")
+            allowed = " or ".join(dict.fromkeys(name for name, _ in LAWS))
+            raise ValueError(f"law = {law} is not known; it must be {allowed}")
+        allowed = " or ".join(sections)
+        raise ValueError(f"section = {section} is not known for law = {law}; it must be {allowed}")
     return LAWS[law, section]

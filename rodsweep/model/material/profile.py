@@ -51,8 +51,8 @@ class Profile:
                 )
         for number, value in enumerate(self.u):
             if self.u.count(value) > (1 if value in (0, 1) else 2):
-                most = "one row" if value in (0, 1) else "two rows (a jump)"
-                raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; allowed: {most}")
+                allowed = "one row" if value in (0, 1) else "two rows (a jump)"
+                raise ValueError(f"there are {self.u.count(value)} rows at u = {value:g}; allowed: {allowed}")
             for name, factor in zip(FACTOR_NAMES, self.rows[number], strict=True):
                 if not 0 < factor < np.inf:
                     raise ValueError(
@@ -74,41 +74,46 @@ class Profile:
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
-        pieces = []
+        coefficients = []
         # A jump splits the profile, so that slopes use one side only.
         for part in np.split(np.arange(len(u)), jumps):
             y = rows[part]
             h = np.diff(u[part])[:, None]
             slopes = _monotone_slopes(u[part], y)
             lower, upper = h * slopes[:-1], h * slopes[1:]
-            from_lower = _powers(y[:-1], y[1:], lower, upper)
-            from_upper = _powers(y[1:], y[:-1], -upper, -lower)
-            pieces.append(np.stack([from_lower, from_upper], axis=1))
-        return np.ascontiguousarray(np.concatenate(pieces, axis=2).transpose(0, 3, 1, 2))
+            from_lower = _cubic_coefficients(y[:-1], y[1:], lower, upper)
+            from_upper = _cubic_coefficients(y[1:], y[:-1], -upper, -lower)
+            coefficients.append(np.stack([from_lower, from_upper], axis=1))
+        return np.ascontiguousarray(np.concatenate(coefficients, axis=2).transpose(0, 3, 1, 2))
 
     def factors_at(self, u: Array) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
         break."""
         breaks = self.breaks
-        piece = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
-        below, above = u - breaks[piece], breaks[piece + 1] - u
+        interval = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
+        from_left, from_right = u - breaks[interval], breaks[interval + 1] - u
         # Powers of the distance from the nearer end keep the digits of a factor that falls to a small part of
         # its value at the other end.
-        end = (above < below).astype(int)
-        t = np.minimum(below, above) / (breaks[piece + 1] - breaks[piece])
-        cubic, square, linear, constant = self._cubic_coefficients[:, :, end, piece]
+        end = (from_right < from_left).astype(int)
+        t = np.minimum(from_left, from_right) / (breaks[interval + 1] - breaks[interval])
+        cubic, square, linear, constant = self._cubic_coefficients[:, :, end, interval]
         factors: Array = ((cubic * t + square) * t + linear) * t + constant
         return factors
 
 
-def _powers(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
+def _cubic_coefficients(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
     """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors).
 
     first, last: values at 0 and at 1. first_slope, last_slope: slopes there. Each is (intervals, factors).
     """
-    rise = last - first
+    increment = last - first
     return np.array(
-        [first_slope + last_slope - 2 * rise, 3 * rise - 2 * first_slope - last_slope, first_slope, first]
+        [
+            first_slope + last_slope - 2 * increment,
+            3 * increment - 2 * first_slope - last_slope,
+            first_slope,
+            first,
+        ]
     )
 
 
@@ -130,16 +135,19 @@ def _monotone_slopes(u: Array, values: Array) -> Array:
         return np.repeat(chords, 2, axis=0)
     w1 = 2 * h[1:] + h[:-1]
     w2 = h[1:] + 2 * h[:-1]
-    same = chords[:-1] * chords[1:] > 0
+    is_monotone = chords[:-1] * chords[1:] > 0
     with np.errstate(divide="ignore", invalid="ignore"):
         # With the weighted harmonic mean the cubics are monotone; at an extremum the slope is 0.
         inner = (w1 + w2) / (w1 / chords[:-1] + w2 / chords[1:])
-    slopes[1:-1] = np.where(same, inner, 0.0)
-    for end, near, next_one in ((0, 0, 1), (-1, -1, -2)):
-        slope = ((2 * h[near] + h[next_one]) * chords[near] - h[near] * chords[next_one]) / (
-            h[near] + h[next_one]
+    slopes[1:-1] = np.where(is_monotone, inner, 0.0)
+    for end, end_interval, next_interval in ((0, 0, 1), (-1, -1, -2)):
+        slope = (
+            (2 * h[end_interval] + h[next_interval]) * chords[end_interval]
+            - h[end_interval] * chords[next_interval]
+        ) / (h[end_interval] + h[next_interval])
+        slope = np.where(slope * chords[end_interval] <= 0, 0.0, slope)
+        changes_sign = chords[end_interval] * chords[next_interval] <= 0
+        slopes[end] = np.where(
+            changes_sign & (np.abs(slope) > 3 * np.abs(chords[end_interval])), 3 * chords[end_interval], slope
         )
-        slope = np.where(slope * chords[near] <= 0, 0.0, slope)
-        turns = chords[near] * chords[next_one] <= 0
-        slopes[end] = np.where(turns & (np.abs(slope) > 3 * np.abs(chords[near])), 3 * chords[near], slope)
     return slopes

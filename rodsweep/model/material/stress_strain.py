@@ -64,46 +64,53 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 
 
 @compiled
-def stress_beyond_rest(law: int, at: LocalSection, q1: float, q3: float) -> Stress:
+def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
     the law.
     """
     if law == LINEAR_LAW:
         return Stress(q1, q3)
-    h = at.nu + at.c1 * q1
+    h = material.nu + material.c1 * q1
     B, B1, _ = _bending_factor(law, h)
-    return Stress(q1 * _neo_hookean_secant(at.nu, h) + B1 * at.c3 * q3 * q3 / 2, B * q3)
+    return Stress(q1 * _neo_hookean_secant(material.nu, h) + B1 * material.c3 * q3 * q3 / 2, B * q3)
 
 
 @compiled
-def stress_tangent(law: int, at: LocalSection, q1: float, q3: float) -> Tangent:
+def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
     the law.
     """
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
-    h = at.nu + at.c1 * q1
+    h = material.nu + material.c1 * q1
     B, B1, B2 = _bending_factor(law, h)
     stiffness = (1 + 2 / h**3) / 3  # W''(h)
     coupling = B1 * q3
-    return Tangent(stiffness + at.c1 * B2 * at.c3 * q3 * q3 / 2, coupling * at.c3, coupling * at.c1, B)
+    return Tangent(
+        stiffness + material.c1 * B2 * material.c3 * q3 * q3 / 2,
+        coupling * material.c3,
+        coupling * material.c1,
+        B,
+    )
 
 
 @compiled
-def stress_change(law: int, at: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
+def stress_change(law: int, material: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
     """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3.
 
-    change: derivatives of the fields of `at` with respect to the parameter. law: number of the law.
+    change: derivatives of the fields of `material` with respect to the parameter. law: number of the law.
     """
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
-    h = at.nu + at.c1 * q1
-    moved = change.nu + change.c1 * q1  # change of h
-    a = 1 / at.nu
+    h = material.nu + material.c1 * q1
+    h_derivative = change.nu + change.c1 * q1  # change of h
+    a = 1 / material.nu
     b = 1 / h
     # Derivatives of the secant [W'(h) - W'(nu)]/(h - nu) with respect to nu and h.
     secant_nu = -a * a * b * (2 * a + b) / 3
     secant_h = -a * b * b * (a + 2 * b) / 3
     _, B1, B2 = _bending_factor(law, h)
-    by_bending = q3 * q3 / 2 * (B2 * moved * at.c3 + B1 * change.c3)
-    return Stress(q1 * (secant_nu * change.nu + secant_h * moved) + by_bending, B1 * moved * q3)
+    bending_part = q3 * q3 / 2 * (B2 * h_derivative * material.c3 + B1 * change.c3)
+    return Stress(
+        q1 * (secant_nu * change.nu + secant_h * h_derivative) + bending_part, B1 * h_derivative * q3
+    )
