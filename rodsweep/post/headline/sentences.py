@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...wording import counted
+from ..branch_curves import RodBranches
 from ..summary.thresholds import later_flutter_changes
 from .one_rod import OneRod
 
@@ -98,8 +99,11 @@ def branch_sentence(rod: OneRod) -> str:
     if not branches:
         return f"no branch of cycles: no Hopf point for {along} from {start:g} to {stop:g}"
     cycles = rod.list_texts["cycles"]
-    begin = counted(rod.count("hopf_count") or 0, "Hopf point")
-    text = f"{counted(branches, 'branch')} of cycles from {begin}"
+    hopfs = rod.count("hopf_count") or 0
+    begin = [counted(hopfs, "Hopf point")] if hopfs else []
+    if any(curve.enters_range for curve in RodBranches(rod.view).curves):
+        begin.append("from beyond the range" if hopfs else "beyond the range")
+    text = f"{counted(branches, 'branch')} of cycles from {' and '.join(begin)}"
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"

@@ -16,8 +16,9 @@ from .diagram_curves import (
     curve_lines,
     incomplete_curve_lines,
 )
+from .followed_ranges import followed_range_text
 from .number_texts import axis_values_text, span_text
-from .stable_states import MISSED_CYCLES_LINE, state_lines
+from .stable_states import state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -44,7 +45,9 @@ def phase_diagram_summary(view: View, done: np.ndarray) -> SummaryLines:
     if "stable_states" in v:
         answer += state_lines(view, done, line, row)
     reliability = search_lines(view, done, "row")
-    reliability += [MISSED_CYCLES_LINE] if "stable_states" in v else []
+    if "stable_states" in v:
+        followed = followed_range_text(view, done, line, "cycle_followed_")
+        reliability.append(f"{followed}, unless a curve of folds or torus points crosses the row there")
     details = [*count_lines(v["class"][done]), *cost_lines(view, done), *cost_saving_lines(view, done, line)]
     if "curve_number" in v:
         answer += curve_lines(view, line, row)
