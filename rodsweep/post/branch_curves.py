@@ -63,6 +63,11 @@ class StoredBranch:
     """Special points of the branch, in order along the branch."""
 
     @property
+    def enters_range(self) -> bool:
+        """Whether the branch begins at an end of the range, to which it leads from beyond."""
+        return self.special[0].kind == "end"
+
+    @property
     def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
         stable_indices = np.flatnonzero(self.stable == 1)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...wording import counted
+from ..branch_curves import RodBranches
 from ..summary.thresholds import later_flutter_changes
 from .one_rod import OneRod
 
@@ -100,8 +101,11 @@ def branch_sentence(rod: OneRod) -> str:
     if not branches:
         return f"no branch of cycles: no Hopf point for {parameter} from {start:g} to {stop:g}"
     cycles = rod.list_texts["cycles"]
-    hopf_text = counted(rod.count("hopf_count") or 0, "Hopf point")
-    text = f"{counted(branches, 'branch')} of cycles from {hopf_text}"
+    hopfs = rod.count("hopf_count") or 0
+    start_texts = [counted(hopfs, "Hopf point")] if hopfs else []
+    if any(curve.enters_range for curve in RodBranches(rod.view).curves):
+        start_texts.append("from beyond the range" if hopfs else "beyond the range")
+    text = f"{counted(branches, 'branch')} of cycles from {' and '.join(start_texts)}"
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"

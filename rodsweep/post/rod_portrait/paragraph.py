@@ -138,11 +138,8 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     ]
     accuracy = results.views["branch"].config["accuracy"]
     number = f"{counted(len(curves), 'branch')} of cycles ({cycles} solved to {accuracy:g})"
-    begins = "begins at a Hopf point" if len(curves) == 1 else "begin at its Hopf points"
-    if breakings := sum(curve.special[0].kind != "hopf" for curve in curves):
-        begins += f" and {counted(breakings, 'symmetry breaking')}"
     end = f"with {' and '.join(texts)}" if texts else "without a fold or another change of stability"
-    yield f"{number} {begins}, {end}."
+    yield f"{number} {_beginnings_phrase(curves)}, {end}."
     yield from _work_limit_sentence(curves, units)
     stable = [stable_range for curve in curves for stable_range in curve.stable_ranges]
     is_decided = all(curve.is_decided for curve in curves)
@@ -156,6 +153,21 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
+
+
+def _beginnings_phrase(curves: Sequence[StoredBranch]) -> str:
+    """Phrase for the places where branches begin, such as "begin at its Hopf points"."""
+    kinds = [curve.special[0].kind for curve in curves]
+    one = len(curves) == 1
+    places = []
+    if "hopf" in kinds:
+        places.append("at a Hopf point" if one else "at its Hopf points")
+    if breakings := kinds.count("symmetry_breaking"):
+        places.append(f"at {counted(breakings, 'symmetry breaking')}")
+    if any(curve.enters_range for curve in curves):
+        places.append("beyond the range")
+    begin = "begins" if one else "begin"
+    return f"{begin} {' and '.join(places)}".replace(" and at ", " and ")
 
 
 def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:

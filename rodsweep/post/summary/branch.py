@@ -11,6 +11,7 @@ from ..branch_curves import RodBranches, StoredBranch, branch_ends, followed_par
 from ..crushing import uncrushed_ranges
 from ..range_unions import ParameterRange
 from .errors import known_range_text
+from .followed_ranges import followed_range_text
 from .number_texts import number_with_error, ranges_text, rounded_text, span_text
 from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
 from .thresholds import unknown_clause
@@ -127,8 +128,11 @@ def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
     last = curve.special[-1]
     start = f"from the Hopf point at {parameter} = {number_with_error(first.at, first.error)}"
     if first.kind == "symmetry_breaking":
-        position = f"{parameter} = {number_with_error(first.at, first.error)}"
-        start = f"without mirror symmetry, from branch {first.meets} at {position}"
+        span = f"{parameter} = {number_with_error(first.at, first.error)}"
+        start = f"without mirror symmetry, from branch {first.meets} at {span}"
+    if curve.enters_range:
+        span = f"{parameter} = {rounded_text(first.at, first.error)}"
+        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {span},"
     end = f"{parameter} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
@@ -158,8 +162,9 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
         word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
     }
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
+    entries = [curve.special[0] for _, _, curve in curves if curve.enters_range]
     for _, number, curve in curves:
-        for special in curve.special:
+        for special in curve.special[curve.enters_range :]:
             kind = special.reason if special.kind == "end" else special.kind
             is_counted = 0 < special.meets < number  # already counted on the other branch at this point
             if kind in points and not is_counted:
@@ -173,6 +178,10 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
         else:
             verb = "ends" if len(located) == 1 else "end"
             yield f"{counted(len(located), 'branch')} {verb} at {BRANCH_END_WORDS[kind]}: {span}"
+    if entries:
+        span = span_text(*np.array([(entry.at, entry.error) for entry in entries]).T)
+        verb = "enters" if len(entries) == 1 else "enter"
+        yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter} = {span}"
     stopped = [
         f"{point_text(rod.view, rod.index)}: branch {number}, at {parameter} = "
         f"{rounded_text(end.at, end.error)}"
@@ -236,5 +245,5 @@ def _searched_range_line(view: View, computed: np.ndarray) -> str:
     proved = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
     return (
         f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
-        f"{proof_clause(view)} for {proved}; cycles that lie on no branch from a Hopf point are not found"
+        f"{proof_clause(view)} for {proved}; " + followed_range_text(view, computed, parameter, "followed_")
     )

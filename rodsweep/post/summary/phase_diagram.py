@@ -10,9 +10,15 @@ from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import flag_number
 from ...wording import count_of_total, counted
 from .arm.arm import load_range_text
-from .diagram_curves import criticality_lines, curve_count_lines, curve_lines, incomplete_curve_lines
+from .diagram_curves import (
+    criticality_lines,
+    curve_count_lines,
+    curve_lines,
+    incomplete_curve_lines,
+)
+from .followed_ranges import followed_range_text
 from .number_texts import axis_values_text, span_text
-from .stable_states import MISSED_CYCLES_LINE, state_lines
+from .stable_states import state_lines
 from .summary_lines import SummaryLines
 from .thresholds import cost_lines, search_lines
 
@@ -39,7 +45,9 @@ def phase_diagram_summary(view: View, computed: np.ndarray) -> SummaryLines:
     if "stable_states" in v:
         answer += state_lines(view, computed, line, row)
     reliability = search_lines(view, computed, "row")
-    reliability += [MISSED_CYCLES_LINE] if "stable_states" in v else []
+    if "stable_states" in v:
+        followed = followed_range_text(view, computed, line, "cycle_followed_")
+        reliability.append(f"{followed}, unless a curve of folds or torus points crosses the row there")
     details = [
         *count_lines(v["class"][computed]),
         *cost_lines(view, computed),

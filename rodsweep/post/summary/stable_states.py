@@ -28,14 +28,6 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
-MISSED_CYCLES_LINE = (
-    "cycles on branches that no Hopf point of the row leads to are found only where a curve of folds or "
-    "torus points crosses the row; those of a branch that leaves the range and turns back beyond it are not "
-    "found"
-)
-"""Line on the completeness of the stable states."""
-
-
 def state_lines(view: View, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter

@@ -109,9 +109,7 @@ def layout(config: dict[str, Any]) -> Layout:
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:
     """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of cycles.
-
-    line: parameter along the row.
-    """
+    line: parameter along the row."""
     unit = PARAMETERS[line].unit
     place_clause = "at the special point"
     error = "estimate of the relative error of cycle_special_"

@@ -37,16 +37,14 @@ class BranchPoint:
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
-        sizes = np.abs(cycle.multipliers)
-        beyond = sizes - 1
-        undecided = bool((np.abs(beyond) <= _multiplier_modulus_error(point)).any())
+        least, most = unstable_count_bounds(point)
         return cls(
             at=getattr(point.orbit.form.rod, point.scale.parameter_name),
             at_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
             multiplier=cycle.largest_multiplier,
-            unstable_count=-1 if undecided else int((beyond > 0).sum()),
+            unstable_count=least if least == most else -1,
         )
 
     @property
@@ -54,6 +52,14 @@ class BranchPoint:
         """Lower bound on the number of nontrivial multipliers outside the unit circle: 0 if the cycle is
         stable, -1 if its stability is unknown."""
         return min_unstable_count(self.unstable_count, self.multiplier, self.errors.multiplier_error)
+
+
+def unstable_count_bounds(point: BranchCycle) -> tuple[int, int]:
+    """Smallest and largest possible number of nontrivial multipliers outside the unit circle, within their
+    errors."""
+    beyond = np.abs(point.cycle.multipliers) - 1
+    error = _multiplier_modulus_error(point)
+    return int((beyond > error).sum()), int((beyond >= -error).sum())
 
 
 def _multiplier_modulus_error(point: BranchCycle) -> float:

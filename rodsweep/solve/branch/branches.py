@@ -109,11 +109,7 @@ def _solve_branches_or_raise(
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, found, keeps_omega, unit)
-    low_reason, high_reason = (
-        BranchEndReason.crushed if end else BranchEndReason.range_end
-        for end in (low > request.start, high < request.stop)
-    )
-    reasons = (low_reason, high_reason)
+    reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
@@ -133,6 +129,11 @@ def _solve_branches_or_raise(
         curves=tuple(search.curves),
         followed_range=search.followed_range,
     )
+
+
+def _end_reason(is_crushed: bool) -> BranchEndReason:
+    """Reason for the end of a branch at an end of the range, at which the force crushes the rod or not."""
+    return BranchEndReason.crushed if is_crushed else BranchEndReason.range_end
 
 
 def _hopf_branch_starts(

@@ -22,7 +22,7 @@ from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
 from .arc_length_step import BranchCycle
 from .branch_continuation import follow_from_cycle, index_of_passed_range_end
-from .branch_curve import BranchCurve, BranchPoint, RangePassage
+from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
@@ -86,7 +86,8 @@ class RegionBeyond:
     def entry_after(self, passage: RangePassage) -> RangePassage | None:
         """The place where a branch that leaves the range at `passage` enters the range again; None if the
         branch ends before, leaves the region at its other end, or is not followed further."""
-        if not _may_return_stable(passage.cycle, passage.accuracy):
+        least, most = unstable_count_bounds(passage.cycle)
+        if not least <= 1 <= most:
             return None
         with solve_part(f"a branch beyond {self.path.text_at(self.range_end)}"), self._limited_work():
             return self._entry(BranchCurve(start_hopf=-1), passage.cycle, passage.accuracy)
@@ -107,13 +108,17 @@ class RegionBeyond:
         """The place where the branch from the Hopf point `hopf` with the index `number` enters the range;
         None as in `entry_after`."""
         accuracy = accuracy_beside_hopf_points([hopf], self.limits.accuracy)
+        moves_away = hopf.direction == (-1 if self.index == 0 else 1)
+        # The straight rod loses stability by pairs: without the multiplier that is 1 at the Hopf point, which
+        # lies outside the unit circle where Re c > 0, the number of unstable multipliers is even.
+        if moves_away and hopf.coefficients.landau.real < 0:
+            return None
         try:
             first = first_cycle(hopf, accuracy, self.limits.workspace)
         except FAILURES:
             self.stop_at(hopf.parameter_coordinate)
             return None
-        towards_range = hopf.direction if self.index == 0 else -hopf.direction
-        if towards_range < 0 and not _may_return_stable(first, accuracy):
+        if moves_away and unstable_count_bounds(first)[0] > 1:
             return None
         if index_of_passed_range_end(first, self.limits.coordinate_range) != 1 - self.index:
             return self._entry(BranchCurve(start_hopf=number), first, accuracy)
@@ -180,12 +185,6 @@ class RegionBeyond:
         if not isnan(found.open_range[0]):
             gap = [self.path.coordinate(value) for value in found.open_range]
             self.stop_at(min(gap) if self.index == 1 else max(gap))
-
-
-def _may_return_stable(cycle: BranchCycle, accuracy: float) -> bool:
-    """Whether the cycles of a branch are stable after a fold beyond `cycle`, as far as multipliers tell.
-    accuracy: relative accuracy of the branch."""
-    return BranchPoint.from_cycle(cycle, accuracy).unstable_count in (1, -1)
 
 
 def regions_beyond(path: Path, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
