@@ -48,17 +48,17 @@ def searches_cost(lines: int, certify: bool, of_arms: bool) -> CostEstimate:
     return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if of_arms else uniform))
 
 
-def soft_searches_seconds(points: Points, reach: tuple[float, float], of_arms: bool) -> float:
+def soft_searches_seconds(points: Points, F_max: float, of_arms: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
-    eigenvalue and crossings become many where F^2/k2 is large. reach: smallest and largest force. of_arms:
-    whether any arm is not uniform."""
+    eigenvalue and crossings become many where F^2/k2 is large. F_max: largest force. of_arms: whether any arm
+    is not uniform."""
     indices = sampled_points(points)
     if not indices.size:
         return 0.0
     values = points.values_of(indices)
     weakest = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
     with np.errstate(over="ignore"):
-        F = np.maximum(np.minimum(reach[1], values["k1"]), -reach[0])
+        F = np.maximum(np.minimum(F_max, values["k1"]), 0.0)
         exchanges = F**2 / (np.asarray(values["k2"]) * weakest)
         each = SOFT_ARM_SEARCH_MS * exchanges**2 if of_arms else SOFT_SEARCH_MS * exchanges
         return float(min(points.count * 1e-3 * float(np.mean(each)), sys.float_info.max / 4))
@@ -69,7 +69,7 @@ def thresholds_cost(points: Points, F_max: float, certify: bool, of_arms: bool) 
     whether each list is certified. of_arms: whether any arm is not uniform.
     """
     lines = searches_cost(points.count, certify, of_arms)
-    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, (0.0, F_max), of_arms))
+    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, F_max, of_arms))
 
 
 def diagram_cost(rows: int, certify: bool, of_arms: bool, curves: bool, criticality: bool) -> CostEstimate:

@@ -44,7 +44,7 @@ class CriticalityTask(HopfPointTask):
     def cost(self) -> CostEstimate:
         of_arms = not self.config.is_uniform_and_linear
         found = criticality_cost(self.points.count, self.config.criticality.certify, of_arms)
-        more = soft_searches_seconds(self.points, (0.0, self.config.criticality.F_max), of_arms)
+        more = soft_searches_seconds(self.points, self.config.criticality.F_max, of_arms)
         return replace(found, seconds=found.seconds + more)
 
     def solver(self) -> Solver:
