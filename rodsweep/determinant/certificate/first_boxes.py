@@ -6,6 +6,7 @@ changes much over an interval.
 """
 
 import math
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +61,7 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
 
-    None if no a-priori bound exists, or if the lower bound of eta underflows.
+    None if no a-priori bound exists, or if the lower bound of eta underflows, or almost.
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):
@@ -70,7 +71,7 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
         if not math.isfinite(top):
             return None
         low = zero_free_radius(path, a, b, top)
-        if low == 0.0:
+        if low * sys.float_info.max <= top:  # `low` is 0 or so small that top/low overflows
             return None
         count = max(1, math.ceil(math.log(top / low) / math.log(COVERING_SETTINGS.max_eta_ratio)))
         edges = np.geomspace(low, top, count + 1)
