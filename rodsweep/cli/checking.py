@@ -15,7 +15,7 @@ from ..model.arm.neglected import wall_flattening_effect
 from ..post.summary import print_lines
 from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
 from ..post.summary.number_texts import span_text
-from ..sweep.cost_estimate import MAX_SAMPLED_POINTS
+from ..sweep.cost_estimate import MAX_SAMPLED_POINTS, with_loading_time
 from ..sweep.points.points import Points
 from ..tasks.arm.point_solver import NoRodStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
@@ -37,6 +37,8 @@ def print_job_check(job: Job) -> None:
         table.add_row(quantity, "yes" if is_modelled else "no", reason)
     console.print(table)
     cost = job.task.cost()
+    if not job.config.is_uniform_and_linear:
+        cost = with_loading_time(cost)
     if cost.unknowns is not None:
         low, high = cost.unknowns
         console.print(f"expected unknowns of the mesh per point: {low} to {high}, for the requested accuracy")

@@ -48,17 +48,17 @@ def searches_cost(lines: int, certify: bool, is_varying: bool) -> CostEstimate:
     return CostEstimate(lines * 1e-3 * (ARM_SEARCH_MS if is_varying else uniform))
 
 
-def soft_searches_seconds(points: Points, force_range: tuple[float, float], is_varying: bool) -> float:
+def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
-    eigenvalue and crossings become many where F^2/k2 is large. force_range: smallest and largest force.
-    is_varying: whether any arm is not uniform."""
+    eigenvalue and crossings become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm
+    is not uniform."""
     indices = sampled_points(points)
     if not indices.size:
         return 0.0
     values = points.values_of(indices)
     min_area = np.minimum(np.asarray(values.get("taper", 1.0)), 1.0) ** 2
     with np.errstate(over="ignore"):
-        F = np.maximum(np.minimum(force_range[1], values["k1"]), -force_range[0])
+        F = np.maximum(np.minimum(F_max, values["k1"]), 0.0)
         exchanges = F**2 / (np.asarray(values["k2"]) * min_area)
         rod_ms = SOFT_ARM_SEARCH_MS * exchanges**2 if is_varying else SOFT_SEARCH_MS * exchanges
         return float(min(points.count * 1e-3 * float(np.mean(rod_ms)), sys.float_info.max / 4))
@@ -69,7 +69,7 @@ def thresholds_cost(points: Points, F_max: float, certify: bool, is_varying: boo
     whether each list is certified. is_varying: whether any arm is not uniform.
     """
     lines = searches_cost(points.count, certify, is_varying)
-    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, (0.0, F_max), is_varying))
+    return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, F_max, is_varying))
 
 
 def diagram_cost(rows: int, certify: bool, is_varying: bool, curves: bool, criticality: bool) -> CostEstimate:

@@ -44,7 +44,7 @@ class CriticalityTask(HopfPointTask):
     def cost(self) -> CostEstimate:
         is_varying = not self.config.is_uniform_and_linear
         search_estimate = criticality_cost(self.points.count, self.config.criticality.certify, is_varying)
-        soft_seconds = soft_searches_seconds(self.points, (0.0, self.config.criticality.F_max), is_varying)
+        soft_seconds = soft_searches_seconds(self.points, self.config.criticality.F_max, is_varying)
         return replace(search_estimate, seconds=search_estimate.seconds + soft_seconds)
 
     def solver(self) -> Solver:

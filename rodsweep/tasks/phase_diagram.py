@@ -10,7 +10,8 @@ from ..config.task.phase_diagram import PhaseDiagramConfig
 from ..model.rod import Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
-from ..sweep.cost_estimate import CostEstimate
+from ..sweep.cost_estimate import CostEstimate, sampled_points
+from ..sweep.pulled_row_cost import MAX_SAMPLED_ROWS, pulled_rows_seconds
 from ..sweep.search_cost import diagram_cost, soft_searches_seconds
 from .base_classes import CertifiedTask
 from .diagram.curve_variables import cycles_record
@@ -101,15 +102,24 @@ class PhaseDiagramTask(CertifiedTask):
         lines = diagram_cost(self.points.count, *requested)
         line_range = (float(self.line_values[0]), float(self.line_values[-1]))
         if self.config.plane_parameters[0] == "F":
-            lines = replace(
-                lines, seconds=lines.seconds + soft_searches_seconds(self.points, line_range, is_varying)
-            )
+            lines = self._with_soft_and_pulled_rows(lines, is_varying)
         if not options.cycles:
             return lines
         branches = branches_cost(
             self.points, self.config.plane_parameters[0], line_range, options.cycle_accuracy
         )
-        return replace(branches, seconds=lines.seconds + branches.seconds)
+        return replace(
+            branches, seconds=lines.seconds + branches.seconds, doubt=branches.doubt or lines.doubt
+        )
+
+    def _with_soft_and_pulled_rows(self, lines: CostEstimate, is_varying: bool) -> CostEstimate:
+        """The cost `lines` of rows along F with the further time of soft and of pulled rows. is_varying: whether
+        any arm is not uniform."""
+        soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
+        rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
+        rods = [self.rod_of_row(int(row)) for row in rows]
+        pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
+        return replace(lines, seconds=lines.seconds + soft + pulled, doubt=doubt)
 
     def solver(self) -> Solver:
         from ..solve.changes.diagram.rows import solve_row

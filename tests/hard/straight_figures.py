@@ -580,6 +580,9 @@ def _curves(d, axes, view, line, row, rods, states):
     for note in d.take(axes, Annotation):
         found.append((plain(note.get_text()), _at_named(plain(note.get_text()), rods(*note.xy))))
         read(d.page, r"^F\*\*? = NUMBER$")
+    stored, count = int((v["crossing_kind"] > 0).sum()), int(v["crossing_count"].clip(min=0).sum())
+    for text, match in read(d.page, r"curves through NUMBER of NUMBER crossings of the rows: raise"):
+        found.append((text, "" if (int(match[1]), int(match[2])) == (stored, count) else f"{stored} {count}"))
     if "curve_number" not in v:
         return found
     thin = d.lines(axes, lambda one: one.get_marker() in ("None", "") and colour_of(one) == "#000000")

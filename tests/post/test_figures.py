@@ -11,7 +11,7 @@ from conftest import ROOT
 from matplotlib.colors import to_hex
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
-from matplotlib.text import Text
+from matplotlib.text import Annotation, Text
 from PIL import Image
 from shown import HOPF, STABLE_AGAIN
 
@@ -844,3 +844,26 @@ def test_figures_of_an_arm_name_its_quantities_above_its_parameters(task, varied
     title = figure.get_suptitle().replace("\N{NO-BREAK SPACE}", " ").replace("\n", " ")
     assert title.startswith("length 14 cm, radius 4 mm, Young's modulus 100 kPa, viscosity 10 Pa s")
     assert ("force 40 mN" in title) == (varied.get("force") == "40 mN")
+
+
+CROWDED_DIAGRAM = """task: phase_diagram
+parameters: {F: {start: 0, stop: 3000, num: 4}, k1: [6.0e3, 3.0e4], k2: 1.0e4, gamma3: 1.0e-4}
+phase_diagram: {crossings: CROSSINGS}
+"""
+
+
+@pytest.mark.parametrize(
+    ("crossings", "said"), [(6, "curves through 12 of 18 crossings of the rows"), (16, "")]
+)
+def test_symbols_of_close_curves_stand_apart_and_missing_curves_are_said(
+    command, monkeypatch, crossings, said
+):
+    """F* = 20 and F** = 38 are one place on an axis up to 3000."""
+    figure, _ = drawn_of(command, monkeypatch, CROWDED_DIAGRAM.replace("CROSSINGS", str(crossings)))
+    figure.draw_without_rendering()
+    (panel,) = figure.axes
+    labels = [child for child in panel.get_children() if isinstance(child, Annotation)]
+    one, two = (label.get_window_extent() for label in labels)
+    assert not one.overlaps(two)
+    assert ("crossings" in figure.get_suptitle()) == bool(said)
+    assert said in figure.get_suptitle()

@@ -1,11 +1,14 @@
 """Estimated costs are finite for every allowed force, and close to the times of soft and pulled rods."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
+from rodsweep.cli.checking import print_job_check
+from rodsweep.tasks.running.job import job_of_file
 
 
 @pytest.mark.parametrize("F_max", [200.0, 1e150, 1e300])
@@ -33,13 +36,36 @@ def test_cost_of_thresholds_is_finite_without_a_warning(F_max):
         ("criticality", {"k2": [0.1, 1], "F_max": 45}, 0.65),
         ("phase_diagram", {"F": [0, 20, 40], "k1": [1e3, 1e4], "k2": 0.1}, 0.85),
         ("phase_diagram", {"F": [-1e4, 0, 100], "k1": [3e4, 1e5], "k2": 1e4}, 0.88),
+        ("phase_diagram", {"F": [-1e6, 0, 100], "k1": [3e6, 1e7], "k2": 1e4}, 0.06),
+        ("phase_diagram", {"F": [-1e5, 0, 100], "k1": [3e6, 1e7], "k2": 1e6}, 0.45),
+        ("phase_diagram", {"F": [-1e3, 0, 100], "k1": [2e3, 1e4], "k2": 1e4, "taper": 0.5}, 4.2),
+        ("phase_diagram", {"F": [-500, 0, 100], "k1": [2e3, 1e4], "k2": 100}, 0.5),
+        ("modes", {"F": [10, 60], "k1": [1e2, 1e3, 1e4], "k2": [30, 1e4], "modes": 12}, 0.65),
+        ("modes", {"F": [10, 60], "k1": [1e2, 1e3, 1e4], "k2": [30, 1e4], "modes": 2, "growth": True}, 0.75),
         ("limit_cycle", {"F": -1e4, "k2": 1e4}, 6.5),
         ("limit_cycle", {"F": -100, "k2": 1e4}, 0.1),
         ("limit_cycle", {"F": [30, 40, 60], "k2": 100, "gamma3": 1e-2, "method": "integration"}, 5.2),
     ],
 )
 def test_costs_of_soft_and_pulled_rods_have_the_size_of_the_measured_times(task, keywords, measured):
-    """Within a factor of four; some were estimated at a thousandth of the time."""
+    """Within a factor of four; some were estimated at a thousandth or a hundred thousand times the time."""
     given = {"k1": 1e4, "gamma3": 1e-4} | keywords
     cost = job_of_tree(config_tree(task, given)).task.cost()
     assert measured / 4 < cost.seconds < 4 * measured
+
+
+@pytest.mark.parametrize(("k2", "doubtful"), [(1e4, True), (1e6, False)])
+def test_the_cost_of_rows_pulled_beyond_the_shear_stiffness_is_said_to_be_uncertain(k2, doubtful):
+    keywords = {"F": [-2e4, 0.0, 100.0], "k1": [3e5, 1e6], "k2": k2, "gamma3": 1e-4}
+    doubt = job_of_tree(config_tree("phase_diagram", keywords)).task.cost().doubt
+    assert doubt == ("rows that begin at a pull beyond the shear stiffness" if doubtful else "")
+
+
+@pytest.mark.parametrize(("taper", "seconds"), [(0.5, (0.15, 1.0)), (1.0, (0.0, 0.02))])
+def test_check_adds_the_time_to_load_what_solves_arms(taper, seconds, tmp_path, capsys):
+    """30 spectra of cones took 0.25 to 1.1 s on their first stretch, and were estimated at 0.014 s."""
+    parameters = f"F: {{start: 0, stop: 30, num: 30}}, k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4, taper: {taper}"
+    (tmp_path / "a.yaml").write_text(f"task: spectrum\nparameters: {{{parameters}}}\n")
+    print_job_check(job_of_file(tmp_path / "a.yaml", ()))
+    expected = float(re.search(r"expected cost: (\S+) s", capsys.readouterr().out)[1])
+    assert seconds[0] < expected < seconds[1]

@@ -6,6 +6,7 @@ changes much over an interval.
 """
 
 import math
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,7 +61,7 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
 def first_boxes(path: Path, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
 
-    None if no a-priori bound exists, or if the lower bound of eta underflows.
+    None if no a-priori bound exists, or if the lower bound of eta underflows, or almost.
     """
     boxes = []
     for a, b in path_intervals(path, start, stop):
@@ -70,7 +71,7 @@ def first_boxes(path: Path, start: float, stop: float) -> Array | None:
         if not math.isfinite(top):
             return None
         min_eta = zero_free_radius(path, a, b, top)
-        if min_eta == 0.0:
+        if min_eta * sys.float_info.max <= top:  # `min_eta` is 0 or so small that top/min_eta overflows
             return None
         count = max(1, math.ceil(math.log(top / min_eta) / math.log(COVERING_SETTINGS.max_eta_ratio)))
         edges = np.geomspace(min_eta, top, count + 1)

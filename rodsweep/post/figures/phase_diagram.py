@@ -24,7 +24,12 @@ from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT
 from .stability.class_colours import CLASS_PALETTE, STATE_PALETTE, Palette
-from .stability.diagram_curves import draw_boundary_curves, draw_cycle_curves, mark_cycles_on_rows
+from .stability.diagram_curves import (
+    draw_boundary_curves,
+    draw_cycle_curves,
+    mark_cycles_on_rows,
+    stored_crossings_text,
+)
 from .stability.regions import PIXEL_COUNT, ClassifiedPoints, DrawnPlane, pixel_classes
 from .stability.row_classes import classes_between_crossings, pixel_classes_of_row
 
@@ -82,9 +87,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *crushing_line]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    figure.suptitle(
-        style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
-    )
+    constants = constant_quantities_text(view), _constant_parameters_text(view, line, row)
+    figure.suptitle(style.heading_text(view, *constants, stored_crossings_text(view)))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite = left_out_clause(view.parameter_values, [row])

@@ -267,3 +267,12 @@ def test_a_row_from_a_pull_that_cannot_be_searched_begins_at_a_smaller_pull(k, v
     assert (row.rod_class == RodClass.undecided).tolist() == [n < undecided for n in range(len(values))]
     assert row.rod_class[undecided] == RodClass.monotone
     assert row.rod_class[-1] == RodClass.flutter
+
+
+def test_a_pull_whose_bound_almost_underflows_is_no_failure():
+    """The radius without eigenvalues about 0 is so small that the ratio of both bounds overflows."""
+    rod = Rod(F=0.0, k1=1e7, k2=1e6, gamma3=1e-4)
+    row = solve_row(rod, RowRequest("F", np.array([-9e5, 0.0, 100.0]), 1e-8, True, 9))
+    assert row.status == ThresholdStatus.ended_early
+    assert row.message.startswith("the search begins at F = 0: from F = -900000 on, no a-priori bound")
+    assert (row.rod_class[1:] != RodClass.undecided).all()

@@ -12,6 +12,7 @@ from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
 from ..style import number_in_tex as number_text
+from .curve_labels import label_longest_curve, lowest_parts
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
@@ -36,10 +37,6 @@ CURVE_TOLERANCE = 1e-3
 number."""
 CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
-CHORD_ROUNDING = 1e-6
-"""Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
-LABEL_FONTSIZE = 8
-"""Font size of a curve's symbol, in points."""
 DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
@@ -63,10 +60,10 @@ def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, hopf_only:
             named = boundaries_to_name(view, number, line, row)
             paths = [np.column_stack([v[f"curve_{n}"][curve] for n in (line, row)]) for curve in named]
             if paths and "F" in (line, row):
-                paths = _lowest_parts(paths, 0 if line == "F" else 1)
+                paths = lowest_parts(paths, 0 if line == "F" else 1)
             name, position = CURVE_SYMBOLS[number]
             if paths:
-                _label_longest_curve(axes, paths, name + constant_force_text(view, line, row), position)
+                label_longest_curve(axes, paths, name + constant_force_text(view, line, row), position)
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line, row)
 
 
@@ -213,38 +210,11 @@ def parts_of_equal_criticality(view: View, curve: int, line: str, row: str) -> l
     return [(int(signs[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
 
 
-def _lowest_parts(paths: list[Array], force: int) -> list[Array]:
-    """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
-    column with F."""
-    starts, ends = (
-        np.concatenate([path[part] for path in paths]) for part in (slice(None, -1), slice(1, None))
-    )
-    y0 = starts[:, 1 - force]
-    y1 = ends[:, 1 - force]
-    lowest = []
-    for path in paths:
-        y = path[:, 1 - force, None]
-        fraction = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
-        crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        forces = np.where(crosses, starts[:, force] + fraction * (ends[:, force] - starts[:, force]), np.inf)
-        lowest.append(path[path[:, force] <= forces.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
-    return lowest
-
-
-def _label_longest_curve(axes: Axes, paths: list[Array], name: str, fraction: float) -> None:
-    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `fraction`
-    of this length. paths: curves, (points, 2) each."""
-    lengths = []
-    parts = []
-    for path in paths:
-        pixels = axes.transAxes.inverted().transform(axes.transData.transform(path))
-        is_inside = ((pixels >= 0) & (pixels <= 1)).all(axis=1)
-        parts.append(path[is_inside])
-        steps = np.linalg.norm(np.diff(pixels[is_inside], axis=0), axis=1)
-        lengths.append(np.append(0.0, np.cumsum(steps)) if is_inside.any() else np.zeros(1))
-    longest = max(range(len(paths)), key=lambda i: lengths[i][-1])
-    if lengths[longest][-1] > 0:
-        k = int(np.searchsorted(lengths[longest], fraction * lengths[longest][-1]))
-        axes.annotate(
-            name, parts[longest][k], xytext=(4, -2), textcoords="offset points", size=LABEL_FONTSIZE, va="top"
-        )
+def stored_crossings_text(view: View) -> str:
+    """Text above a figure whose curves pass only through some of the crossings of the rows, because the file
+    has no room for all; else empty. Curves of crossings that are not stored_counts are missing."""
+    crossing_counts = view.variables["crossing_count"].clip(min=0)
+    stored_counts = (view.variables["crossing_kind"] > 0).sum(axis=-1)
+    if "curve_number" not in view.variables or not (crossing_counts > stored_counts).any():
+        return ""
+    return f"curves through {int(stored_counts.sum())} of {int(crossing_counts.sum())} crossings of the rows: raise crossings"

@@ -1,0 +1,68 @@
+"""Symbols of the curves of a phase diagram: on which part of which curve they stand."""
+
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.text import Annotation
+
+from ....arrays import Array
+
+CHORD_ROUNDING = 1e-6
+"""Relative tolerance for the rounding error of the position of a vertex on a chord of its curve."""
+LABEL_FONTSIZE = 8
+"""Font size of a curve's symbol, in points."""
+OTHER_LABEL_POSITIONS = (0.5, 0.3, 0.7, 0.9)
+"""Fractions of the visible length at which a symbol is placed if it would overlap another symbol at its own
+position, in order of preference."""
+LABEL_MARGIN = 1.5
+"""Factor by which the boxes of two symbols are enlarged before they are compared."""
+
+
+def lowest_parts(paths: list[Array], force: int) -> list[Array]:
+    """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
+    column with F."""
+    starts, ends = (
+        np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
+    )
+    y0 = starts[:, 1 - force]
+    y1 = ends[:, 1 - force]
+    parts = []
+    for path in paths:
+        y = path[:, 1 - force, None]
+        share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
+        crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
+        at = np.where(crosses, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
+        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
+    return parts
+
+
+def label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float) -> None:
+    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
+    this length. paths: curves, (points, 2) each."""
+    lengths = []
+    seen = []
+    for path in paths:
+        places = axes.transAxes.inverted().transform(axes.transData.transform(path))
+        inside = ((places >= 0) & (places <= 1)).all(axis=1)
+        steps = np.linalg.norm(np.diff(places[inside], axis=0), axis=1)
+        seen.append(path[inside])
+        lengths.append(np.append(0.0, np.cumsum(steps)) if inside.any() else np.zeros(1))
+    longest = max(range(len(paths)), key=lambda i: lengths[i][-1])
+    if not lengths[longest][-1] > 0:
+        return
+    others = [child for child in axes.get_children() if isinstance(child, Annotation)]
+    for fraction in (share, *OTHER_LABEL_POSITIONS):
+        at = int(np.searchsorted(lengths[longest], fraction * lengths[longest][-1]))
+        place: dict[str, Any] = {"xytext": (4, -2), "textcoords": "offset points"}
+        label = axes.annotate(name, seen[longest][at], size=LABEL_FONTSIZE, va="top", **place)
+        if not any(_overlap(label, other) for other in others):
+            return
+        label.remove()
+    axes.annotate(name, seen[longest][0], size=LABEL_FONTSIZE, va="top", **place)
+
+
+def _overlap(label: Annotation, other: Annotation) -> bool:
+    """Whether two labels overlap, with a margin of half of their size, because panels shrink later."""
+    one, two = (each.get_window_extent().expanded(LABEL_MARGIN, LABEL_MARGIN) for each in (label, other))
+    return bool(one.overlaps(two))

@@ -1,0 +1,82 @@
+"""Estimated time of rows of a phase diagram along F that begin at a pull, F < 0."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..arrays import Array
+from ..determinant.certificate.first_boxes import first_boxes
+from ..determinant.parameter_path import Path
+from ..model.dispersion import sampled_arm
+from ..model.rod import Rod
+from .search_cost import SOFT_SEARCH_MS
+
+MAX_SAMPLED_ROWS = 20
+"""Largest number of rows whose boxes are computed for an estimate; each takes up to 20 ms."""
+COVERING_MS_PER_BOX = 0.11
+"""Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
+in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
+BEYOND_SHEAR_MS = 100.0
+"""Further time to search one uniform rod that begins at a pull beyond its shear stiffness, in ms: 110 for six
+rods with k2 = 100."""
+ARM_MS_PER_PULL = 0.6
+"""Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
+0.7 for a cone under pulls of 100 and 1000."""
+MAX_ATTEMPT_SECONDS = 30.0
+"""Largest time of a search that no mesh resolves, in s: 0.07 to 30 s were measured for six arms and rods."""
+DOUBTFUL_PULLS = "rows that begin at a pull beyond the shear stiffness"
+"""Kind of rows whose time is not estimated reliably: of fourteen rods under pulls F < -k2 nu some took ten
+times as long as a rod under half or twice the pull."""
+
+
+def pulled_rows_seconds(rods: Sequence[Rod], values: Array, count: int) -> tuple[float, str]:
+    """Returns (time in s to search all rows below F = 0, doubt). doubt: kind of rows whose time may be many
+    times as long; empty if there are none.
+
+    rods: rods of evenly spaced rows, with any F. values: increasing forces along a row, (n,). count: number
+    of rows.
+    """
+    pulls = values[values < 0]
+    if not pulls.size or not rods:
+        return 0.0, ""
+    starts = [_first_searchable_pull(rod, pulls) for rod in rods]
+    each = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
+    beyond = any(_least_coupling(rod, start) < 0 for rod, start in zip(rods, starts, strict=True))
+    return count * float(np.mean(each)), DOUBTFUL_PULLS if beyond else ""
+
+
+def _first_searchable_pull(rod: Rod, pulls: Array) -> float:
+    """First of the increasing `pulls` from which a row of uniform rods can be searched; 0 if there is none,
+    and the first pull for arms that are not uniform, whose searchable pulls are not known in advance."""
+    if not rod.is_uniform_and_linear:
+        return float(pulls[0])
+    low = 0
+    high = len(pulls)
+    while low < high:  # the search itself bisects too
+        middle = (low + high) // 2
+        if _boxes(rod, float(pulls[middle])) is None:
+            low = middle + 1
+        else:
+            high = middle
+    return float(pulls[low]) if low < len(pulls) else 0.0
+
+
+def _row_seconds(rod: Rod, start: float) -> float:
+    """Time to search one row from the pull `start` to F = 0, in s."""
+    if not rod.is_uniform_and_linear:
+        return min(1e-3 * ARM_MS_PER_PULL * -start, MAX_ATTEMPT_SECONDS)
+    boxes = _boxes(rod, start)
+    covering = COVERING_MS_PER_BOX * (0 if boxes is None else len(boxes))
+    drive = start * rod.with_values(F=start).g
+    exchanges = BEYOND_SHEAR_MS + SOFT_SEARCH_MS * drive if drive > 0 else 0.0
+    return 1e-3 * covering + min(1e-3 * exchanges, MAX_ATTEMPT_SECONDS)
+
+
+def _boxes(rod: Rod, pull: float) -> Array | None:
+    """Boxes of the covering from `pull` to F = 0; None if no a-priori bound applies."""
+    return first_boxes(Path(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None
+
+
+def _least_coupling(rod: Rod, pull: float) -> float:
+    """Smallest g = nu + F c2 along an arm under `pull`; g < 0 beyond the shear stiffness."""
+    return float(np.min(sampled_arm(rod.with_values(F=pull)).local.g))
