@@ -50,8 +50,8 @@ def searches_cost(lines: int, certify: bool, is_varying: bool) -> CostEstimate:
 
 def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
     """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
-    eigenvalue and crossings become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm
-    is not uniform."""
+    eigenvalue and crossings become many where F^2/k2 is large. F_max: largest force. is_varying: whether any
+    arm is not uniform."""
     indices = sampled_points(points)
     if not indices.size:
         return 0.0

@@ -113,8 +113,8 @@ class PhaseDiagramTask(CertifiedTask):
         )
 
     def _with_soft_and_pulled_rows(self, lines: CostEstimate, is_varying: bool) -> CostEstimate:
-        """The cost `lines` of rows along F with the further time of soft and of pulled rows. is_varying: whether
-        any arm is not uniform."""
+        """The cost `lines` of rows along F with the further time of soft and of pulled rows. is_varying:
+        whether any arm is not uniform."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
         rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
         rods = [self.rod_of_row(int(row)) for row in rows]

@@ -217,4 +217,5 @@ def stored_crossings_text(view: View) -> str:
     stored_counts = (view.variables["crossing_kind"] > 0).sum(axis=-1)
     if "curve_number" not in view.variables or not (crossing_counts > stored_counts).any():
         return ""
-    return f"curves through {int(stored_counts.sum())} of {int(crossing_counts.sum())} crossings of the rows: raise crossings"
+    counts_text = f"{int(stored_counts.sum())} of {int(crossing_counts.sum())}"
+    return f"curves through {counts_text} crossings of the rows: raise crossings"
