@@ -30,8 +30,9 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     """Message for an error of pydantic: a sentence with key, value and allowed values. problem: one item of
     `ValidationError.errors()`.
     """
-    location = tuple(str(part) for part in problem["loc"])
-    key = dotted_key(location)
+    location = tuple(part for part in problem["loc"] if isinstance(part, str))
+    numbers = [f", number {part + 1}" for part in problem["loc"] if isinstance(part, int)]
+    key = dotted_key(location) + "".join(numbers)
     kind = problem["type"]
     value = problem["input"]
     if kind == "extra_forbidden":

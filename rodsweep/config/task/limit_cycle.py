@@ -115,13 +115,23 @@ class LimitCycleConfig(Config):
                 "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
                 "give axes instead of parameters.points"
             )
-        if (
-            self.limit_cycle.start == "neighbour"
-            and self.chain_parameter not in self.parameters.single_parameter_sizes
-        ):
+        if self.limit_cycle.start == "neighbour":
+            self._require_chain_parameter()
+        return self
+
+    def _require_chain_parameter(self) -> None:
+        """Raises ValueError if no axis changes only the parameter along which chains of cycles go."""
+        names = self.parameters.single_parameter_sizes
+        parameter = self.chain_parameter
+        if parameter in names:
+            return
+        if axes := self.parameters.arm_axes:
             raise ValueError(
                 f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
-                f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
+                f"of parameters.arm are {' and '.join(axes)}; give several values of "
                 f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
             )
-        return self
+        raise ValueError(
+            f"limit_cycle.along is {parameter} but parameters.{parameter} is not given; give several values "
+            f"of it, or set along to {enumeration(tuple(names), 'or')}"
+        )

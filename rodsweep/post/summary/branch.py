@@ -7,13 +7,13 @@ import numpy as np
 from ...arrays import Array
 from ...results.file.view import View
 from ...wording import count_of_total, counted, is_or_are
-from ..branch_curves import RodBranches, StoredBranch, branch_ends, followed_parameter
+from ..branch_curves import RodBranches, StoredBranch, followed_parameter
 from ..crushing import uncrushed_ranges
 from ..range_unions import ParameterRange
 from .errors import known_range_text
-from .followed_ranges import followed_range_text
+from .followed_ranges import searched_range_line
 from .number_texts import number_with_error, ranges_text, rounded_text, span_text
-from .summary_lines import SummaryLines, first_lines, point_text, proof_clause
+from .summary_lines import SummaryLines, first_lines, point_text
 from .thresholds import unknown_clause
 
 LIST_IS_FULL_REASON = "the list of special points is full; raise branch.special"
@@ -44,7 +44,7 @@ BRANCH_END_WORDS = {
 def branch_summary(view: View, computed: np.ndarray) -> SummaryLines:
     """Summary of branches. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
-        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [_searched_range_line(view, computed)])
+        return SummaryLines(list(_one_rod_lines(RodBranches(view))), [searched_range_line(view, computed)])
     v = view.variables
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
     counts = v["branch_count"][computed]
@@ -59,7 +59,7 @@ def branch_summary(view: View, computed: np.ndarray) -> SummaryLines:
     if crushed_count:
         whole_range = f"everywhere in the range of {parameter}"
         answer.insert(1, f"the force crushes {count_of_total(crushed_count, len(rods), 'rod')} {whole_range}")
-    return SummaryLines(answer, [_searched_range_line(view, computed)])
+    return SummaryLines(answer, [searched_range_line(view, computed)])
 
 
 def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
@@ -232,18 +232,3 @@ def _lines_on_rods_with(
     ]
     yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(texts, "rod")
-
-
-def _searched_range_line(view: View, computed: np.ndarray) -> str:
-    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
-    computed: mask of the computed points.
-    """
-    parameter = followed_parameter(view)
-    start, end = branch_ends(view)
-    ranges = uncrushed_ranges(view, np.flatnonzero(computed.ravel()).tolist())
-    note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
-    proved = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
-    return (
-        f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
-        f"{proof_clause(view)} for {proved}; " + followed_range_text(view, computed, parameter, "followed_")
-    )

@@ -3,7 +3,11 @@
 import numpy as np
 
 from ...results.file.view import View
+from ...wording import count_of_total
+from ..branch_curves import branch_ends, followed_parameter
+from ..crushing import uncrushed_ranges
 from .number_texts import span_text
+from .summary_lines import proof_clause
 
 MISSED_CYCLES_TEXT = (
     "cycles are missed if their branch comes from farther away, moves away from the range stable or with "
@@ -22,3 +26,20 @@ def followed_range_text(view: View, done: np.ndarray, along: str, prefix: str) -
     low, high = map(span_text, places)
     followed = f"branches that may enter the range are followed down to {along} = {low} and up to {high}"
     return f"{followed}; {MISSED_CYCLES_TEXT}"
+
+
+def searched_range_line(view: View, computed: np.ndarray) -> str:
+    """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
+    computed: mask of the computed points.
+    """
+    parameter = followed_parameter(view)
+    start, end = branch_ends(view)
+    ranges = uncrushed_ranges(view, np.flatnonzero(computed.ravel()).tolist())
+    if all(last <= first for first, last in ranges):
+        return "no branch is followed"
+    note = "" if set(ranges) <= {(start, end)} else ", where the force does not crush the rod"
+    proved = count_of_total(view.variables["certified"][computed].sum(), computed.sum(), "rod")
+    return (
+        f"followed in {parameter} from {start:g} to {end:g}{note}; the list of Hopf points "
+        f"{proof_clause(view)} for {proved}; " + followed_range_text(view, computed, parameter, "followed_")
+    )
