@@ -3,6 +3,7 @@
 from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.material.profile import Profile
 from ...model.rod import Rod
+from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 
 TWO_SEGMENT_PROFILE = Profile(
     (0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6))
@@ -19,9 +20,11 @@ RODS = (
     Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
     Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
     Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=TWO_SEGMENT_PROFILE)),
+    Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=FIVE_SEGMENT_PROFILE)),
 )
 """Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
-as far from its Hopf point as the first rod, the first rod made of rubber, and an arm of two segments."""
+as far from its Hopf point as the first rod, the first rod made of rubber, and arms of two and of five
+segments."""
 QUICK_RODS = (RODS[2],)  # for a quick run
 
 
