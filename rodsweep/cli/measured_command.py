@@ -29,7 +29,7 @@ repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
-class InstantSpectra(SpectrumTask):
+class TabulatedSpectra(SpectrumTask):
     """The task spectrum with random eigenvalues from a table, so that all measured time belongs to the sweep.
 
     All eigenvalues are stable, because a sweep would spend time on locating changes of stability.
@@ -97,7 +97,7 @@ def run_measured() -> None:
     directory, kind, *command = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:
-        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
+        TASKS["spectrum"] = partial(TabulatedSpectra, killed=notes if kind == KILLED else None)
     sys.argv = ["rodsweep", *command]
     try:
         main()

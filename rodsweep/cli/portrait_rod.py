@@ -82,7 +82,7 @@ def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Ite
     numbers = count(1)
 
     def show(position: SolvePosition) -> None:
-        reporter.show_position(position.words, position.completed_fraction or 0.0)
+        reporter.show_position(position.text, position.completed_fraction or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")

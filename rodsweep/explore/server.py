@@ -149,8 +149,9 @@ def _bound_sockets(port: int) -> list[socket.socket]:
 
 
 async def serve(state: PageState, stored: AnswersFromFile | None, port: int, is_opened: bool) -> None:
-    """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state, stored, port: as in `ExploreServer`.
-    is_opened: whether to open a browser; if none can be opened, a line on standard error says so.
+    """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state: state with which a page opens. stored: answers
+    from a result file, or None. port: TCP port; 0 for any free port. is_opened: whether to open a browser; if
+    none can be opened, a line on standard error says so.
     """
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

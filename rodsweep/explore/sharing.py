@@ -47,7 +47,7 @@ class ExportedLines(DataModel):
     python = String(default="")
 
 
-class Sharing:
+class ExportPanel:
     """Texts and buttons with which the user exports and imports the state of the page.
 
     cards: pictures that can be saved. arm: animated line of the arm. on_load: callback for the text of a

@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...solve.motion.integrator import RunEnding, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
-from ..study import Contender
+from ..study import TimedMethod
 
 TIGHT_TOLERANCE = 3e-7
 """At integrator tolerances up to this number, Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE,
@@ -50,19 +50,19 @@ class IntegratorFamily:
     tolerances: tuple[float, ...]
     waiting_tolerances: tuple[float, ...] = ()
 
-    def following_contenders(self) -> list[Contender]:
+    def following_contenders(self) -> list[TimedMethod]:
         """Contenders of the race FOLLOWING_RACE, which follow a cycle in time: one for each of
         `tolerances`."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
-    def settling_contenders(self) -> list[Contender]:
+    def settling_contenders(self) -> list[TimedMethod]:
         """Contenders of the race WAITING_RACE, which integrate until the motion is periodic: one for each of
         `waiting_tolerances`."""
         return [self._at(tolerance) for tolerance in self.waiting_tolerances]
 
-    def _at(self, tolerance: float) -> Contender:
+    def _at(self, tolerance: float) -> TimedMethod:
         run = partial(self.integrate, tolerance)
-        return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
+        return TimedMethod(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
 def petsc_trajectory(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:

@@ -139,7 +139,7 @@ class DiagramPicture:
         return len(self.cell_source.data["left"]) > 0
 
     def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
-        """Draws the answer `answer` to the question "diagram". load, row_scale: scales of the controls whose
+        """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
         units the axes have.
         """
         x = answer["x"] * load.factor

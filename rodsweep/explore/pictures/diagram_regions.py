@@ -26,7 +26,7 @@ class RegionTable(NamedTuple):
 
 
 def region_table(answer: dict[str, Any]) -> RegionTable | None:
-    """Regions of the answer `answer` to the question "diagram", in its units. None if the answer has no curve
+    """Regions of the answer `answer` to the request "diagram", in its units. None if the answer has no curve
     of Hopf points, or fewer than two finite positive values of the second parameter.
     """
     x = answer["x"]

@@ -51,7 +51,7 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
     between corners.
     """
-    vertices = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    vertices = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
     extent = np.ptp(vertices, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
@@ -59,7 +59,7 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     cycles = vertices[np.append(True, is_distinct)]
     stable = curve.stable[is_distinct]
     if len(cycles) <= MIRRORED_CYCLE_COUNT:
-        return curve.at, curve.y, curve.period, curve.stable
+        return curve.parameter, curve.y, curve.period, curve.stable
     corners = branch_corners(cycles, extent)
     for i in sorted(corners, reverse=True):
         cycles = np.insert(cycles, i + 1, corners[i], axis=0)

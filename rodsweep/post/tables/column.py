@@ -33,7 +33,7 @@ class Column:
     meaning: str
     values: NDArray
     absent: NDArray[np.bool_]
-    words: Mapping[int, str] = field(default_factory=dict)
+    flag_meanings: Mapping[int, str] = field(default_factory=dict)
     """Words by integer value; empty for a column of numbers."""
     is_input: bool = False
     """Whether the values are input, such as parameters, and not results."""
@@ -72,8 +72,8 @@ class Column:
         """
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
-        elif self.words:
-            texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
+        elif self.flag_meanings:
+            texts = [self.flag_meanings.get(int(v), "") for v in np.nan_to_num(self.values)]
         elif self.values.dtype.kind == "f":
             texts = self._numbers()
         else:

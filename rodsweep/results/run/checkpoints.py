@@ -86,8 +86,8 @@ class Checkpoints(ArrayStore):
     pattern = CHECKPOINT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
-        """directory, fingerprint: as in `ArrayStore`. state_of: makes a solver state from its arrays (the
-        result of the state's method `arrays`).
+        """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
+        state from its arrays (the result of the state's method `arrays`).
         """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
@@ -121,7 +121,7 @@ class ItemResults(ArrayStore):
     pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory, fingerprint: as in `ArrayStore`."""
+        """directory: journal directory. fingerprint: digest of config and points."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:

@@ -29,7 +29,7 @@ MIN_OUTCOME_BYTES = 10_000
 """Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
-class NoRodStatus(PointStatus):
+class OutsideModelStatus(PointStatus):
     """Statuses, in every task, of the points of an arm to which the rod model does not apply."""
 
     not_slender = (
@@ -58,12 +58,12 @@ class NoRodStatus(PointStatus):
 
 
 @dataclass(frozen=True, slots=True)
-class OutcomeWithoutRod:
+class OutcomeOutsideModel:
     """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
     text on the reason, or empty.
     """
 
-    status: NoRodStatus
+    status: OutsideModelStatus
     message: str = ""
 
 
@@ -157,8 +157,8 @@ class SkippingSolver:
     values.
 
     rod_solver: solver of the points with a rod. arm_statuses: SLENDER for points with a rod, else a value of
-    `NoRodStatus`, (points,). failures: additional messages by flat index of the point. layout: variables of a
-    point.
+    `OutsideModelStatus`, (points,). failures: additional messages by flat index of the point. layout:
+    variables of a point.
     """
 
     rod_solver: Solver
@@ -169,7 +169,7 @@ class SkippingSolver:
     def solver_of_all_points(self) -> Solver:
         """The solver of all points. It solves points with a rod, and gives fill values to the other
         points."""
-        statuses = (*self.rod_solver.statuses, *NoRodStatus)
+        statuses = (*self.rod_solver.statuses, *OutsideModelStatus)
         return self.rod_solver.with_wrapper(
             self._solve, self._solve_stretch, record=self._record, statuses=statuses
         )
@@ -177,14 +177,14 @@ class SkippingSolver:
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.arm_statuses[index] == SLENDER:
             return solve()
-        return OutcomeWithoutRod(self._status(index), self.failures.get(index, "")), None
+        return OutcomeOutsideModel(self._status(index), self.failures.get(index, "")), None
 
-    def _status(self, index: int) -> NoRodStatus:
+    def _status(self, index: int) -> OutsideModelStatus:
         """Status of a point without a rod."""
-        return next(status for status in NoRodStatus if status == self.arm_statuses[index])
+        return next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
-        if not isinstance(outcome, OutcomeWithoutRod):
+        if not isinstance(outcome, OutcomeOutsideModel):
             return self.rod_solver.record(index, outcome)
         return self._empty_values | {STATUS.name: int(outcome.status)}
 

@@ -175,8 +175,9 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
 
 def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
-    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: as in
-    `_draw_curves`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
+    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
+    of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
+    horizontal axis.
     """
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
@@ -196,7 +197,7 @@ def _cover_invalid_cells(
     axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any
 ) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells without a rod or a value; returns
-    legend entries. names: quantities on x and y. index: as in `_draw_map`.
+    legend entries. names: quantities on x and y. index: index of the drawn points in the grid.
     """
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER

@@ -1,4 +1,4 @@
-"""Questions of the page and the functions that answer them in a solver process. Answers are plain arrays.
+"""Requests of the page and the functions that answer them in a solver process. Answers are plain arrays.
 
 The functions report progress to the page and never to the terminal, which all solver processes share.
 """
@@ -36,7 +36,7 @@ MAX_CRUSHING_FRACTION = 0.98
 
 
 @dataclass(frozen=True)
-class Question:
+class SolveRequest:
     """Request of a page to a solver process.
 
     kind: a key of `STATE_SOLVERS`, or of `TIP_SOLVERS` if `tip` is given. state: state of the page at the
@@ -157,24 +157,24 @@ STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "cycles": cycle_diagram_answer,
     "film": film_answer,
 }
-"""For each kind of question about the state of the page, the function that answers the question."""
+"""For each kind of request about the state of the page, the function that answers the request."""
 TIP_SOLVERS: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
     "bent": dragged_equilibrium,
     "motion": released_motion_answer,
     "film": motion_film_answer,
 }
-"""For each kind of question about a dragged tip, the function that answers the question."""
+"""For each kind of request about a dragged tip, the function that answers the request."""
 
 
-def answer_to(question: Question) -> AnswerVariables:
-    """Answer to a question, as variables by name. Raises InputError for invalid values in the state of the
+def answer_to(request: SolveRequest) -> AnswerVariables:
+    """Answer to a request, as variables by name. Raises InputError for invalid values in the state of the
     page.
     """
-    if question.stored is not None:
-        return film_of_cycle(question.stored)
-    if question.tip is not None:
-        return TIP_SOLVERS[question.kind](question.state, question.tip)
-    return STATE_SOLVERS[question.kind](question.state)
+    if request.stored is not None:
+        return film_of_cycle(request.stored)
+    if request.tip is not None:
+        return TIP_SOLVERS[request.kind](request.state, request.tip)
+    return STATE_SOLVERS[request.kind](request.state)
 
 
 BranchPiece = tuple[Array, Array, int]
@@ -189,7 +189,7 @@ def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
     special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[BranchPiece] = [
-        (curve.at[run], curve.y[run], stable)
+        (curve.parameter[run], curve.y[run], stable)
         for curve in rod.curves
         for run, stable in stability_runs(curve.stable)
     ]
