@@ -14,7 +14,7 @@ from .protocol import CheckRow
 
 
 def crushing_clause(config: Config) -> str:
-    """Clause stating that a search along F ends below the force that crushes the arm; empty if no force
+    """Clause stating that a search along F ends below the crushing force (zero stretch); empty if no force
     crushes the arm.
     """
     if config.is_uniform_and_linear:

@@ -70,7 +70,7 @@ class AccurateCycle:
         return cls(result.orbit, result.measures.period, result.measures.tip_y_max)
 
     def cycle_at_force(self, F: float) -> "AccurateCycle":
-        """The reference cycle of the same rod at the force F, which must be close to the present force."""
+        """The reference cycle of the same rod at the force F, which must be close to the current force."""
         stress_form = self.orbit.form
         moved_orbit = replace(self.orbit, form=replace(stress_form, rod=replace(stress_form.rod, F=F)))
         orbit = newton(moved_orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit

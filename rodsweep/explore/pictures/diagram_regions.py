@@ -60,7 +60,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
 
 
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
-    """Load divided by the load that crushes the rod, at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
+    """Load divided by the crushing load (zero stretch), at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
     logarithms of the second parameter, (rows,). load: crushing load of each row, infinite on no row or on all
     rows, (rows,).
     """

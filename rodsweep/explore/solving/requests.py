@@ -32,7 +32,7 @@ SHAPE_COUNT = 48
 GROWTH_FORCE_COUNT = 121
 """Number of forces at which growth rates are computed."""
 MAX_CRUSHING_FRACTION = 0.98
-"""Largest force at which growth rates are computed, divided by the force that crushes the rod."""
+"""Largest force at which growth rates are computed, divided by the crushing force (zero stretch)."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,7 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 
 def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
-    the force that crushes the rod. unit: "1/tau2" for a rod, "1/s" for an arm."""
+    the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
     rod_or_arm = state.subject()
     tau2 = rod_or_arm.tau2 if isinstance(rod_or_arm, Arm) else 1.0
     rod = rod_of(rod_or_arm)

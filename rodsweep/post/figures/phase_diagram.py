@@ -32,8 +32,8 @@ from .stability.row_classes import classes_between_crossings, pixel_classes_of_r
 @dataclass(frozen=True, slots=True)
 class ClassMap:
     """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
-    computed point, (rows, columns). crushing_ratio: force divided by the force that crushes the rod, at every
-    pixel, (pixels, pixels).
+    computed point, (rows, columns). crushing_ratio: force divided by the crushing force (zero stretch), at
+    every pixel, (pixels, pixels).
     """
 
     plane: DrawnPlane

@@ -106,7 +106,7 @@ def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, s
 
 def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Column:
     """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
-    missing value, stands for an arm to which no rod corresponds.
+    missing value, stands for an arm outside the rod model.
     """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), is_input=True)
 

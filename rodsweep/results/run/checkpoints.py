@@ -17,7 +17,8 @@ import numpy as np
 from .journal import delete_matching_files
 
 CHECKPOINT_GLOB = "chain-*"
-"""Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
+"""Pattern of the file names of checkpoints of chains of points, including files that a kill left
+unfinished."""
 ITEM_RESULT_GLOB = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
@@ -33,7 +34,7 @@ STATE_PREFIX = "state_"
 
 
 class StateWithArrays(Protocol):
-    """Solver state of a chain, which can be written as arrays."""
+    """Solver state after a point of a chain of points, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
         """The complete solver state as arrays of any shape, (...,), by name."""
@@ -81,7 +82,8 @@ class ArrayStore:
 
 
 class Checkpoints(ArrayStore):
-    """Store with the last solved point of each unfinished chain, and the solver state after this point."""
+    """Store with the last solved point of each unfinished chain of points, and the solver state after this
+    point."""
 
     pattern = CHECKPOINT_GLOB
 

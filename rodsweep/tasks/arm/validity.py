@@ -160,7 +160,7 @@ class ArmValidity:
         return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
-        """The VALIDITY_VARIABLES at the n points with a rod, (n,), as if all arms were at rest."""
+        """The VALIDITY_VARIABLES at the n points in the rod model, (n,), as if all arms were at rest."""
         parts = []
         for start in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(start, start + self.points_per_arm)

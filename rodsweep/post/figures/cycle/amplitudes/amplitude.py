@@ -26,7 +26,8 @@ BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Look of the open markers of unstable cycles, which are drawn over the markers of the line."""
+"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the
+line."""
 
 
 def draw_amplitude(views: Sequence[View], is_narrow: bool = False) -> tuple[Figure, str]:

@@ -19,7 +19,7 @@ HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
 HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
-"""Look of a vertical line at a Hopf point."""
+"""Matplotlib style of a vertical line at a Hopf point."""
 SHARED_POINT_COLOUR = "0.3"
 """Colour of a Hopf point that belongs to several lines."""
 LAW_COLOUR = "0.45"
