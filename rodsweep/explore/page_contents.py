@@ -108,7 +108,7 @@ class PageContents:
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
-        self.sharing.update_hidden_texts(state)
+        self.sharing.update_exported_texts(state)
 
     def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
         """Draws the answer `answer` to a request of the kind `kind` in all pictures that show this answer,

@@ -123,10 +123,10 @@ class ExploreServer:
         self.server.stop()
         self.http.stop()
 
-    def _open(self, document: Document) -> None:
-        page = Page(document, self.solvers, self.state, self.stored)
-        document.on_session_destroyed(lambda context: page.close())
-        context = document.session_context
+    def _open(self, bokeh_document: Document) -> None:
+        page = Page(bokeh_document, self.solvers, self.state, self.stored)
+        bokeh_document.on_session_destroyed(lambda context: page.close())
+        context = bokeh_document.session_context
         arguments = {} if context is None else context.request.arguments
         page.open(_page_query(arguments))
 

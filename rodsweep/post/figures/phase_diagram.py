@@ -19,7 +19,7 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
 from .arm.quantities import constant_quantities_text
-from .grid_sections import left_out_clause
+from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT

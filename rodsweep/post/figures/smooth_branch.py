@@ -30,10 +30,10 @@ SLOPE_CYCLE_COUNT = 5
 CORNER_CYCLE_COUNT = 4
 """Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
 the branch."""
-MIN_ANGLE = 0.25
+MIN_SLOPE_JUMP = 0.25
 """A jump of the slope is drawn as a corner if the jump exceeds this fraction of the steepest chord near the
 corner. A smaller jump changes the curve by at most a few per cent of the chord."""
-MIN_ANGLE_RATIO = 3.0
+MIN_SLOPE_JUMP_RATIO = 3.0
 """At a corner, the jump of the slope of y exceeds this multiple of the jumps of the slopes of parameter and
 log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
 similar."""
@@ -124,8 +124,8 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
             if (
                 is_between
-                and slope_jumps[1] > MIN_ANGLE
-                and slope_jumps[1] > MIN_ANGLE_RATIO * max(map(abs, slope_jumps[::2]))
+                and slope_jumps[1] > MIN_SLOPE_JUMP
+                and slope_jumps[1] > MIN_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
             ):
                 corner = scipy.interpolate.barycentric_interpolate(x, cycles[window], root.real)
                 corner[1] = scipy.interpolate.barycentric_interpolate(

@@ -88,7 +88,7 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
 
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """Yields the lines of points along F in a list of points, one line at a time. values: variables of the
+    """For a list of points, yields each set of points that differ only in F. values: variables of the
     points by name, shape (points, own dimensions), arrays or HDF5 datasets.
     """
     eigenvalues = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)

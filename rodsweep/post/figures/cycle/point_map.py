@@ -12,7 +12,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.summary_lines import varied_parameters_at_points
-from ..grid_sections import left_out_clause
+from ..grid_slices import left_out_clause
 from ..style import is_logarithmic
 
 
