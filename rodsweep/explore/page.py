@@ -18,7 +18,7 @@ from .solving.diagrams import has_uniform_linear_rods
 from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_solve
 from .solving.requests import Reply, SolveRequest
 from .solving.solvers import Solvers
-from .solving.tip_release import Tip
+from .solving.tip_release import TipPosition
 from .state import PageState, from_address, rod_of
 from .texts import progress_text, solving_text
 
@@ -81,7 +81,7 @@ class Page:
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
-    def solve(self, kind: str, tip: Tip | None = None) -> None:
+    def solve(self, kind: str, tip: TipPosition | None = None) -> None:
         """Sends a request of the kind `kind` to its solver process, even if the answer is already shown."""
         self._cancel_request(kind)
         self._send_request(kind, tip, is_solved_again=True)
@@ -98,7 +98,7 @@ class Page:
                     self.contents.show_message(kind, STOPPED_SENTENCE)
         self._show_solving()
 
-    def drag(self, kind: str, tip: Tip) -> None:
+    def drag(self, kind: str, tip: TipPosition) -> None:
         """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
         released there (kind "motion"). A request of the other kind is cancelled."""
         for tip_kind in kinds.TIP_KINDS:
@@ -175,7 +175,7 @@ class Page:
             self._send_request(kind)
         self._show_solving()
 
-    def _send_request(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
+    def _send_request(self, kind: str, tip: TipPosition | None = None, is_solved_again: bool = False) -> None:
         """Sends a new request of the kind `kind`. A stored answer replaces the solve, unless
         `is_solved_again`. tip: position of the dragged tip, in L.
         """

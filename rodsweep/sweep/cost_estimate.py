@@ -212,7 +212,7 @@ def sampled_points(points: Points) -> NDArray[np.int64]:
     indices = np.unique(
         np.linspace(0, points.count - 1, min(MAX_SAMPLED_POINTS, points.count)).astype(np.int64)
     )
-    return indices[[points.has_rod(int(index)) for index in indices]]
+    return indices[[points.is_in_model(int(index)) for index in indices]]
 
 
 def cycles_cost(points: Points, first_count: int) -> CostEstimate:

@@ -10,9 +10,9 @@ from dataclasses import replace
 from ..state import PageState
 from .diagrams import second_parameter_values
 from .requests import SolveRequest
-from .tip_release import Tip
+from .tip_release import TipPosition
 
-AnswerInputs = tuple[PageState, Tip | None]
+AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
 INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
 """Kinds of requests that are sent after every change of the controls."""

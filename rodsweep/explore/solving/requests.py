@@ -21,7 +21,7 @@ from ...errors import InputError
 from ...post.branch_curves import RodBranches, stability_runs
 from ..state import MATERIAL_CHOICES, PageState, rod_of
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
-from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
+from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
@@ -46,7 +46,7 @@ class SolveRequest:
 
     kind: str
     state: PageState
-    tip: Tip | None = None
+    tip: TipPosition | None = None
     stored: Dataset | None = None
 
 
@@ -158,7 +158,7 @@ STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "film": film_answer,
 }
 """For each kind of request about the state of the page, the function that answers the request."""
-TIP_SOLVERS: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
+TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
     "bent": dragged_equilibrium,
     "motion": released_motion_answer,
     "film": motion_film_answer,

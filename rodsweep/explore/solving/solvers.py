@@ -18,7 +18,7 @@ from . import worker
 from .fork_server import FORK_SERVER, start_fork_server
 from .requests import Reply, SolveRequest
 
-Key = tuple[str, str]
+RequestKey = tuple[str, str]
 """(session, kind) of a request. A new request replaces an older request with an equal key."""
 OnReply = Callable[[Reply], None]
 """Function that is called with the reply to a request, or with a progress message."""
@@ -67,8 +67,8 @@ class SolverProcess:
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
         self.delays = delays or CancellationDelays()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[SolveRequest, OnReply, OnReply]] = {}
-        self.current_request: tuple[Key, OnReply, OnReply] | None = None
+        self.waiting: dict[RequestKey, tuple[SolveRequest, OnReply, OnReply]] = {}
+        self.current_request: tuple[RequestKey, OnReply, OnReply] | None = None
         self.request_number = 0
         """Number of requests sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
@@ -87,7 +87,7 @@ class SolverProcess:
         return None if self._process is None else self._process.pid
 
     def ask(
-        self, key: Key, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
+        self, key: RequestKey, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
         """Queues a request. An older request with the same key is removed from the queue, or cancelled if
         it is being solved. on_reply: callback for the reply. progress: callback for progress messages.
@@ -112,7 +112,7 @@ class SolverProcess:
         if self.current_request is not None and self.current_request[0][0] == session:
             self._interrupt(self.request_number)
 
-    def cancel(self, key: Key) -> None:
+    def cancel(self, key: RequestKey) -> None:
         """Removes the request with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
         if self.current_request is not None and self.current_request[0] == key:
@@ -173,7 +173,7 @@ class SolverProcess:
         if self.current_request is None:
             self._send_next()
 
-    def _cancel(self, number: int, key: Key) -> None:
+    def _cancel(self, number: int, key: RequestKey) -> None:
         """Cancels request `number` if it is still being solved while a newer request with an equal
         key waits.
         """

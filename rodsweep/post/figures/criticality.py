@@ -70,7 +70,7 @@ def draw_criticality(request: FigureRequest) -> str:
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
-    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
+    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.omissions}"
     return request.write(_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
 
 

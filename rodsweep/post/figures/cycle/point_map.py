@@ -30,7 +30,7 @@ class PointMap:
     """Index in the file of the point in each cell, (ny, nx)."""
     common_parameters: dict[str, float]
     """Parameters that are equal at all points, by name."""
-    left_out: str
+    omissions: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 

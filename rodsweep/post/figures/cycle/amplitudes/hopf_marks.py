@@ -67,7 +67,7 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
     """
     handles = []
     for is_above in (True, False):
-        chosen_laws = [law for law in laws if law.above == is_above]
+        chosen_laws = [law for law in laws if law.is_above == is_above]
         if not chosen_laws:
             continue
         keywords: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}

@@ -34,7 +34,7 @@ class SquareRootLaw:
     """Force F** of the Hopf point, in k3/L^2."""
     coefficient: float
     """Coefficient a, in L."""
-    above: bool
+    is_above: bool
     """Whether the law holds at F > F**; otherwise at F < F**."""
     end: float
     """Force F farthest from F** up to which the amplitudes follow the law, see MAX_LAW_DEVIATION."""
