@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from pydantic.fields import FieldInfo
 
-from rodsweep.config.arm.section import ArmSection
+from rodsweep.config.arm.section import ArmConfig
 from rodsweep.config.document.refusals import allowed_values_text
 from rodsweep.config.json_schema import key_docstrings
-from rodsweep.config.material import MaterialSection, ProfileTable
+from rodsweep.config.material import MaterialConfig, ProfileTable
 from rodsweep.config.task.phase_diagram import PhaseDiagramConfig
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
@@ -39,7 +39,7 @@ from rodsweep.results.layouts.phase_diagram import (
 from rodsweep.results.layouts.spectrum import FORCE_CHANGE_VARIABLES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
-from rodsweep.tasks.arm.point_solver import NoRodStatus
+from rodsweep.tasks.arm.point_solver import OutsideModelStatus
 from rodsweep.tasks.running.job import Job, job_of_file
 
 DOCS = Path(__file__).parent
@@ -271,8 +271,8 @@ def common_keys() -> str:
     rows += [key_row(name, config.model_fields[name], meanings[name]) for name in ("title", "accuracy")]
     for name in ("points", "columns", "arm"):
         rows.append(key_row(f"parameters.{name}", points.model_fields[name], key_docstrings(points)[name]))
-    meanings = key_docstrings(ArmSection)
-    fields = ArmSection.model_fields
+    meanings = key_docstrings(ArmConfig)
+    fields = ArmConfig.model_fields
     rows += [key_row(f"parameters.arm.{name}", field, meanings[name]) for name, field in fields.items()]
     return "\n### Keys of every task\n\n" + key_table(rows) + material_keys()
 
@@ -281,7 +281,7 @@ def material_keys() -> str:
     """Table of the keys of the material and the columns of its profile."""
     rows = [
         key_row(f"{place}.{name}", field, key_docstrings(section)[name])
-        for place, section in (("material", MaterialSection), ("material.profile", ProfileTable))
+        for place, section in (("material", MaterialConfig), ("material.profile", ProfileTable))
         for name, field in section.model_fields.items()
     ]
     return "\n### Keys of the material\n\n" + key_table(rows)
@@ -358,7 +358,7 @@ At a point of a grid whose arm is outside the model nothing is computed, and `st
 
 def validity() -> str:
     """Variables on the validity of the model, and statuses of arms without a rod."""
-    statuses = [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(NoRodStatus)]
+    statuses = [[str(int(s)), f"`{s.name}`", s.sentence] for s in sorted(OutsideModelStatus)]
     variables = variable_table(variable_row(v, ["...", *v.extra]) for v in VALIDITY_VARIABLES)
     return variables + UNCOVERED + table(("value", "word", "meaning"), statuses)
 

@@ -14,7 +14,7 @@ STOPPED_STATUS = 75
 run."""
 
 
-class Refusal(Exception):
+class UserError(Exception):
     """Error that the command line prints as one sentence, without a traceback.
 
     collective: whether every MPI rank of a run raises the error at the same statement.
@@ -29,13 +29,13 @@ class Refusal(Exception):
         return self
 
 
-class InputError(Refusal):
+class InputError(UserError):
     """Bad input. The message names the key, the value and the allowed values."""
 
     exit_status = 2
 
 
-class EnvironmentIncomplete(Refusal):
+class EnvironmentIncomplete(UserError):
     """A component or a permission is missing on this machine. The message names the missing item."""
 
     exit_status = 3

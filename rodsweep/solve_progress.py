@@ -15,11 +15,11 @@ from typing import NamedTuple
 class SolvePosition(NamedTuple):
     """Position of a running solve, for display by a listener.
 
-    words: text of the position, such as "branch 2 of 3". completed_fraction: completed fraction of the work,
+    text: text of the position, such as "branch 2 of 3". completed_fraction: completed fraction of the work,
     from 0 to 1; None if unknown.
     """
 
-    words: str = ""
+    text: str = ""
     completed_fraction: float | None = None
 
 
@@ -36,20 +36,20 @@ class SolveStopped(BaseException):
 class _SolvePart(NamedTuple):
     """Named part of a solve. name: prefix of the texts of reports from the part.
 
-    shares: completed fractions of the work of the whole solve at the start and at the end of the part; None
-    if unknown.
+    fractions: completed fractions of the work of the whole solve at the start and at the end of the part;
+    None if unknown.
     """
 
     name: str
-    shares: tuple[float, float] | None
+    fractions: tuple[float, float] | None
 
     def position_in_whole(self, inner: SolvePosition) -> SolvePosition:
         """Converts a position within this part into a position within the whole solve."""
         fraction = None
-        if self.shares is not None:
-            start, end = self.shares
+        if self.fractions is not None:
+            start, end = self.fractions
             fraction = start + (end - start) * (inner.completed_fraction or 0.0)
-        return SolvePosition(": ".join(filter(None, (self.name, inner.words))), fraction)
+        return SolvePosition(": ".join(filter(None, (self.name, inner.text))), fraction)
 
 
 _listeners: ContextVar[tuple[tuple[Listener, int], ...]] = ContextVar("listeners", default=())
@@ -103,7 +103,7 @@ def _position_in_whole_solve(make_position: PositionMaker, outside: int) -> Solv
     enclose the listener's `with` block.
     """
     position = make_position()
-    if not position.words:
+    if not position.text:
         return position
     for part in reversed(_solve_parts.get()[outside:]):
         position = part.position_in_whole(position)

@@ -5,7 +5,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from rodsweep.results.file.creation import Plan, create_file
+from rodsweep.results.file.creation import FilePlan, create_file
 from rodsweep.results.file.seal import seal
 from rodsweep.results.file.view import View
 from rodsweep.results.layouts import layout_of
@@ -130,7 +130,7 @@ def store(view, path, **options):
     points = Points(layout.parameters, columns, view.is_grid)
     stored = tuple((v, view.variables[v.name]) for v in HOPF_POINTS)
     attributes = {"task": "limit_cycle", "title": "arms"}
-    create_file(path, Plan(points, layout, {}, lambda: stored, config, attributes, flags))
+    create_file(path, FilePlan(points, layout, {}, lambda: stored, config, attributes, flags))
     with h5py.File(path, "r+") as file:
         for name in view.variables.keys() - {*NAMES, "point", *(v.name for v in HOPF_POINTS)}:
             file[name][...] = view.variables[name]

@@ -11,7 +11,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.limit_cycle.default_integrator import (
     WAITING_TOLERANCES,
     IntegrationTask,
-    IntegratorFamily,
+    IntegratorGroup,
     petsc_trajectory,
 )
 from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
@@ -90,26 +90,26 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
 
 RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    IntegratorFamily("ARKIMEX 2", partial(petsc_trajectory, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    IntegratorFamily("ARKIMEX 3", partial(petsc_trajectory, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily(
+    IntegratorGroup("ARKIMEX 2", partial(petsc_trajectory, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
+    IntegratorGroup("ARKIMEX 3", partial(petsc_trajectory, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorGroup(
         "ARKIMEX 4", partial(petsc_trajectory, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)
     ),
-    IntegratorFamily("BDF 5", partial(petsc_trajectory, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    IntegratorFamily(
+    IntegratorGroup("BDF 5", partial(petsc_trajectory, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorGroup(
         "ROSW ra34pw2", partial(petsc_trajectory, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)
     ),
-    IntegratorFamily(
+    IntegratorGroup(
         "ROSW rodas3", partial(petsc_trajectory, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)
     ),
-    IntegratorFamily("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorFamily(
+    IntegratorGroup("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorGroup(
         "SciPy Radau",
         partial(scipy_run, "Radau"),
         RADAU_TOLERANCES,
         (*RADAU_TOLERANCES[2:5], *WAITING_TOLERANCES[:4]),
     ),
-    IntegratorFamily(
+    IntegratorGroup(
         "SciPy LSODA",
         partial(scipy_run, "LSODA"),
         (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
@@ -119,10 +119,10 @@ FAMILIES = (
 """Integrators of PETSc and SciPy with their tolerances. BDF 5 is nearly unstable at loose tolerances."""
 
 
-def installed_families() -> tuple[IntegratorFamily, ...]:
+def installed_families() -> tuple[IntegratorGroup, ...]:
     """All installed integrators: FAMILIES, and CVODE if scikit-sundae is installed."""
     module = optional_module(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorFamily(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),) if module else ()
+        (IntegratorGroup(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),) if module else ()
     )

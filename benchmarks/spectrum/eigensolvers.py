@@ -18,7 +18,7 @@ from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum.arms import mesh_of_arm, solve_next_arm
 from rodsweep.bench.spectrum.rodsweep_spectrum import MODE_COUNT, PENCIL_GROUP, leading_eigenvalues
 from rodsweep.bench.spectrum.study import ELEMENT_ORDERS, pencil_mesh
-from rodsweep.bench.study import Contender
+from rodsweep.bench.study import TimedMethod
 from rodsweep.determinant.roots.newton import refine_eigenvalue
 from rodsweep.discretization.straight.pencil import PENCIL_NORM_SETTINGS, assemble_pencil
 from rodsweep.model.rod import Rod
@@ -192,16 +192,16 @@ PEERS = (
 )
 
 
-def contenders() -> list[Contender]:
+def contenders() -> list[TimedMethod]:
     """All peers on a rod, at all of their sizes."""
     return [
-        Contender(peer.name, str(size), peer.group, partial(peer.solve, size=size))
+        TimedMethod(peer.name, str(size), peer.group, partial(peer.solve, size=size))
         for peer in PEERS
         for size in peer.sizes
     ]
 
 
-def arm_contenders() -> list[Contender]:
+def arm_contenders() -> list[TimedMethod]:
     """The peers that solve arms with properties that vary along the length, at all of their sizes."""
     taken = {
         dense_inverse: arms.ELEMENT_ORDERS,
@@ -209,7 +209,7 @@ def arm_contenders() -> list[Contender]:
         chebyshev_first_order: ARM_INTERVALS,
     }
     return [
-        Contender(peer.name, str(size), peer.group, partial(solve_next_arm, peer.solve, size))
+        TimedMethod(peer.name, str(size), peer.group, partial(solve_next_arm, peer.solve, size))
         for peer in PEERS
         for size in taken.get(peer.solve, ())
     ]

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from rodsweep.arrays import Array
-from rodsweep.bench.study import Contender
+from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import FirstThreshold, ThresholdCase
 
 from ..auto import AUTO, AUTO_SKIPPED, auto_program, run_auto, table_lines
@@ -85,7 +85,7 @@ BEYOND_HOPF = 6.0
 """Distance in F beyond the Hopf point at which PyCont-Lite ends."""
 
 
-def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], list[str]]:
+def continuation_codes(directory: Path, quick: bool) -> tuple[list[TimedMethod], list[str]]:
     """(the installed continuation codes at their settings, a sentence for each code that is missing).
 
     AUTO-07p is compiled in `directory`. quick: fewer steps of PyCont-Lite.
@@ -94,13 +94,15 @@ def continuation_codes(directory: Path, quick: bool) -> tuple[list[Contender], l
     if program := auto_program(directory, EQUATIONS):
         for step, tolerance in AUTO_SETTINGS:
             by_auto = partial(hopf_by_auto, program, step, tolerance)
-            found.append(Contender(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION_GROUP, by_auto))
+            found.append(
+                TimedMethod(AUTO, f"step {step:g}, EPSS {tolerance:.0e}", CONTINUATION_GROUP, by_auto)
+            )
     else:
         skipped.append(AUTO_SKIPPED)
     if module := optional_module(PYCONT_MODULE):
         for step in PYCONT_STEPS[: 1 if quick else None]:
             by_pycont = partial(hopf_by_pycont, module, step)
-            found.append(Contender(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, is_slow=True))
+            found.append(TimedMethod(PYCONT, f"step {step:g}", CONTINUATION_GROUP, by_pycont, is_slow=True))
     else:
         skipped.append(f"{PYCONT} is skipped: it is not installed (extra `bench`).")
     return found, skipped

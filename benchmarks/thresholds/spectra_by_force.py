@@ -14,7 +14,7 @@ from scipy.optimize import bisect, brentq
 
 from rodsweep.arrays import Array
 from rodsweep.bench.spectrum.rodsweep_spectrum import leading_eigenvalues
-from rodsweep.bench.study import Contender
+from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import HOPF, ONSET, FirstThreshold, ThresholdCase
 from rodsweep.discretization.elements.resolution import Resolution, expected_wave_number, resolution_for
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh
@@ -160,18 +160,18 @@ STEP_SEARCHES = {
 """Root searches by steps, by kind of threshold and name of the method."""
 
 
-def contenders(kind: str, quick: bool) -> list[Contender]:
+def contenders(kind: str, quick: bool) -> list[TimedMethod]:
     """All grids and root searches for one kind of threshold; quick: without LARGE_GRID."""
     grids = GRIDS if quick else (*GRIDS, LARGE_GRID)
     by_grid = [
-        Contender(
+        TimedMethod(
             name, f"{n} forces", GRID_GROUP, partial(threshold_on_grid, estimate, n), is_slow=n == LARGE_GRID
         )
         for name, estimate in GRID_ESTIMATES[kind].items()
         for n in grids
     ]
     by_search = [
-        Contender(name, f"tolerance {tolerance:.0e}", GRID_GROUP, partial(search, tolerance))
+        TimedMethod(name, f"tolerance {tolerance:.0e}", GRID_GROUP, partial(search, tolerance))
         for name, search in STEP_SEARCHES[kind].items()
         for tolerance in TOLERANCES
     ]

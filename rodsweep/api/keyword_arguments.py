@@ -7,12 +7,12 @@ from typing import Any, TypedDict, TypeVar
 
 import numpy as np
 
-from ..config.arm.section import ArmSection
+from ..config.arm.section import ArmConfig
 from ..config.base_config import Config
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.reading import validated_config, with_file_contents
 from ..config.document.refusals import similar_keys
-from ..config.material import MaterialSection
+from ..config.material import MaterialConfig
 from ..config.tasks import CONFIGS
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
@@ -74,7 +74,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
     if isinstance(arm, SlenderArm):
         has_load = "F" in CONFIGS[task].rod_parameters_used(tree.get(task, {}))
         omitted = (*LOAD_OF_RATIO, "load_kind", *(() if has_load else LOADS))
-        names = [name for name in ArmSection.model_fields if name not in omitted]
+        names = [name for name in ArmConfig.model_fields if name not in omitted]
         complete_arm = with_load_in_si(arm) if has_load else arm
         quantities = {name: getattr(complete_arm, name) for name in names}
         for name, default in DEFAULT_VALUES.items():
@@ -134,7 +134,7 @@ def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     """Allowed keys of each section of a task's config, by name of the section; "" is the top level."""
     fields = CONFIGS[task].model_fields
     sections: dict[str, Any] = {name: fields[name].annotation for name in (task, "parameters")}
-    sections["material"] = MaterialSection
+    sections["material"] = MaterialConfig
     top_keys = [name for name in Config.model_fields if name not in ("task", "parameters", "material")]
     return {name: tuple(section.model_fields) for name, section in sections.items()} | {"": top_keys}
 
@@ -154,7 +154,7 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
     """
     allowed = [key for keys in sections.values() for key in keys]
     similar = similar_keys(name, allowed)
-    if not similar and name not in ArmSection.model_fields:
+    if not similar and name not in ArmConfig.model_fields:
         raise unknown_argument_error(name, allowed)
     return similar[0] if similar else allowed[0]
 

@@ -11,7 +11,7 @@ from pydantic import ValidationError
 
 from ..config.document.call_arguments import refusing_wrong_arguments, unknown_argument_error
 from ..config.document.refusals import message_of_problem, similar_keys, unknown_key_hint
-from ..config.material import MaterialSection, with_profile_read
+from ..config.material import MaterialConfig, with_profile_read
 from ..config.parameters_section import DEFAULT_F_MAX, DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
 from ..config.tasks import CONFIGS
 from ..config.values import as_float, short_repr
@@ -216,7 +216,7 @@ class SoftRod:
         return hash((*self._values.items(), repr(self._given_material)))
 
 
-def _material_section(values: Mapping[str, Any]) -> MaterialSection | None:
+def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:
     """The validated section `material` of a rod; None if all values in `values` are None. Raises InputError
     for invalid values.
     """
@@ -227,7 +227,7 @@ def _material_section(values: Mapping[str, Any]) -> MaterialSection | None:
         return None
     material = with_profile_read({"material": tree}, Path())["material"]
     try:
-        return MaterialSection.model_validate(material)
+        return MaterialConfig.model_validate(material)
     except ValidationError as error:
         problem: dict[str, Any] = dict(error.errors(include_url=False)[0])
         in_config = problem | {"loc": ("material", *problem["loc"])}

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 import numpy as np
 import xarray as xr
 
-from ..results.file.creation import Plan
+from ..results.file.creation import FilePlan
 from ..results.file.validation import FORMAT, PROGRAM
 from ..results.file.view import View
 from ..results.layouts.variables import FilledVariable
@@ -53,7 +53,7 @@ class SolvedPoints:
     """Results of all points of a job. Pickling or deep copying gives a `DatasetResult` with the Dataset."""
 
     job: Job
-    plan: Plan = field(repr=False)
+    plan: FilePlan = field(repr=False)
     """Plan of the results, without the attributes of a file."""
     statuses: Sequence[PointStatus]
     """All statuses that a point of the task can have."""

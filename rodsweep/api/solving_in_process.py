@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..results.file.creation import Plan
+from ..results.file.creation import FilePlan
 from ..results.file.provenance import joined_failure_reasons, utc_time
 from ..results.file.view import View
 from ..solve.backend.availability import require_solvers
@@ -105,7 +105,7 @@ def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]
 
 
 def _solve_points(
-    job: Job, solver: Solver, plan: Plan, display: Display
+    job: Job, solver: Solver, plan: FilePlan, display: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
     of the points first. messages: one message for each point. reasons: reasons why points failed. display:
@@ -169,7 +169,7 @@ def _sweep_wide_result(solver: SweepWideSolver, view: View, display: Display) ->
 
 
 def _change_points(
-    result: SweepWideResult, job: Job, plan: Plan, values: dict[str, np.ndarray], messages: list[str]
+    result: SweepWideResult, job: Job, plan: FilePlan, values: dict[str, np.ndarray], messages: list[str]
 ) -> None:
     """Replaces variables and messages of the points that change. values: variables by name, with the
     dimensions of the points first. messages: message of each point."""
@@ -237,7 +237,7 @@ def display_listener(display: Display, name: str) -> RankListener:
     """
     return RankListener(
         SingleRankCommunication(
-            lambda position: display.show_position(position.words, position.completed_fraction or 0.0)
+            lambda position: display.show_position(position.text, position.completed_fraction or 0.0)
         ),
         StopRequest(),
         lambda: name,

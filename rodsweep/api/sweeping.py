@@ -96,8 +96,9 @@ def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
 
 def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, display: Display) -> xr.Dataset:
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
-    directory. tree: config tree. strict: as in `sweep`. display: progress display. Raises
-    EnvironmentIncomplete if mpiexec cannot be started, or the exception of `_run_failure_exception`.
+    directory. tree: config tree. strict: whether an unforeseen exception, a bug of rodsweep, is raised.
+    display: progress display. Raises EnvironmentIncomplete if mpiexec cannot be started, or the exception of
+    `_run_failure_exception`.
     """
     points = tree["parameters"].get("points")
     if points is not None:

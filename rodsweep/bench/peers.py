@@ -21,7 +21,7 @@ from pathlib import Path
 from types import ModuleType
 
 from ..errors import InputError
-from .study import Contender, Measurement
+from .study import Measurement, TimedMethod
 
 PEER_PACKAGE_NAME = "benchmarks"
 """Name of the folder of peers in a checkout, and name under which its package is imported from any folder."""
@@ -42,7 +42,7 @@ MakePeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
 class Peers:
     """Contribution of the peers to one study."""
 
-    contenders: Mapping[str, Sequence[Contender]] = field(default_factory=dict)
+    contenders: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
     """Methods of each race, by the name of the race, with settings from the coarsest to the finest; the study
     defines the races and their cases."""
     sections: Sequence[MakePeerSection] = ()
@@ -52,7 +52,7 @@ class Peers:
     skipped: Sequence[str] = ()
     """A sentence for each peer that is not installed."""
 
-    def of(self, race: str) -> list[Contender]:
+    def of(self, race: str) -> list[TimedMethod]:
         """Contenders of the race with the name `race`; empty if no peer takes part."""
         return list(self.contenders.get(race, ()))
 

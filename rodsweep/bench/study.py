@@ -23,7 +23,7 @@ after the previous run."""
 
 
 @dataclass(frozen=True, slots=True)
-class Contender:
+class TimedMethod:
     """A method at one setting that takes part in a race. method, setting: names in the tables.
 
     group: name of a group of methods, which have the same colour in the figure. run: function (case) ->
@@ -40,7 +40,7 @@ class Contender:
 @dataclass(frozen=True, slots=True)
 class Measurement:
     """Time and error of a method at one setting on one case. case, method, setting, group: names, as in
-    `Contender`.
+    `TimedMethod`.
 
     seconds: median time of the rounds. error: relative error; nan if there is no error to measure, inf if the
     method failed. failure: reason for the failure. least_seconds: minimum time of the rounds, which depends
@@ -80,8 +80,7 @@ class BenchmarkReport:
         return any(isfinite(m.error) for m in self.measurements)
 
     def draw(self, output: Path) -> None:
-        """Writes the figure into the file `output`: errors against time, with one panel per case and one
-        curve per method."""
+        """Writes a figure of errors against time into a file: a panel per case, a curve per method."""
         draw_work_precision(measurement_columns(self.measurements), f"ms a {self.unit}", self.target, output)
 
     def table(self) -> Table:
@@ -159,25 +158,28 @@ def result_or_error(run: Callable[[Any], Outcome], case: Any) -> Outcome | Excep
         return error
 
 
+Judge = Callable[[Any], dict[str, Any]]
+"""Function from a result of a method to a dictionary with `error` and further fields of `Measurement`."""
+
+
 class CaseWithErrorMeasure(NamedTuple):
-    """A case on which methods are compared, with its name. judge: function from a result of a method to a
-    dictionary with `error` and further fields of `Measurement`."""
+    """A case on which methods are compared, with its name and the function that measures errors."""
 
     name: str
     case: Any
-    judge: Callable[[Any], dict[str, Any]]
+    judge: Judge
 
 
 def measure_case(
-    name: str, case: Any, contenders: Sequence[Contender], rounds: int, judge: Callable[[Any], dict[str, Any]]
+    name: str, case: Any, contenders: Sequence[TimedMethod], rounds: int, judge: Judge
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. name, case, judge: as in
-    `CaseWithErrorMeasure`. rounds: number of timed rounds."""
+    """Measurements of all contenders on one case, timed in turn. name: name of the case. judge: function from
+    a method's result to the fields of `Measurement`. rounds: number of timed rounds."""
     return measure_cases([CaseWithErrorMeasure(name, case, judge)], contenders, rounds)
 
 
 def measure_cases(
-    entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[Contender], rounds: int
+    entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of all contenders on all cases `entries`, timed in turn. rounds: number of timed
     rounds."""
@@ -207,14 +209,14 @@ def grouped_by_fields(
     return groups
 
 
-def every_nth_setting(contenders: Iterable[Contender], stride: int) -> list[Contender]:
+def every_nth_setting(contenders: Iterable[TimedMethod], stride: int) -> list[TimedMethod]:
     """Contenders with every n-th setting of each method, from the first, for a quick run. stride: n."""
     return [contender for settings in by_method(contenders).values() for contender in settings[::stride]]
 
 
-def by_method(contenders: Iterable[Contender]) -> dict[str, list[Contender]]:
+def by_method(contenders: Iterable[TimedMethod]) -> dict[str, list[TimedMethod]]:
     """Contenders of each method, in the given order, by the name of the method."""
-    methods: dict[str, list[Contender]] = {}
+    methods: dict[str, list[TimedMethod]] = {}
     for contender in contenders:
         methods.setdefault(contender.method, []).append(contender)
     return methods

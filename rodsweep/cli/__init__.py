@@ -22,7 +22,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import click  # noqa: E402 - after the environment is set
 
 from ..config.values import printable  # noqa: E402 - after the environment is set
-from ..errors import BUG_STATUS, Refusal  # noqa: E402 - after the environment is set
+from ..errors import BUG_STATUS, UserError  # noqa: E402 - after the environment is set
 from .command_line import commands  # noqa: E402 - after the environment is set
 from .launchers import prints_messages  # noqa: E402 - after the environment is set
 from .output_commands import explore, export, plot, portrait, report  # noqa: E402 - after the environment is set
@@ -64,7 +64,7 @@ def main() -> None:
     except click.ClickException as error:
         code = 3
         message = error.format_message()
-    except Refusal as error:
+    except UserError as error:
         code = error.exit_status
         message = str(error)
     except OSError as error:  # such as a name that is too long, or a directory without permission

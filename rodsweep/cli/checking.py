@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..config.arm.quantities import quantities_as_typed
-from ..config.arm.section import ArmSection
+from ..config.arm.section import ArmConfig
 from ..config.arm.status import SLENDER
 from ..discretization.elements.resolution import RESOLUTION_SETTINGS
 from ..model.arm.neglected import wall_flattening_effect
@@ -17,7 +17,7 @@ from ..post.summary.arm.validity_sentences import plane_lines, validity_sentence
 from ..post.summary.number_texts import span_text
 from ..sweep.cost_estimate import MAX_SAMPLED_POINTS, with_loading_time
 from ..sweep.points.points import Points
-from ..tasks.arm.point_solver import NoRodStatus, rod_numbers
+from ..tasks.arm.point_solver import OutsideModelStatus, rod_numbers
 from ..tasks.arm.validity import ArmValidity
 from ..tasks.running.job import Job
 from ..verdict.checks import tube_wall_check
@@ -89,14 +89,14 @@ def _arm_lines(job: Job) -> list[str]:
     ]
 
 
-def _material_text(arm: ArmSection) -> str:
+def _material_text(arm: ArmConfig) -> str:
     """Text with the segments, the law and the section of an arm, to be appended to the list of quantities."""
     segments = "".join(f"; segment {text}" for text in arm.segments or ())
     laws = [value.replace("_", "-") for value in (arm.law, arm.section and f"{arm.section} section") if value]
     return f"{segments}; {', '.join(laws)}" if laws else segments
 
 
-def _wall_lines(arm: ArmSection) -> list[str]:
+def _wall_lines(arm: ArmConfig) -> list[str]:
     """Warning for tubes with thin walls, in a list; empty if all walls are thick enough."""
     if arm.inner_radius is None:
         return []
@@ -124,7 +124,7 @@ def _lines_on_points_without_rod(points: Points) -> list[str]:
         modelled_rods = rods if points.arm_statuses is None else rods[points.arm_statuses == SLENDER]
         rods_text = counted(len(np.unique(modelled_rods)), "different rod")
         lines.append(f"{rods_text} at {len(modelled_rods)} points; rods that are equal are solved once")
-    for status in NoRodStatus:
+    for status in OutsideModelStatus:
         number = 0 if points.arm_statuses is None else int((points.arm_statuses == status).sum())
         if number:
             lines.append(f"{status.name} at {number} of {points.count} points: {status.sentence}")

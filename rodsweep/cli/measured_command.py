@@ -29,16 +29,16 @@ repetition at this distance."""
 
 
 @dataclass(frozen=True, slots=True)
-class InstantSpectra(SpectrumTask):
+class TabulatedSpectra(SpectrumTask):
     """The task spectrum with random eigenvalues from a table, so that all measured time belongs to the sweep.
 
     All eigenvalues are stable, because a sweep would spend time on locating changes of stability.
 
-    killed: directory in which the rank of the last point records its peak memory before the process is
-    killed; None for a run without a kill.
+    kill_directory: directory in which the rank of the last point records its peak memory before the process
+    is killed; None for a run without a kill.
     """
 
-    killed: Path | None = None
+    kill_directory: Path | None = None
 
     def solver(self) -> Solver:
         from ..solve.spectrum.search import Spectrum
@@ -64,8 +64,8 @@ class InstantSpectra(SpectrumTask):
 
         def solve(index: int) -> Spectrum:
             points.rod(index)
-            if self.killed and index == points.count - 1:
-                record_memory(self.killed)
+            if self.kill_directory and index == points.count - 1:
+                record_memory(self.kill_directory)
                 os.kill(os.getpid(), signal.SIGKILL)
             return outcomes[index % OUTCOME_COUNT]
 
@@ -97,7 +97,7 @@ def run_measured() -> None:
     directory, kind, *command = sys.argv[1:]
     notes = Path(directory)
     if kind != SOLVED:
-        TASKS["spectrum"] = partial(InstantSpectra, killed=notes if kind == KILLED else None)
+        TASKS["spectrum"] = partial(TabulatedSpectra, kill_directory=notes if kind == KILLED else None)
     sys.argv = ["rodsweep", *command]
     try:
         main()

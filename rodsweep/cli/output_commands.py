@@ -72,14 +72,14 @@ def plot(
 ) -> None:
     """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
-    from ..post.figures.grid_sections import section_at_values
+    from ..post.figures.grid_slices import slice_at_values
     from ..post.figures.request import FigureLook
     from ..results.file.view import read_view
     from ..tasks.cycle_shapes import with_shapes
 
     output = output or with_suffix_replaced(files[0], ".gif" if what == "animation" else ".png")
     values = _parsed_at_values(at)
-    views = [section_at_values(read_view(link_target(file)), values) for file in files]
+    views = [slice_at_values(read_view(link_target(file)), values) for file in files]
     message = draw(
         views, output, look=FigureLook(**look), shapes=with_shapes, roots=roots, what=what, points=points
     )

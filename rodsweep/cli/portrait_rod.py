@@ -27,7 +27,7 @@ densities."""
 def rod_of_options(
     parameters: Mapping[str, float | None], quantities: Mapping[str, Any], material: Mapping[str, str | None]
 ) -> "DescribedRod":
-    """The rod described by options; InputError for options that describe no rod.
+    """The rod described by options; InputError for options outside their ranges.
 
     parameters: parameters of the rod. quantities: quantities of an arm, poisson and segments. material: law,
     section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
@@ -82,7 +82,7 @@ def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Ite
     numbers = count(1)
 
     def show(position: SolvePosition) -> None:
-        reporter.show_position(position.words, position.completed_fraction or 0.0)
+        reporter.show_position(position.text, position.completed_fraction or 0.0)
 
     def solve_and_show(job: "Job") -> "View":
         name = job.config.task.replace("_", " ")

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from ..config.base_config import Config
-from ..results.file.creation import Plan
+from ..results.file.creation import FilePlan
 from ..solve.backend.availability import require_solvers, start_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_force_of_rod
 from ..sweep.points.grid import rods_for_flutter_forces
@@ -43,7 +43,7 @@ class _SharedComputations:
         return any(self.team.gather_on_all_ranks(self.has_skipped_items))
 
 
-def with_variables_from_config(plan: Plan, task: Task, team: Team, stop: StopRequest) -> Plan | None:
+def with_variables_from_config(plan: FilePlan, task: Task, team: Team, stop: StopRequest) -> FilePlan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
     together.
 

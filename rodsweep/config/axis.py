@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field
 
 from ..arrays import Array
-from .values import Number, StrictSection, as_float, short_repr
+from .values import Number, StrictConfigSection, as_float, short_repr
 
 MAX_AXIS_VALUES = 1_000_000_000
 """Maximum number of values on an axis; a range with more values is refused."""
@@ -44,7 +44,7 @@ QUANTITY_DIGITS = 15
 16th."""
 
 
-class Axis(StrictSection):
+class Axis(StrictConfigSection):
     """Values of a parameter: a number, a list, or `num` values from start to stop."""
 
     @classmethod

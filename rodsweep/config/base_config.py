@@ -12,31 +12,31 @@ from pydantic import Field, model_validator
 from ..model.material.build import DEFAULT_BUILD, Build
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
-from .material import MaterialSection
-from .parameters_section import Axes, LinearParameters
-from .values import Number, StrictSection, Text
+from .material import MaterialConfig
+from .parameters_section import LinearParametersSection, ParametersSection
+from .values import Number, StrictConfigSection, Text
 
 ModeCount = Annotated[int, Field(ge=1, le=100)]
 NodeCount = Annotated[int, Field(ge=3, le=513)]
 CrossingCount = Annotated[int, Field(ge=1, le=1000)]
 
 
-class Config(StrictSection):
+class Config(StrictConfigSection):
     """Keys and properties of the config of every task."""
 
     title: Annotated[Text, Field(max_length=200)] = ""
     """Name of the run, printed by `check` and `show`."""
     task: str
     """Name of the task."""
-    parameters: Axes
+    parameters: ParametersSection
     """Axes of the parameters, a file of points, or an arm."""
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
     numbers are cycles, have other limits and defaults."""
 
-    material: Annotated[
-        MaterialSection | None, Field(description="a mapping of law, section and profile")
-    ] = None
+    material: Annotated[MaterialConfig | None, Field(description="a mapping of law, section and profile")] = (
+        None
+    )
     """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
     allows_crushed_rods: ClassVar[bool] = False
@@ -159,7 +159,7 @@ class Config(StrictSection):
 class LinearConfig(Config):
     """Base class of the configs of tasks on the linear problem."""
 
-    parameters: LinearParameters
+    parameters: LinearParametersSection
 
     nonlinear_parameters_used: ClassVar[tuple[str, ...]] = ()
     """Names of the parameters that only the nonlinear problem has but that some options of the task use."""

@@ -23,7 +23,7 @@ from .arm.axes import LOAD_KEYS, NON_LOAD_KEYS
 from .axis import Axis
 from .document.refusals import value_type_of_key
 from .tasks import CONFIGS
-from .values import StrictSection
+from .values import StrictConfigSection
 
 Schema = dict[str, Any]
 QUANTITY_TEXT = r"^\s*{sign}(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?\s*[A-Za-z\u00b5\u03bc{percent}]"
@@ -57,7 +57,7 @@ def json_schema() -> dict[str, Any]:
         tasks.append(schema)
     for section in definitions.values():
         add_parameter_bounds(section.get("properties", {}), definitions["Axis"])
-    add_arm_conditions(definitions["ArmSection"], definitions["Axis"])
+    add_arm_conditions(definitions["ArmConfig"], definitions["Axis"])
     complete_schema = {"oneOf": tasks, "definitions": definitions}
     for node in iterate_subschemas(complete_schema):
         for ours, theirs in BOUND_KEYWORDS.items():
@@ -72,7 +72,7 @@ def section_classes(config: type[BaseModel]) -> Iterator[type[BaseModel]]:
     """Yields the classes of the sections of a config, including nested sections."""
     for field in config.model_fields.values():
         kind = value_type_of_key(field)
-        if isinstance(kind, type) and issubclass(kind, StrictSection) and not issubclass(kind, Axis):
+        if isinstance(kind, type) and issubclass(kind, StrictConfigSection) and not issubclass(kind, Axis):
             yield kind
             yield from section_classes(kind)
 

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from ..errors import InputError
 from ..model.material.build import Build
 from ..model.material.profile import FACTOR_NAMES, Profile
-from .values import Number, StrictSection, cell_number, short_repr
+from .values import Number, StrictConfigSection, cell_number, short_repr
 
 MAX_PROFILE_ROWS = 1000
 """Maximum number of rows of a profile; longer profiles are refused."""
@@ -24,7 +24,7 @@ FactorColumn = Annotated[
 ]
 
 
-class ProfileTable(StrictSection):
+class ProfileTable(StrictConfigSection):
     """Table of factors that multiply stiffnesses and drags along the arm, in columns of equal length. An
     omitted column is 1 along the whole arm.
     """
@@ -72,7 +72,7 @@ def _allow_profile_file(schema: dict[str, Any]) -> None:
     schema["anyOf"] = [{"type": "string"}, *schema["anyOf"]]
 
 
-class MaterialSection(StrictSection):
+class MaterialConfig(StrictConfigSection):
     """Constitutive law of the arm, and its variation along the length."""
 
     law: LawName = "linear"
@@ -95,7 +95,7 @@ class MaterialSection(StrictSection):
         return Build(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
-    def _require_valid_build(self) -> "MaterialSection":
+    def _require_valid_build(self) -> "MaterialConfig":
         if not self.model_fields_set:
             raise ValueError("the section is empty; give law, section or profile")
         assert self.build

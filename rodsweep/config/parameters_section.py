@@ -16,9 +16,9 @@ from ..model.parameters import (
 from ..wording import enumeration
 from .arm.axes import MAX_ARM_GRID_POINTS, grid_axis_names, parameter_of_axis
 from .arm.conflicts import refuse_conflicting_keys
-from .arm.section import ArmSection
+from .arm.section import ArmConfig
 from .axis import Axis, ParameterAxis
-from .values import Number, StrictSection, Text
+from .values import Number, StrictConfigSection, Text
 
 NONLINEAR_ONLY_PARAMETERS = tuple(name for name in NONLINEAR_PARAMETERS if name not in LINEAR_PARAMETERS)
 """Names of the parameters on which limit cycles depend but the linear problem does not."""
@@ -33,16 +33,16 @@ DEFAULT_F_MAX = 200.0
 """Default of the largest force of a search for thresholds, in k3/L^2: option F_max."""
 
 
-def _section_with_keys(base: type[StrictSection], names: tuple[str, ...], kind: Any) -> Any:
+def _section_with_keys(base: type[StrictConfigSection], names: tuple[str, ...], kind: Any) -> Any:
     """Subclass of `base` with an additional optional key of the type `kind` for each name in `names`."""
     fields: dict[str, Any] = dict.fromkeys(names, (kind | None, None))
     return create_model("Section", __base__=base, **fields)
 
 
-LinearAxes: Any = _section_with_keys(StrictSection, TRANSVERSE_PARAMETERS, ParameterAxis)
+LinearAxes: Any = _section_with_keys(StrictConfigSection, TRANSVERSE_PARAMETERS, ParameterAxis)
 
 
-class Axes(LinearAxes):
+class ParametersSection(LinearAxes):
     """The section `parameters`: axes of a grid of parameters, the name of a CSV file of points, or an arm."""
 
     points: Annotated[Text | None, Field(min_length=1, description="the name of a CSV file")] = None
@@ -53,7 +53,7 @@ class Axes(LinearAxes):
     ] = None
     """Optional parameters among the columns of `points`; by default the optional parameters in the header of
     the file."""
-    arm: Annotated[ArmSection | None, Field(description="a mapping of an arm's quantities to values")] = None
+    arm: Annotated[ArmConfig | None, Field(description="a mapping of an arm's quantities to values")] = None
     """An arm in SI units. A parameter given in addition to the arm replaces the arm's value."""
 
     task_parameters: ClassVar[tuple[str, ...]] = TRANSVERSE_PARAMETERS
@@ -75,7 +75,7 @@ class Axes(LinearAxes):
         } | given
 
     @model_validator(mode="after")
-    def _require_points_for_columns(self) -> "Axes":
+    def _require_points_for_columns(self) -> "ParametersSection":
         if self.columns is not None and self.points is None:
             raise ValueError("parameters.columns is given but parameters.points is not; remove it")
         return self
@@ -153,7 +153,7 @@ class Axes(LinearAxes):
                 f"parameters.{missing[0]} is missing; give {enumeration(names, 'and')}{points_hint}"
             )
 
-    def _require_arm(self, arm: ArmSection, needs_force: bool) -> None:
+    def _require_arm(self, arm: ArmConfig, needs_force: bool) -> None:
         """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
 
         needs_force: whether F is a parameter of the task.
@@ -171,24 +171,24 @@ class Axes(LinearAxes):
             arm.dimensionless_axes()
 
 
-AxesAndNumbers: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, Number)
-AllAxes: Any = _section_with_keys(Axes, NONLINEAR_ONLY_PARAMETERS, ParameterAxis)
+AxesAndNumbers: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, Number)
+AllAxes: Any = _section_with_keys(ParametersSection, NONLINEAR_ONLY_PARAMETERS, ParameterAxis)
 
 
-class LinearParameters(AxesAndNumbers):
+class LinearParametersSection(AxesAndNumbers):
     """Section `parameters` of a task on the linear problem, whose parameters are axes.
 
     A parameter on which only limit cycles depend may be given as a single number.
     """
 
 
-class DiagramParameters(LinearParameters):
+class DiagramParametersSection(LinearParametersSection):
     """Section `parameters` of the task phase_diagram."""
 
     in_diagram: ClassVar[bool] = True
 
 
-class NonlinearParameters(AllAxes):
+class NonlinearParametersSection(AllAxes):
     """Section `parameters` of a task on the nonlinear rod, all of whose parameters may be axes."""
 
     task_parameters: ClassVar[tuple[str, ...]] = tuple(PARAMETERS)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
 
-class StrictSection(BaseModel):
+class StrictConfigSection(BaseModel):
     """Base class of a config's sections: unknown keys are refused, types are not converted, values are
     frozen.
     """

@@ -1,4 +1,4 @@
-"""Answers to questions of the page from a result file, without solving: diagram, cycles and branches."""
+"""Answers to requests of the page from a result file, without solving: diagram, cycles and branches."""
 
 import json
 from collections.abc import Collection
@@ -16,7 +16,7 @@ from ..post.figures.cycle.animation import MIN_SHAPES
 from ..results.file.view import status_sentences_in
 from .slider_scales import SCALES
 from .solving.diagrams import Dataset, flag_words
-from .solving.questions import AnswerVariables, drawn_branches
+from .solving.requests import AnswerVariables, drawn_branches
 from .state import PageState
 
 CONTROL_DIGITS = (5, 6)
@@ -33,9 +33,9 @@ spacing of stored loads, is below this number."""
 
 
 class AnswersFromFile:
-    """Answers to questions of the page from a result file of rods or arms.
+    """Answers to requests of the page from a result file of rods or arms.
 
-    data: content of the file `path`. state: state with which the page opens. diagram: answer to the question
+    data: content of the file `path`. state: state with which the page opens. diagram: answer to the request
     "diagram" for this state, or None.
     """
 
@@ -50,7 +50,7 @@ class AnswersFromFile:
         """Whether the file has one limit cycle per point."""
 
     def answer(self, kind: str, state: PageState) -> AnswerVariables | None:
-        """Stored answer to a question of the kind `kind` for the state `state` of the page; None if the file
+        """Stored answer to a request of the kind `kind` for the state `state` of the page; None if the file
         has no such answer.
         """
         if state.tab != self.state.tab or state.law != self.state.law:

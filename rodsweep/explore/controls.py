@@ -142,7 +142,7 @@ class Controls:
 
 
 PAUSE_MILLISECONDS = 900
-"""Questions that take seconds are sent when the controls have not changed for this time, in milliseconds."""
+"""Requests that take seconds are sent when the controls have not changed for this time, in milliseconds."""
 
 
 class PauseTimer:

@@ -1,4 +1,4 @@
-"""A page in a browser tab: its state, its pictures, and the questions being solved for it."""
+"""A page in a browser tab: its state, its pictures, and the requests being solved for it."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,12 +13,12 @@ from .controls import PauseTimer
 from .page_contents import PageContents
 from .sharing import state_from_config_text
 from .slider_scales import SCALES
-from .solving import question_inputs as kinds
+from .solving import request_inputs as kinds
 from .solving.diagrams import has_uniform_linear_rods
-from .solving.question_inputs import AnswerInputs, answer_inputs, state_to_solve
-from .solving.questions import Question, Reply
+from .solving.request_inputs import AnswerInputs, inputs_of_request, state_to_solve
+from .solving.requests import Reply, SolveRequest
 from .solving.solvers import Solvers
-from .solving.tip_release import Tip
+from .solving.tip_release import TipPosition
 from .state import PageState, from_address, rod_of
 from .texts import progress_text, solving_text
 
@@ -42,18 +42,17 @@ class Page:
         self.is_open = True
         self.solving: set[str] = set()
         self.progress: dict[str, str] = {}
-        """Progress of each running solve, as text, by kind of question."""
+        """Progress of each running solve, as text, by kind of request."""
         self.latest_inputs: dict[str, AnswerInputs] = {}
-        """Part of the state, and dragged tip, on which the latest question of each kind depends, see
-        `answer_inputs`."""
+        """`inputs_of_request` of the latest request of each kind."""
         self.drawn_around: PageState | None = None
         """State around which the drawn diagram was solved; None before the first answer of a solver."""
         self.contents = PageContents(self.change, self.load)
-        self.pause_timer = PauseTimer(document, self._ask_slow_questions)
+        self.pause_timer = PauseTimer(document, self._send_slow_requests)
         self.contents.connect(document, self._callbacks())
         self.contents.beating.on_drag(self.drag)
         if stored is not None and stored.diagram is not None:
-            self.latest_inputs["diagram"] = answer_inputs(Question("diagram", state))
+            self.latest_inputs["diagram"] = inputs_of_request(SolveRequest("diagram", state))
             self.contents.show("diagram", stored.diagram, state)
 
     def open(self, query: str) -> None:
@@ -73,7 +72,7 @@ class Page:
             self._show_error(str(error))
 
     def close(self) -> None:
-        """Cancels all unanswered questions of this page."""
+        """Cancels all unanswered requests of this page."""
         self.is_open = False
         self.solvers.cancel_session(self.session)
 
@@ -82,34 +81,34 @@ class Page:
         state = replace(self.state, **changed)
         self._change_to(state.with_values(**values) if values else state)
 
-    def solve(self, kind: str, tip: Tip | None = None) -> None:
-        """Sends a question of the kind `kind` to its solver process, even if the answer is already shown."""
-        self._cancel_question(kind)
-        self._send_question(kind, tip, is_solved_again=True)
+    def solve(self, kind: str, tip: TipPosition | None = None) -> None:
+        """Sends a request of the kind `kind` to its solver process, even if the answer is already shown."""
+        self._cancel_request(kind)
+        self._send_request(kind, tip, is_solved_again=True)
         self._show_solving()
 
     def stop(self) -> None:
         """Cancels long solves, with a sentence in their pictures. A dragged arm returns to its motion."""
         for kind in kinds.STOPPABLE_KINDS:
             if kind in self.solving:
-                self._cancel_question(kind)
+                self._cancel_request(kind)
                 if kind in kinds.TIP_KINDS:
                     self.contents.beating.remove_dragged_shape()
                 elif kind not in kinds.MANUAL_KINDS:
                     self.contents.show_message(kind, STOPPED_SENTENCE)
         self._show_solving()
 
-    def drag(self, kind: str, tip: Tip) -> None:
+    def drag(self, kind: str, tip: TipPosition) -> None:
         """Requests the shape with the tip held at `tip`, in L (kind "bent"), or the motion after the tip is
-        released there (kind "motion"). A question of the other kind is cancelled."""
+        released there (kind "motion"). A request of the other kind is cancelled."""
         for tip_kind in kinds.TIP_KINDS:
             if tip_kind != kind:
-                self._cancel_question(tip_kind)
-        self._send_question(kind, tip)
+                self._cancel_request(tip_kind)
+        self._send_request(kind, tip)
         self._show_solving()
 
-    def _cancel_question(self, kind: str) -> None:
-        """Cancels the question of the kind `kind`; an answer that arrives later is ignored."""
+    def _cancel_request(self, kind: str) -> None:
+        """Cancels the request of the kind `kind`; an answer that arrives later is ignored."""
         self.latest_inputs.pop(kind, None)
         if kind in self.solving:
             self.solving.discard(kind)
@@ -141,9 +140,9 @@ class Page:
             self._show_error(str(error))
             return
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
-            self._cancel_question(kind)
+            self._cancel_request(kind)
         for kind in kinds.INSTANT_KINDS:
-            self._send_question(kind)
+            self._send_request(kind)
         self.contents.show_point(state, F)
         self._show_solving()
         self.pause_timer.restart()
@@ -154,18 +153,18 @@ class Page:
         """
         self.pause_timer.cancel()
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
-            self._cancel_question(kind)
+            self._cancel_request(kind)
         for kind in (*kinds.INSTANT_KINDS, *kinds.IDLE_KINDS):
             if kind != "diagram" or kind in self.solving:
-                self._cancel_question(kind)
+                self._cancel_request(kind)
             if kind != "diagram" or not self.contents.diagram.is_drawn:
                 self.contents.show_message(kind, sentence)
         self._show_solving()
 
-    def _ask_slow_questions(self) -> None:
+    def _send_slow_requests(self) -> None:
         self.contents.sharing.show_texts()
         for kind in kinds.IDLE_KINDS:
-            if answer_inputs(Question(kind, self.state)) == self.latest_inputs.get(kind):
+            if inputs_of_request(SolveRequest(kind, self.state)) == self.latest_inputs.get(kind):
                 continue
             if self.state.tab == "rod" and not has_uniform_linear_rods(self.state):
                 self.latest_inputs.pop(kind, None)
@@ -173,23 +172,24 @@ class Page:
                     kind, "The solve takes a minute for such a rod; press the button below to start."
                 )
                 continue
-            self._send_question(kind)
+            self._send_request(kind)
         self._show_solving()
 
-    def _send_question(self, kind: str, tip: Tip | None = None, is_solved_again: bool = False) -> None:
-        """Sends a new question of the kind `kind`. A stored answer replaces the solve, unless
+    def _send_request(self, kind: str, tip: TipPosition | None = None, is_solved_again: bool = False) -> None:
+        """Sends a new request of the kind `kind`. A stored answer replaces the solve, unless
         `is_solved_again`. tip: position of the dragged tip, in L.
         """
         state = state_to_solve(kind, self.state, self.drawn_around)
         cycle_file = self.stored if (kind, tip) == ("film", None) else None
-        question = Question(kind, state, tip, None if cycle_file is None else cycle_file.cycle_to_film(state))
-        inputs = answer_inputs(question)
+        cycle = None if cycle_file is None else cycle_file.cycle_to_film(state)
+        request = SolveRequest(kind, state, tip, cycle)
+        inputs = inputs_of_request(request)
         if self.latest_inputs.get(kind) == inputs:
             return
         self.latest_inputs[kind] = inputs
         stored = None if self.stored is None or is_solved_again else self.stored.answer(kind, self.state)
         if stored is not None:
-            self._cancel_question(kind)
+            self._cancel_request(kind)
             self.latest_inputs[kind] = inputs
             self.contents.show(kind, stored, self.state)
             return
@@ -197,20 +197,20 @@ class Page:
         self.progress.pop(kind, None)
 
         def receive(reply: Reply) -> None:
-            self._receive(question, reply)
+            self._receive(request, reply)
 
-        self.solvers.ask(self.session, question, receive, receive)
+        self.solvers.ask(self.session, request, receive, receive)
 
-    def _receive(self, question: Question, reply: Reply) -> None:
+    def _receive(self, request: SolveRequest, reply: Reply) -> None:
         """Passes a reply to the event loop of the document; only this loop may change the document."""
         if self.is_open:
-            self.document.add_next_tick_callback(lambda: self._on_answer(question, reply))
+            self.document.add_next_tick_callback(lambda: self._on_answer(request, reply))
 
-    def _on_answer(self, question: Question, reply: Reply) -> None:
-        kind = question.kind
+    def _on_answer(self, request: SolveRequest, reply: Reply) -> None:
+        kind = request.kind
         if (newest := self.latest_inputs.get(kind)) is None:  # the user has entered invalid values meanwhile
             return
-        is_newest = newest == answer_inputs(question)
+        is_newest = newest == inputs_of_request(request)
         if reply.outcome == "progress":
             if is_newest and kind in self.solving:
                 self.progress[kind] = progress_text(**reply.content)
@@ -222,10 +222,10 @@ class Page:
             return
         if reply.outcome == "answer":
             if kind == "cycles":
-                self.latest_inputs["diagram"] = answer_inputs(replace(question, kind="diagram"))
+                self.latest_inputs["diagram"] = inputs_of_request(replace(request, kind="diagram"))
             if kind in ("cycles", "diagram"):
-                self.drawn_around = question.state
-            self.contents.show(kind, reply.content, question.state)
+                self.drawn_around = request.state
+            self.contents.show(kind, reply.content, request.state)
         else:
             self.contents.show_message(kind, reply.content["sentence"])
         self._show_solving()

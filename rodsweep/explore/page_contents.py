@@ -18,11 +18,11 @@ from .pictures.growth import GrowthPicture
 from .pictures.moving_arm import MovingArmPicture
 from .pictures.numbers import NumbersTable
 from .pictures.spectrum import ModePicture, SpectrumPicture
-from .sharing import Sharing
+from .sharing import ExportPanel
 from .slider_scales import SCALES, length_axis, load_axis
 from .solving.diagrams import can_follow_cycle_curves
 from .state import PageState
-from .texts import SolvingSign, add_texts
+from .texts import SolvingIndicator, add_texts
 
 NO_CYCLE_CURVES_SENTENCE = "No folds and no torus points of cycles were found in this diagram."
 """Sentence above the diagram after a search that found no curves of cycles."""
@@ -46,8 +46,8 @@ class PageContents:
         self.branches = BranchPicture()
         self.diagram = DiagramPicture()
         self.numbers = NumbersTable()
-        self.sign = SolvingSign(name="working")
-        self.sharing = Sharing(self.cards, self.beating.arm_line, on_load)
+        self.sign = SolvingIndicator(name="working")
+        self.sharing = ExportPanel(self.cards, self.beating.arm_line, on_load)
         self.buttons = {
             kind: Button(label=label, name=f"{name}_button", stylesheets=[widgets])
             for kind, name, label in (
@@ -108,10 +108,10 @@ class PageContents:
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
-        self.sharing.update_hidden_texts(state)
+        self.sharing.update_exported_texts(state)
 
     def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
-        """Draws the answer `answer` to a question of the kind `kind` in all pictures that show this answer,
+        """Draws the answer `answer` to a request of the kind `kind` in all pictures that show this answer,
         and updates the table of numbers; the answer "film" is saved as a file.
         """
         if kind == "spectrum":
@@ -139,7 +139,7 @@ class PageContents:
         self.numbers.show(kind, answer)
 
     def show_message(self, kind: str, sentence: str) -> None:
-        """Shows a sentence in place of the pictures for questions of the kind `kind`; for questions on cycle
+        """Shows a sentence in place of the pictures for requests of the kind `kind`; for requests on cycle
         curves, drags and films, above the picture.
         """
         self.numbers.show(kind, None)

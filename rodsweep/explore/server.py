@@ -123,10 +123,10 @@ class ExploreServer:
         self.server.stop()
         self.http.stop()
 
-    def _open(self, document: Document) -> None:
-        page = Page(document, self.solvers, self.state, self.stored)
-        document.on_session_destroyed(lambda context: page.close())
-        context = document.session_context
+    def _open(self, bokeh_document: Document) -> None:
+        page = Page(bokeh_document, self.solvers, self.state, self.stored)
+        bokeh_document.on_session_destroyed(lambda context: page.close())
+        context = bokeh_document.session_context
         arguments = {} if context is None else context.request.arguments
         page.open(_page_query(arguments))
 
@@ -149,8 +149,9 @@ def _bound_sockets(port: int) -> list[socket.socket]:
 
 
 async def serve(state: PageState, stored: AnswersFromFile | None, port: int, is_opened: bool) -> None:
-    """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state, stored, port: as in `ExploreServer`.
-    is_opened: whether to open a browser; if none can be opened, a line on standard error says so.
+    """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state: state with which a page opens. stored: answers
+    from a result file, or None. port: TCP port; 0 for any free port. is_opened: whether to open a browser; if
+    none can be opened, a line on standard error says so.
     """
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):

@@ -47,7 +47,7 @@ class ExportedLines(DataModel):
     python = String(default="")
 
 
-class Sharing:
+class ExportPanel:
     """Texts and buttons with which the user exports and imports the state of the page.
 
     cards: pictures that can be saved. arm: animated line of the arm. on_load: callback for the text of a
@@ -94,13 +94,13 @@ class Sharing:
             *_picture_buttons(cards, arm), self.film, name="sharing", sizing_mode="stretch_width",
         )  # fmt: skip
 
-    def update_hidden_texts(self, state: PageState) -> None:
+    def update_exported_texts(self, state: PageState) -> None:
         """Updates the texts that the buttons copy and save. The visible texts are updated by `show_texts`."""
         self._state = state
         self.shared_lines.update(config=self._config(), python=state.python())
 
     def show_texts(self) -> None:
-        """Writes the visible texts of the latest state.
+        """Shows the page's address, and the Python lines and the YAML text of its latest state.
 
         The page calls this method only after a pause of the controls: each visible text causes a new layout,
         which would delay pictures that follow a slider, and browsers limit changes of the address to about

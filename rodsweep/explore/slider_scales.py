@@ -104,7 +104,8 @@ def length_axis(state: PageState) -> PictureAxis:
 def _rod_scale(
     name: str, low: float, high: float, logarithmic: bool = True, has_inf: bool = False
 ) -> ControlScale:
-    """Scale of a rod's parameter `name`. low, high, logarithmic, has_inf: as in `ControlScale`."""
+    """Scale of a rod's parameter `name`. low, high: values at the ends of the slider. has_inf: whether the
+    upper end means inf."""
     parameter = PARAMETERS[name]
     unit = "" if parameter.unit == "1" else f" ({parameter.unit})"
     label = f"{name}: {parameter.meaning}{unit}"
@@ -116,7 +117,8 @@ def _rod_scale(
 def _arm_scale(
     name: str, low: float, high: float, unit: str, factor: float, logarithmic: bool = True
 ) -> ControlScale:
-    """Scale of an arm's quantity `name`. low, high, unit, factor, logarithmic: as in `ControlScale`."""
+    """Scale of an arm's quantity `name`. low, high: values at the ends of the slider, in `unit`. factor:
+    factor from SI units to `unit`."""
     label = f"{quantity_words(name)} ({unit})"
     return ControlScale(
         name=name, label=label, low=low, high=high, unit=unit, factor=factor, is_logarithmic=logarithmic

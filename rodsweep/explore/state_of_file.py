@@ -22,7 +22,7 @@ from .solving.diagrams import (
     diagram_from_phase_result,
     diagram_from_row_result,
 )
-from .solving.questions import crushing_force
+from .solving.requests import crushing_force
 from .state import (
     DEFAULT_ARM,
     DEFAULT_F_MAX,

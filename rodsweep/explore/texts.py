@@ -14,7 +14,7 @@ from bokeh.models import CustomJS
 from .page_style import template_text
 
 KIND_WORDS = {"cycles": "folds and torus points", "growth": "growth rates", "branch": "branches"}
-"""Name of a kind of question in the text "solving ..."; a kind that is not listed is its own name."""
+"""Name of a kind of request in the text "solving ..."; a kind that is not listed is its own name."""
 
 
 class PageText(DataModel):
@@ -23,8 +23,8 @@ class PageText(DataModel):
     text = String(default="")
 
 
-class SolvingSign(PageText):
-    """The text "solving ...". kinds: kinds of questions being solved; the numbers and pictures of these kinds
+class SolvingIndicator(PageText):
+    """The text "solving ...". kinds: kinds of requests being solved; the numbers and pictures of these kinds
     fade, because they belong to an earlier state. is_stoppable: whether the button "Stop" is visible next to
     the text.
     """
@@ -44,16 +44,16 @@ def add_texts(document: Document, texts: Sequence[PageText]) -> None:
 
 
 def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
-    """Text "solving ..." for the given kinds of questions; empty if `kinds` is empty. progress: progress as
+    """Text "solving ..." for the given kinds of requests; empty if `kinds` is empty. progress: progress as
     text, by kind.
     """
     names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
     return f"solving {', '.join(names)} ..." if names else ""
 
 
-def progress_text(step: str, completed_fraction: float | None) -> str:
-    """Progress of a solve as text in parentheses. step: present step of the solve. completed_fraction:
+def progress_text(text: str, completed_fraction: float | None) -> str:
+    """Progress of a solve as text in parentheses. text: current step of the solve. completed_fraction:
     completed fraction of the work; None if unknown.
     """
     percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
-    return f" ({escape(step)}{percent})"
+    return f" ({escape(text)}{percent})"

@@ -47,12 +47,12 @@ class StoredSpecialPoint:
 class StoredBranch:
     """Branch of cycles: a curve through n vertices, which are stored cycles and special points.
 
-    at, y, period: followed parameter, largest y of the tip, and period at the vertices, (n,). Between two
-    special points the parameter changes in one direction; a cycle beyond one of them, by less than twice its
-    error, has the parameter of this point.
+    parameter, y, period: followed parameter, largest y of the tip, and period at the vertices, (n,).
+    Between two special points the parameter changes in one direction; a cycle beyond one of them, by less
+    than twice its error, has the parameter of this point.
     """
 
-    at: Array
+    parameter: Array
     y: Array
     period: Array
     stable: NDArray[np.integer]
@@ -70,8 +70,8 @@ class StoredBranch:
     @property
     def stable_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which the branch has a stable cycle."""
-        stable_indices = np.flatnonzero(self.stable == 1)
-        return union_of_ranges((min(self.at[i : i + 2]), max(self.at[i : i + 2])) for i in stable_indices)
+        pairs = [self.parameter[i : i + 2] for i in np.flatnonzero(self.stable == 1)]
+        return union_of_ranges((min(pair), max(pair)) for pair in pairs)
 
     @property
     def parameter_errors(self) -> dict[float, float]:
@@ -95,7 +95,7 @@ class StoredBranch:
             y = self.y[order]
             if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
                 continue
-            relative_distance = np.sign(a) * (self.at[order] / special.at - 1)
+            relative_distance = np.sign(a) * (self.parameter[order] / special.at - 1)
             turning_indices = np.flatnonzero(np.diff(relative_distance) <= 0)
             end = int(turning_indices[0]) + 1 if len(turning_indices) else len(relative_distance)
             if end > 2:

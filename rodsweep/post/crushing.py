@@ -36,7 +36,7 @@ def uncrushed_ranges(view: View, rods: Iterable[int]) -> list[ParameterRange]:
 
 
 def crushing_ratio(view: View, line: str, row: str, x: Array, y: Array) -> Array:
-    """Force divided by the force that crushes the rod, at the points x, y of the plane of a phase diagram;
+    """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
     0 if no force crushes the rod.
 
     line, row: parameters along a row, and constant on a row. x, y: their values, of shapes that broadcast.

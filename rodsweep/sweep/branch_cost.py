@@ -28,8 +28,8 @@ MEASURED_TAPERS = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
 0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
 MAX_MEASURED_LOAD = 0.9
-"""Largest force, divided by the force that crushes the rod, for which the formula of BRANCH_SECONDS_PER_FORCE
-holds."""
+"""Largest force, divided by the crushing force (zero stretch), for which the formula of
+BRANCH_SECONDS_PER_FORCE holds."""
 
 
 def branches_cost(points: Points, name: str, limits: tuple[float, float], accuracy: float) -> CostEstimate:

@@ -50,7 +50,7 @@ class RankReport:
     stored_points: int = 0
     """Number of points that the rank has stored in its journal since the last report."""
     is_in_advance: bool = False
-    """Whether the rank requests the next chunk in advance, at the start of the present chunk."""
+    """Whether the rank requests the next chunk in advance, at the start of the current chunk."""
     stop_signal: str = ""
     """Name of the stop signal that the rank received, or empty. Items returned after a stop signal are left
     for another run."""
@@ -187,5 +187,5 @@ class DependentItemQueue(ChunkQueue):
             return None if self.in_progress else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
-        """Always None, because the choice of a rank's next item depends on the result of the present item."""
+        """Always None, because the choice of a rank's next item depends on the result of the current item."""
         return None

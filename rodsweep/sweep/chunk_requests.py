@@ -45,7 +45,7 @@ QUEUE_WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 
 
-class FirstRankRequests:
+class ChunkServer:
     """Takes chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
     def __init__(
@@ -91,7 +91,7 @@ class FirstRankRequests:
                 self.queue.change.wait(QUEUE_WAIT_SECONDS)
             self.poll_messages()
             for position in list(self.positions.values())[:1]:
-                self.show_position(position.words, self._sum_of_fractions())
+                self.show_position(position.text, self._sum_of_fractions())
         return chunk
 
     def close(self) -> None:
@@ -104,7 +104,7 @@ class FirstRankRequests:
     def report_position(self, position: SolvePosition) -> None:
         """Displays the progress of the first rank within a long point."""
         self.positions[0] = position
-        self.show_position(position.words, self._sum_of_fractions())
+        self.show_position(position.text, self._sum_of_fractions())
 
     def _sum_of_fractions(self) -> float:
         """Sum of the fractions done of all unfinished points on all ranks."""
@@ -187,7 +187,7 @@ class FirstRankRequests:
                 time.sleep(POLL_SECONDS_IF_ANSWERED if is_polled else POLL_SECONDS)
 
 
-class OtherRankRequests:
+class ChunkClient:
     """Takes chunks for a rank other than the first, by messages to the first rank."""
 
     def __init__(self, team: Team, stop: StopRequest):

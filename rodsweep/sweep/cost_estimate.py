@@ -218,7 +218,7 @@ def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArr
     rod model does not apply.
     """
     indices = np.unique(np.linspace(0, points.count - 1, min(max_count, points.count)).astype(np.int64))
-    return indices[[points.has_rod(int(index)) for index in indices]]
+    return indices[[points.is_in_model(int(index)) for index in indices]]
 
 
 def cycles_cost(points: Points, first_count: int) -> CostEstimate:

@@ -69,5 +69,5 @@ def _corners(points: Points) -> Iterator[int]:
     ends = [sorted({0, size - 1}) for size in points.shape]
     for corner in product(*ends):
         index = int(np.ravel_multi_index(corner, points.shape))
-        if points.has_rod(index):
+        if points.is_in_model(index):
             yield index

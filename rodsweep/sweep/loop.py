@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..solve_progress import SolveStopped, reporting_to
 from .chunk_queue import MAX_CHUNK_TIME_RATIO, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
-from .chunk_requests import FirstRankRequests, OtherRankRequests
+from .chunk_requests import ChunkClient, ChunkServer
 from .points.ranges import IndexRange
 from .stop import RankListener, StopRequest
 from .team import Team
@@ -86,9 +86,7 @@ def sweep(
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
     requests = (
-        FirstRankRequests(team, queue, stop, progress.show_position)
-        if team.is_first
-        else OtherRankRequests(team, stop)
+        ChunkServer(team, queue, stop, progress.show_position) if team.is_first else ChunkClient(team, stop)
     )
     with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
         loop.prepare()
@@ -102,7 +100,7 @@ class _RankLoop:
     def __init__(
         self,
         team: Team,
-        requests: FirstRankRequests | OtherRankRequests,
+        requests: ChunkServer | ChunkClient,
         loop: SweepCallbacks,
         progress: ProgressSink,
         stop: StopRequest,
@@ -135,7 +133,7 @@ class _RankLoop:
                 results=self.callbacks.new_results(),
             )
             chunk = self.requests.next_chunk(report)
-        if isinstance(self.requests, FirstRankRequests):
+        if isinstance(self.requests, ChunkServer):
             self.requests.close()
         self.team.wait_for_all()
         return RankStatistics(
@@ -172,5 +170,5 @@ class _RankLoop:
             self.callbacks.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)
             self.requests.poll_messages()
-            if isinstance(self.requests, FirstRankRequests):
+            if isinstance(self.requests, ChunkServer):
                 self.progress(self.requests.queue.stored_points + self.points - points_before)

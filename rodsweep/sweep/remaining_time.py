@@ -65,7 +65,8 @@ class RemainingTimeEstimator:
 
     def _seconds_per_point(self, finished: int, now: float, partial: float) -> float | None:
         """Time per point in s: the larger of the time over the latest finished points and the time that
-        includes the wait since the latest record. Parameters as in `remaining_seconds`.
+        includes the wait since the latest record. finished: number of finished points. now: in s since the
+        start of the sweep. partial: sum of the fractions done of unfinished points.
 
         Before MIN_POINTS points are finished, the time follows from the fractions done of unfinished points;
         None if their sum is below MIN_FRACTION_DONE.

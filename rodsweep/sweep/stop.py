@@ -124,11 +124,11 @@ class RankListener:
         end.
         """
         now = time.monotonic()
-        if now >= self.next_report and (position := make_position()).words:
+        if now >= self.next_report and (position := make_position()).text:
             self.next_report = now + POSITION_SECONDS
             self.communication.report_position(
                 SolvePosition(
-                    ": ".join(filter(None, (self.item_label(), position.words))), position.completed_fraction
+                    ": ".join(filter(None, (self.item_label(), position.text))), position.completed_fraction
                 )
             )
         if now >= self.next_poll:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any, TypeVar
 
-from ..errors import BUG_STATUS, EnvironmentIncomplete, Refusal, import_refusal
+from ..errors import BUG_STATUS, EnvironmentIncomplete, UserError, import_refusal
 
 T = TypeVar("T")
 S = TypeVar("S")
@@ -41,14 +41,14 @@ class Team:
         return self.rank == 0
 
     def call_on_first_rank(self, work: Callable[[], T]) -> T:
-        """Calls `work` on the first rank only. Every rank returns the result, or raises the `Refusal` that
+        """Calls `work` on the first rank only. Every rank returns the result, or raises the `UserError` that
         `work` raised.
         """
         outcome: Any = None
         if self.is_first:
             try:
                 outcome = (work(), None)
-            except Refusal as error:
+            except UserError as error:
                 outcome = (None, error)
         self.wait_for_all()
         value, refusal = self.comm.bcast(outcome)
@@ -65,13 +65,13 @@ class Team:
             wait_seconds = min(2 * wait_seconds, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Calls `work` on every rank. If `work` raises a `Refusal` on any rank, all ranks raise this
+        """Calls `work` on every rank. If `work` raises a `UserError` on any rank, all ranks raise this
         refusal.
         """
-        first_error: Refusal | None = None
+        first_error: UserError | None = None
         try:
             work()
-        except Refusal as error:
+        except UserError as error:
             first_error = error
         refusals = [r for r in self.comm.allgather(first_error) if r is not None]
         if refusals:
@@ -105,7 +105,7 @@ class Team:
         except BaseException as error:
             if self.size == 1 or getattr(error, "collective", False):
                 raise
-            if isinstance(error, Refusal):
+            if isinstance(error, UserError):
                 sys.stderr.write(f"rodsweep: rank {self.rank}: {error}\n")
             else:
                 sys.stderr.write(f"rodsweep: rank {self.rank} failed, all ranks end\n")
@@ -113,6 +113,6 @@ class Team:
             for stream in (sys.stdout, sys.stderr):
                 with suppress(OSError):  # a full disk under the log must not prevent the abort
                     stream.flush()
-            status = error.exit_status if isinstance(error, Refusal) else BUG_STATUS
+            status = error.exit_status if isinstance(error, UserError) else BUG_STATUS
             self.comm.Abort(status)
             raise SystemExit(status) from error

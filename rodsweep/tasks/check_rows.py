@@ -14,7 +14,7 @@ from .protocol import CheckRow
 
 
 def crushing_clause(config: Config) -> str:
-    """Clause stating that a search along F ends below the force that crushes the arm; empty if no force
+    """Clause stating that a search along F ends below the crushing force (zero stretch); empty if no force
     crushes the arm.
     """
     if config.is_uniform_and_linear:
@@ -93,7 +93,8 @@ def arms_line(
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
-    """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: as in `arms_line`."""
+    """Texts on the tapers and the profile of the arms; empty for uniform arms. columns: values of the rods'
+    parameters by name, arrays of any shape."""
     tapers = columns.get("taper", np.ones(1))
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))

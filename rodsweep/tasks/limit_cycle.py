@@ -82,7 +82,8 @@ class LimitCycleTask(Task):
         return times | ({"u": lobatto_points(options.nodes)} if options.shapes else {})
 
     def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
-        """Hopf points of the straight rod on the lines of points. in_order: as in `Task`."""
+        """Hopf points of the straight rod on the lines of points. in_order: function that applies a
+        function to a sequence, in order, on all ranks."""
         lines = hopf_lines_of(self.points)
         if lines:
             require_solvers()

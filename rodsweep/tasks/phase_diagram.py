@@ -154,8 +154,8 @@ class PhaseDiagramTask(CertifiedTask):
     def coexistence_row(
         self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
     ) -> "CoexistenceRow":
-        """Solves a row with cycles. index: flat index of the row. workspace, starts: as in
-        `solve_coexistence`."""
+        """Solves a row with cycles. index: flat index of the row. workspace: memory of
+        Newton's matrices. starts: special points from which further branches are followed."""
         from ..solve.branch.coexistence import solve_coexistence
 
         rod = self.rod_of_row(index)

@@ -84,7 +84,7 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
     """Solves and returns all results of a portrait.
 
     solve: function that solves the only point of a job. If a result cannot be solved, `RodResults.missing`
-    has the reason. Raises InputError if the parameters describe no rod.
+    has the reason. Raises InputError if the parameters are outside their ranges.
     """
     F_max = {"F_max": request.F_max}
     views = {"thresholds": solve(request.job_of_task("thresholds", F_max))}

@@ -72,8 +72,8 @@ def rods_by_plane(
 
 
 def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
-    """The arm as a rod that bends in the plane of the section's height. build, taper: as in
-    `rods_by_plane`."""
+    """The arm as a rod that bends in the plane of the section's height. build: constitutive law and profile.
+    taper: ratio of tip to base radius."""
     rod = rod_with_drag(arm, arm.drags[0], build)
     return rod if taper is None else replace(rod, taper=taper)
 

@@ -604,7 +604,7 @@ def test_ctrl_c_on_a_branch_is_a_keyboard_interrupt_and_the_next_solve_is_right(
     alone = rod.branch(stop=40, accuracy=1e-4)
 
     def interrupt(self, text):
-        if "cycles" in text().words:
+        if "cycles" in text().text:
             signal.raise_signal(signal.SIGINT)
 
     with monkeypatch.context() as patch:

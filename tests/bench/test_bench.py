@@ -45,8 +45,8 @@ from rodsweep.bench.spectrum.study import (
 )
 from rodsweep.bench.study import (
     BenchmarkReport,
-    Contender,
     Measurement,
+    TimedMethod,
     every_nth_setting,
     measure_case,
     time_runs,
@@ -115,7 +115,7 @@ def test_no_arm_is_solved_twice():
 
 def test_table_of_arms_has_time_and_error_of_every_method(monkeypatch):
     monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
-    bad = Contender("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
+    bad = TimedMethod("coarse", "3", "a", lambda arm: np.ones(MODE_COUNT, complex))
     lines = arm_table(measure_arm_spectra([bad], 1), 1).splitlines()
     assert lines[2] == "| method | cone |"
     for name in (UNCERTIFIED_NAME, CERTIFIED_NAME, KRYLOV_SCHUR):
@@ -129,7 +129,7 @@ def test_method_that_fails_has_no_finite_error_and_says_how(monkeypatch):
         raise np.linalg.LinAlgError("no convergence")
 
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
-    rows = measure_hard_rods([Contender("fails", "3", "a", fails)], 1)
+    rows = measure_hard_rods([TimedMethod("fails", "3", "a", fails)], 1)
     assert rows[-1].error == np.inf
     assert rows[-1].failure == "failed (LinAlgError)"
     assert "| fails | failed |" in hard_rod_table(rows)
@@ -154,7 +154,7 @@ def test_race_makes_long_runs_once_a_round(monkeypatch):
 def test_slow_method_is_run_once():
     runs = []
     (measurement,) = measure_case(
-        "c", 3, [Contender("m", "s", "g", runs.append, is_slow=True)], 5, lambda _: {"error": 0.5}
+        "c", 3, [TimedMethod("m", "s", "g", runs.append, is_slow=True)], 5, lambda _: {"error": 0.5}
     )
     assert runs == [3]
     assert (measurement.error, measurement.group) == (0.5, "g")
@@ -172,7 +172,7 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     monkeypatch.setattr(spectrum, "HARD_RODS", {"easy": EASY})
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
-    exact = Contender("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
+    exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
     study = spectrum_study(quick=True, peers=Peers({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."]))
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
@@ -183,7 +183,7 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
 
 
 def test_a_quick_run_takes_every_nth_setting_of_each_method():
-    every = [Contender(method, str(k), "", print) for method in "ab" for k in range(4)]
+    every = [TimedMethod(method, str(k), "", print) for method in "ab" for k in range(4)]
     taken = [(c.method, c.setting) for c in every_nth_setting(every, 3)]
     assert taken == [("a", "0"), ("a", "3"), ("b", "0"), ("b", "3")]
 
@@ -281,9 +281,9 @@ def write_peers(directory):
     (directory / "spectrum.py").write_text(
         "import numpy as np\n"
         "from rodsweep.bench.peers import Peers\n"
-        "from rodsweep.bench.study import Contender\n"
+        "from rodsweep.bench.study import TimedMethod\n"
         "def peers(quick, place):\n"
-        "    return Peers({'spectrum': [Contender('zero', '1', 'g', lambda rod: np.zeros(5))]})\n"
+        "    return Peers({'spectrum': [TimedMethod('zero', '1', 'g', lambda rod: np.zeros(5))]})\n"
     )
 
 

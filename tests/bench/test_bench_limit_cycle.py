@@ -36,7 +36,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     tip_returns,
 )
 from rodsweep.bench.peers import NO_PEERS, Peers
-from rodsweep.bench.study import Contender, Measurement, TimedRuns
+from rodsweep.bench.study import Measurement, TimedMethod, TimedRuns
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -163,7 +163,7 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
         raise ArithmeticError("too stiff")
 
     double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting_tolerances=(1e-7,))
-    failing = [Contender("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
+    failing = [TimedMethod("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
     peers = Peers(
         contenders={

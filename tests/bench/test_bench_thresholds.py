@@ -8,7 +8,7 @@ from conftest import ROOT
 from reference import dense_arm
 
 from rodsweep.bench.peers import NO_PEERS, Peers
-from rodsweep.bench.study import Contender
+from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds import study as thresholds
 from rodsweep.bench.thresholds.study import (
     ARM_CASES,
@@ -59,7 +59,7 @@ def test_tables_say_what_was_missed():
         (20.0, "wrong (20.00) | wrong (20.00) | wrong (20.00)"),
         (CASE["narrow"].hopf, "wrong (74.83) | 0e+00 | wrong (74.83)"),
     ):
-        method = Contender("a", "b", "", lambda _, force=force: FirstThreshold(force, 10), is_slow=True)
+        method = TimedMethod("a", "b", "", lambda _, force=force: FirstThreshold(force, 10), is_slow=True)
         assert f"| {cells} |" in threshold_table(HOPF, measure_rods(HOPF, cases, [method], 1))
 
 
@@ -82,7 +82,7 @@ def test_the_study_writes_its_text_and_its_figure(monkeypatch, tmp_path):
 @pytest.mark.long
 def test_peers_take_part_in_the_race_of_their_threshold(monkeypatch):
     monkeypatch.setattr(thresholds, "QUICK_CASES", (CASE["filament"],))
-    found = Contender("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
+    found = TimedMethod("of Hopf points", "a", "g", lambda case: FirstThreshold(case.hopf, 1))
     peers = Peers({HOPF: [found]}, notes=["A note."], skipped=["Another is skipped."])
     text = thresholds_study(quick=True, peers=peers).text
     introduction, onsets, hopf_points, of_arms, onsets_of_arms, hopf_points_of_arms, skipped = text.split(

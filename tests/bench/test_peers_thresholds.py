@@ -33,7 +33,7 @@ from benchmarks.thresholds.spectra_by_force import (
     threshold_by_steps,
     threshold_on_grid,
 )
-from rodsweep.bench.study import Contender
+from rodsweep.bench.study import TimedMethod
 from rodsweep.bench.thresholds.study import (
     HOPF,
     ONSET,
@@ -147,7 +147,9 @@ def test_a_continuation_code_that_fails_is_shown_as_failed():
 
     run = partial(hopf_by_pycont, SimpleNamespace(arclengthContinuation=give_up), 1.0)
     for case in (CASE["filament"], CASE["Fig. 2d"]):
-        (result,) = measure_rods(HOPF, [case], [Contender("a", "", CONTINUATION_GROUP, run, is_slow=True)], 1)
+        (result,) = measure_rods(
+            HOPF, [case], [TimedMethod("a", "", CONTINUATION_GROUP, run, is_slow=True)], 1
+        )
         assert result.error == inf
         assert "| failed (RuntimeError) |" in threshold_table(HOPF, [result])
 

@@ -139,7 +139,7 @@ def test_bug_while_the_file_is_opened_ends_all_ranks(command):
     patch = (
         "import rodsweep.results.file.store as store\n"
         "def broken(self, *words): raise ValueError('a bug')\n"
-        "store.Store.__init__ = broken\n"
+        "store.ResultFileWriter.__init__ = broken\n"
         "def patched(rank, solve): return solve\n"
     )
     run = run_patched(command, patch)
@@ -219,8 +219,9 @@ def test_run_killed_before_its_end_was_written_writes_it_the_next_time(command):
     patch = (
         "import os, rodsweep.results.file.store as store\n"
         "def die(self, attributes): os._exit(9)\n"
-        "fold = store.Store.add_journals\n"
-        "store.Store.add_journals = lambda self, a, more=(): die(self, a) if a else fold(self, a, more)\n"
+        "writer = store.ResultFileWriter\n"
+        "fold = writer.add_journals\n"
+        "writer.add_journals = lambda self, a, more=(): die(self, a) if a else fold(self, a, more)\n"
         "def patched(rank, solve): return solve\n"
     )
     assert run_patched(command, patch, ranks=0).returncode == 9

@@ -189,8 +189,8 @@ hear, rank = RankListener.__call__, os.environ.get("OMPI_COMM_WORLD_RANK", os.en
 
 def hear_and_wait(self, text):
     hear(self, text)
-    if self.item_label() and self.item_label() != "point 1 of 3" and "cycles" in text().words:
-        pathlib.Path(f"inside-{rank}").write_text(f"{self.item_label()}: {text().words}")
+    if self.item_label() and self.item_label() != "point 1 of 3" and "cycles" in text().text:
+        pathlib.Path(f"inside-{rank}").write_text(f"{self.item_label()}: {text().text}")
         while True:
             time.sleep(0.01)
             hear(self, text)

@@ -21,7 +21,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from explore.browser import Browser
 
-from rodsweep.errors import Refusal
+from rodsweep.errors import UserError
 from rodsweep.explore.slider_scales import SCALES
 from rodsweep.explore.state import MATERIAL_CHOICES, SECOND_PARAMETERS, TAB_DEFAULTS, PageState
 
@@ -243,7 +243,7 @@ class Checks:
                 self.unsolved += 1
             else:
                 answers.append(state.subject().thresholds(F_max=state.largest_force(), progress=False))
-        except Refusal as refusal:
+        except UserError as refusal:
             self.refused += 1
             if unescape(shown["refusal"]) != str(refusal):
                 self._add_problem(state, f"{shown['refusal']!r}, solver: {str(refusal)!r}")

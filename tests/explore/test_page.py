@@ -9,7 +9,7 @@ from bokeh.document import Document
 from bokeh.models import HoverTool
 
 import rodsweep as rs
-from rodsweep.errors import Refusal
+from rodsweep.errors import UserError
 from rodsweep.explore.page import STOPPED_SENTENCE, Page
 from rodsweep.explore.page_contents import NO_CYCLE_CURVES_SENTENCE
 from rodsweep.explore.page_style import template_text
@@ -23,8 +23,8 @@ from rodsweep.explore.pictures.diagram import (
 from rodsweep.explore.pictures.diagram_regions import region_table
 from rodsweep.explore.pictures.numbers import NumbersTable, number_text
 from rodsweep.explore.solving.diagrams import CRUSHED_COUNT, UNKNOWN_COUNT
-from rodsweep.explore.solving.question_inputs import INSTANT_KINDS
-from rodsweep.explore.solving.questions import Question, Reply, answer_to, answer_variables
+from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
+from rodsweep.explore.solving.requests import Reply, SolveRequest, answer_to, answer_variables
 from rodsweep.explore.state import PageState
 from rodsweep.explore.state_of_file import page_state_of_file
 
@@ -34,19 +34,19 @@ parameters: {F: {start: 0, stop: 60, num: 31}, k1: [100, 200, 400], k2: 1.0e4, g
 
 
 class ImmediateSolvers:
-    """Answers at once, in this process. questions: all that were asked."""
+    """Answers at once, in this process. requests: all that were asked."""
 
     def __init__(self, kinds: tuple[str, ...] = INSTANT_KINDS):
         self.kinds = kinds
-        self.questions: list[Question] = []
+        self.requests: list[SolveRequest] = []
 
-    def ask(self, session, question, done, progress=None):
-        self.questions.append(question)
-        if question.kind not in self.kinds:
+    def ask(self, session, request, done, progress=None):
+        self.requests.append(request)
+        if request.kind not in self.kinds:
             return
         try:
-            done(Reply("answer", answer_to(question), 0.0))
-        except Refusal as refusal:
+            done(Reply("answer", answer_to(request), 0.0))
+        except UserError as refusal:
             done(Reply("refused", {"sentence": str(refusal)}, 0.0))
 
     def cancel(self, session, kind):
@@ -99,12 +99,12 @@ def test_pictures_and_numbers_are_those_of_the_solver():
 def test_a_change_of_the_load_asks_no_thresholds_again():
     solvers = ImmediateSolvers()
     page = page_with(solvers)
-    solvers.questions.clear()
+    solvers.requests.clear()
     page.change({"F": "60"})
-    assert {question.kind for question in solvers.questions} == {"spectrum", "cycle"}
-    solvers.questions.clear()
+    assert {request.kind for request in solvers.requests} == {"spectrum", "cycle"}
+    solvers.requests.clear()
     page.change({"k2": "200"})
-    assert {question.kind for question in solvers.questions} == set(INSTANT_KINDS)
+    assert {request.kind for request in solvers.requests} == set(INSTANT_KINDS)
 
 
 def test_a_rod_at_rest_says_so_above_the_straight_arm():
@@ -123,24 +123,24 @@ def test_a_rod_at_rest_says_so_above_the_straight_arm():
 def test_a_bad_value_asks_nothing_and_has_its_sentence():
     solvers = ImmediateSolvers()
     page = page_with(solvers)
-    solvers.questions.clear()
+    solvers.requests.clear()
     page.change({"k1": "<i>-1"})
-    assert solvers.questions == []
+    assert solvers.requests == []
     assert "k1" in page.contents.spectrum.card.message.text
     assert "<i>" not in page.contents.spectrum.card.message.text
 
 
 @pytest.mark.parametrize("values", [{"k1": "40"}, {"taper": "-1"}])
-def test_a_bad_value_cancels_the_questions_that_wait_for_a_rest(values):
+def test_a_bad_value_cancels_the_requests_that_wait_for_a_rest(values):
     solvers = ImmediateSolvers()
     page = page_with(solvers)
     page.change({"F": "51"})
     run_callbacks(page.document)
-    solvers.questions.clear()
+    solvers.requests.clear()
     page.change(values)
     sentence = page.contents.branches.card.message.text
     run_callbacks(page.document, seconds=True)
-    assert solvers.questions == []
+    assert solvers.requests == []
     assert page.contents.branches.card.message.text == sentence
 
 
@@ -160,14 +160,14 @@ def test_the_page_knows_which_numbers_belong_to_an_earlier_state():
         assert f'<tbody class="{kind}">' in page.contents.numbers.root.text
 
 
-def test_an_answer_to_an_old_question_is_shown_but_does_not_end_the_sign():
+def test_an_answer_to_an_old_request_is_shown_but_does_not_end_the_sign():
     kept = []
     solvers = ImmediateSolvers()
-    solvers.ask = lambda session, question, done, progress: kept.append((question, done))
+    solvers.ask = lambda session, request, done, progress: kept.append((request, done))
     page = page_with(solvers)
     page.change({"F": "60"})
-    question, done = next(each for each in kept if each[0].kind == "spectrum")
-    done(Reply("answer", answer_to(question), 0.0))
+    request, done = next(each for each in kept if each[0].kind == "spectrum")
+    done(Reply("answer", answer_to(request), 0.0))
     run_callbacks(page.document)
     assert "spectrum" in page.contents.sign.text
     assert len(page.contents.spectrum.source.data["growth"]) > 0
@@ -178,13 +178,13 @@ def test_branches_wait_until_the_page_rests_and_cones_until_the_button():
     solvers = ImmediateSolvers()
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
-    assert {"branch", "diagram"} <= {question.kind for question in solvers.questions}
-    solvers.questions.clear()
+    assert {"branch", "diagram"} <= {request.kind for request in solvers.requests}
+    solvers.requests.clear()
     page.change({"taper": "0.7"})
     run_callbacks(page.document, seconds=True)
-    assert "branch" not in {question.kind for question in solvers.questions}
+    assert "branch" not in {request.kind for request in solvers.requests}
     page.solve("branch")
-    assert solvers.questions[-1].kind == "branch"
+    assert solvers.requests[-1].kind == "branch"
 
 
 @pytest.mark.long
@@ -196,7 +196,7 @@ def test_a_file_brings_its_diagram_and_only_the_rest_is_solved(command):
     page = page_with(solvers, state=state, stored=stored)
     run_callbacks(page.document, seconds=True)
     assert (state.rod["k1"], state.second, state.F_max) == ("200", "k1", "60")
-    assert "diagram" not in {question.kind for question in solvers.questions}
+    assert "diagram" not in {request.kind for request in solvers.requests}
     counts = rs.open(command.directory / "plane.h5")["unstable_count"].squeeze()
     drawn = page.contents.diagram.cell_source.data
     assert max(drawn["unstable"]) == int(counts.max())
@@ -274,10 +274,10 @@ def test_a_long_solve_says_how_far_it_is_and_can_be_stopped():
     class Halfway(ImmediateSolvers):
         cancelled: list[str] = []
 
-        def ask(self, session, question, done, progress=None):
-            super().ask(session, question, done)
-            if question.kind == "cycles":
-                progress(Reply("progress", {"words": "curve 1 of <2>", "completed_fraction": 0.5}, 1.0))
+        def ask(self, session, request, done, progress=None):
+            super().ask(session, request, done)
+            if request.kind == "cycles":
+                progress(Reply("progress", {"text": "curve 1 of <2>", "completed_fraction": 0.5}, 1.0))
 
         def cancel(self, session, kind):
             self.cancelled.append(kind)
@@ -300,7 +300,7 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     solvers = ImmediateSolvers((*INSTANT_KINDS, "bent"))
     page = page_with(solvers)
     run_callbacks(page.document, seconds=True)
-    diagram, *_ = [question for question in solvers.questions if question.kind == "diagram"]
+    diagram, *_ = [request for request in solvers.requests if request.kind == "diagram"]
     page._on_answer(diagram, Reply("refused", {"sentence": ""}, 0.0))
     page.solve("cycles")
     page.stop()
@@ -310,11 +310,11 @@ def test_stopping_the_folds_leaves_the_diagram_and_stopping_a_motion_the_arm():
     page.drag("motion", (0.6, 0.5))
     page.stop()
     assert len(page.contents.beating.bent_source.data["x"]) == 0
-    solvers.questions.clear()
+    solvers.requests.clear()
     page.change({"F": "51"})
     run_callbacks(page.document, seconds=True)
-    assert "branch" in {question.kind for question in solvers.questions}
-    assert "diagram" not in {question.kind for question in solvers.questions}
+    assert "branch" in {request.kind for request in solvers.requests}
+    assert "diagram" not in {request.kind for request in solvers.requests}
 
 
 @pytest.mark.long
@@ -339,10 +339,10 @@ def test_folds_are_added_to_the_drawn_diagram_while_the_rod_is_inside():
     for k2, around in (("300", "100"), ("2e3", "2e3")):
         page.change({"k2": k2})
         page.solve("cycles")
-        assert (solvers.questions[-1].kind, solvers.questions[-1].state.values["k2"]) == ("cycles", around)
+        assert (solvers.requests[-1].kind, solvers.requests[-1].state.values["k2"]) == ("cycles", around)
     page.change({"k2": "300", "gamma3": "0.02"})
     page.solve("cycles")
-    assert solvers.questions[-1].state.values["k2"] == "300"
+    assert solvers.requests[-1].state.values["k2"] == "300"
 
 
 def test_folds_of_an_arm_are_asked_around_the_arm_and_refused():
@@ -357,7 +357,7 @@ def test_folds_of_an_arm_are_asked_around_the_arm_and_refused():
 
 def test_folds_of_a_solved_diagram_are_all_that_is_solved():
     state = PageState(F_max="30")
-    drawn, found = (answer_to(Question(kind, state)) for kind in ("diagram", "cycles"))
+    drawn, found = (answer_to(SolveRequest(kind, state)) for kind in ("diagram", "cycles"))
     assert found["unstable_count"] is drawn["unstable_count"]
 
 
@@ -369,10 +369,10 @@ def test_a_legend_names_all_colours_of_boundaries():
 
 def test_a_failure_takes_the_sign_and_the_button_away():
     class Failing(ImmediateSolvers):
-        def ask(self, session, question, done, progress=None):
-            super().ask(session, question, done)
-            if question.kind == "cycles":
-                progress(Reply("progress", {"words": "point 1 of 8", "completed_fraction": None}, 1.0))
+        def ask(self, session, request, done, progress=None):
+            super().ask(session, request, done)
+            if request.kind == "cycles":
+                progress(Reply("progress", {"text": "point 1 of 8", "completed_fraction": None}, 1.0))
                 done(Reply("failed", {"sentence": "the solver ended unexpectedly"}, 2.0))
 
     page = page_with(Failing())
@@ -440,7 +440,7 @@ def test_a_title_of_the_thresholds_never_needs_a_new_layout():
     page = page_with(ImmediateSolvers(kinds=()))
     growth = page.contents.growth.card
     before = growth.figure.title.text
-    page.contents.show("thresholds", answer_to(Question("thresholds", page.state)), page.state)
+    page.contents.show("thresholds", answer_to(SolveRequest("thresholds", page.state)), page.state)
     assert before.count("\n") == growth.figure.title.text.count("\n") == 1
 
 

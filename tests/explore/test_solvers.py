@@ -1,4 +1,4 @@
-"""The processes that solve for the page of `explore`: newest question first, none left behind."""
+"""The processes that solve for the page of `explore`: newest request first, none left behind."""
 
 import asyncio
 import os
@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.explore.solving.questions import Question, Reply
+from rodsweep.explore.solving.requests import Reply, SolveRequest
 from rodsweep.explore.solving.solvers import CancellationDelays, SolverProcess, Solvers
 from rodsweep.explore.state import PageState
 
 HARD = PageState().with_values(taper="0.6")
 """A rod whose branches take half a minute."""
-SLOW = Question("branch", HARD)
-QUICK = Question("thresholds", PageState())
+SLOW = SolveRequest("branch", HARD)
+QUICK = SolveRequest("thresholds", PageState())
 LONGEST = 60.0
-"""Seconds that a loaded machine may need to start a process and to solve one question."""
+"""Seconds that a loaded machine may need to start a process and to solve one request."""
 
 
 def wait_until(is_true: Callable[[], object]) -> None:
@@ -64,7 +64,7 @@ def exists(pid: int) -> bool:
 
 def test_an_answer_is_that_of_the_python_interface(solver):
     replies: list[Reply] = []
-    solver.ask(("page", "spectrum"), Question("spectrum", PageState()), replies.append)
+    solver.ask(("page", "spectrum"), SolveRequest("spectrum", PageState()), replies.append)
     wait_until(lambda: replies)
     found = replies[0].content
     answer = rs.Rod(F=50, k1=1e4, k2=100, gamma3=0.01).spectrum(modes=6)
@@ -75,13 +75,15 @@ def test_an_answer_is_that_of_the_python_interface(solver):
 
 def test_what_the_solver_refuses_comes_as_its_sentence(solver):
     replies: list[Reply] = []
-    solver.ask(("page", "spectrum"), Question("spectrum", PageState().with_values(F="2e4")), replies.append)
+    solver.ask(
+        ("page", "spectrum"), SolveRequest("spectrum", PageState().with_values(F="2e4")), replies.append
+    )
     wait_until(lambda: replies)
     assert replies[0].outcome == "refused"
     assert "crushed" in replies[0].content["sentence"]
 
 
-def test_a_newer_question_cancels_an_older_one_in_the_same_process(solver):
+def test_a_newer_request_cancels_an_older_one_in_the_same_process(solver):
     old: list[Reply] = []
     new: list[Reply] = []
     solver.ask(("page", "branch"), SLOW, old.append)
@@ -92,17 +94,17 @@ def test_a_newer_question_cancels_an_older_one_in_the_same_process(solver):
     assert (old, new[0].outcome, solver.pid) == ([], "answer", pid)
 
 
-def test_of_questions_that_wait_only_the_newest_is_answered(solver):
+def test_of_requests_that_wait_only_the_newest_is_answered(solver):
     replies: list[float] = []
     for F in range(20, 60):
-        question = Question("spectrum", PageState().with_values(F=str(F)))
-        solver.ask(("page", "spectrum"), question, lambda reply: replies.append(float(reply.content["F"])))
+        request = SolveRequest("spectrum", PageState().with_values(F=str(F)))
+        solver.ask(("page", "spectrum"), request, lambda reply: replies.append(float(reply.content["F"])))
     wait_until(lambda: 59 in replies)
     assert len(replies) < 40
     assert np.all(np.diff(replies) > 0)
 
 
-def test_questions_of_another_page_are_kept(solver):
+def test_requests_of_another_page_are_kept(solver):
     replies: dict[str, Reply] = {}
     for page in ("one", "two"):
         solver.ask((page, "thresholds"), QUICK, lambda reply, page=page: replies.setdefault(page, reply))
@@ -110,7 +112,7 @@ def test_questions_of_another_page_are_kept(solver):
     assert {reply.outcome for reply in replies.values()} == {"answer"}
 
 
-def test_a_page_that_ends_takes_its_questions_along(solver):
+def test_a_page_that_ends_takes_its_requests_along(solver):
     replies: list[Reply] = []
     solver.ask(("one", "branch"), SLOW, replies.append)
     wait_until_it_solves(solver)
@@ -137,7 +139,7 @@ def test_a_solver_that_does_not_answer_is_killed_and_started_again():
         solver.close()
 
 
-def test_a_solver_that_dies_says_so_and_the_next_question_is_answered(solver):
+def test_a_solver_that_dies_says_so_and_the_next_request_is_answered(solver):
     replies: list[Reply] = []
     solver.ask(("page", "branch"), SLOW, replies.append)
     os.kill(solver.pid, signal.SIGKILL)
@@ -174,13 +176,13 @@ def test_a_solver_ends_in_the_middle_of_a_solve_when_its_page_is_killed():
     """The page's process has no time to say anything."""
     lines = [
         "import asyncio, sys, time",
-        "from rodsweep.explore.solving.questions import Question",
+        "from rodsweep.explore.solving.requests import SolveRequest",
         "from rodsweep.explore.solving.solvers import SolverProcess",
         "from rodsweep.explore.state import PageState",
         "asyncio.set_event_loop(asyncio.new_event_loop())",
         "solver = SolverProcess()",
-        "question = Question('branch', PageState().with_values(taper='0.6'))",
-        "solver.ask(('page', 'branch'), question, print)",
+        "request = SolveRequest('branch', PageState().with_values(taper='0.6'))",
+        "solver.ask(('page', 'branch'), request, print)",
         "print(solver.pid, flush=True)",
         "time.sleep(100)",
     ]
@@ -214,7 +216,7 @@ def test_a_long_solve_sends_its_progress_until_it_is_cancelled(solver):
     pid = solver.pid
     wait_until(lambda: places)
     assert places[0].outcome == "progress"
-    assert places[0].content["words"]
+    assert places[0].content["text"]
     solver.cancel(("page", "branch"))
     solver.ask(("page", "thresholds"), QUICK, replies.append)
     wait_until(lambda: replies)

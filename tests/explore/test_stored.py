@@ -13,7 +13,7 @@ from rodsweep.explore.answers_from_file import AnswersFromFile
 from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import TORUS_COLOUR
 from rodsweep.explore.pictures.numbers import number_text
-from rodsweep.explore.solving.questions import answer_to
+from rodsweep.explore.solving.requests import answer_to
 from rodsweep.explore.state_of_file import page_state_of_file, stored_diagram
 from rodsweep.results.layouts.branch import SPECIAL_KINDS
 
@@ -50,7 +50,7 @@ def opened_page(command, text: str, query: str = "") -> tuple[Page, NoSolvers]:
 
 
 def asked(solvers: NoSolvers) -> set[str]:
-    return {question.kind for question in solvers.questions}
+    return {request.kind for request in solvers.requests}
 
 
 @pytest.mark.long
@@ -70,19 +70,19 @@ def test_stored_cycles_are_drawn_and_not_solved_again(command):
 def test_the_film_of_a_stored_cycle_is_drawn_from_its_stored_shapes(command, monkeypatch):
     page, solvers = opened_page(command, CYCLES)
     page.solve("film")
-    question = solvers.questions[-1]
+    request = solvers.requests[-1]
     stored = rs.open(command.directory / "result.h5").sel(F=[40])
-    assert (question.kind, question.stored["shape_y"].equals(stored["shape_y"])) == ("film", True)
-    monkeypatch.setattr("rodsweep.explore.solving.questions.plot", lambda cycle, what: Filmed(cycle))
+    assert (request.kind, request.stored["shape_y"].equals(stored["shape_y"])) == ("film", True)
+    monkeypatch.setattr("rodsweep.explore.solving.requests.plot", lambda cycle, what: Filmed(cycle))
     monkeypatch.setattr(rs.Rod, "cycle", None)  # no solve is needed
-    assert answer_to(question)["gif"] is question.stored
+    assert answer_to(request)["gif"] is request.stored
 
 
 @pytest.mark.parametrize(("shapes", "query"), few([(16, "F=41"), (16, "F=20"), (7, "")], 1))
 def test_a_film_that_the_file_does_not_hold_is_solved(command, shapes, query):
     page, solvers = opened_page(command, CYCLES.replace("16", str(shapes)), query)
     page.solve("film")
-    assert solvers.questions[-1].stored is None
+    assert solvers.requests[-1].stored is None
 
 
 def test_a_click_beside_a_stored_force_shows_its_cycle(command):

@@ -11,8 +11,8 @@ import rodsweep as rs
 from rodsweep.explore.page import Page
 from rodsweep.explore.pictures.card import NO_TITLE
 from rodsweep.explore.pictures.moving_arm import PERIOD_SECONDS
-from rodsweep.explore.solving.question_inputs import INSTANT_KINDS
-from rodsweep.explore.solving.questions import SHAPE_COUNT, Question, Reply, answer_to
+from rodsweep.explore.solving.request_inputs import INSTANT_KINDS
+from rodsweep.explore.solving.requests import SHAPE_COUNT, Reply, SolveRequest, answer_to
 from rodsweep.explore.solving.tip_release import motion_in_page_units
 from rodsweep.explore.state import PageState
 from rodsweep.post.figures.cycle.released_motion_film import motion_film
@@ -99,11 +99,11 @@ def test_an_answer_to_another_place_of_the_tip_is_not_shown():
     kept = []
     solvers = ImmediateSolvers()
     page = page_with(solvers)
-    solvers.ask = lambda session, question, done, progress: kept.append((question, done))
+    solvers.ask = lambda session, request, done, progress: kept.append((request, done))
     drag(page, "let go", 0.6, 0.5)
     drag(page, "let go", 0.5, -0.5)
-    question, done = kept[0]
-    done(Reply("answer", answer_to(question), 0.0))
+    request, done = kept[0]
+    done(Reply("answer", answer_to(request), 0.0))
     run_callbacks(page.document)
     assert len(page.contents.beating.motion_source.data["x"]) == 0
     assert page.contents.sign.text == "solving motion ..."
@@ -111,7 +111,7 @@ def test_an_answer_to_another_place_of_the_tip_is_not_shown():
 
 @pytest.mark.parametrize("place", [(40.0, -3.0), (0.0, 0.0), (-1.0, 0.0)])
 def test_every_place_of_the_pointer_bends_the_arm(place):
-    found = answer_to(Question("bent", PageState(), place))
+    found = answer_to(SolveRequest("bent", PageState(), place))
     assert np.isfinite([found["x"], found["y"]]).all()
 
 
@@ -132,13 +132,13 @@ def test_the_film_of_an_arm_that_was_let_go_is_that_of_its_motion():
     page = page_with(solvers, "tab=arm")
     film = page._callbacks()["film"]
     film()
-    assert solvers.questions[-1].tip is None
+    assert solvers.requests[-1].tip is None
     drag(page, "let go", 6.0, 5.0)
     film()
-    assert (solvers.questions[-1].kind, solvers.questions[-1].tip) == ("film", pytest.approx((0.6, 0.5)))
+    assert (solvers.requests[-1].kind, solvers.requests[-1].tip) == ("film", pytest.approx((0.6, 0.5)))
     page.change({"pressure": "1.1 kPa"})
     film()
-    assert solvers.questions[-1].tip is None  # the motion was that of another arm
+    assert solvers.requests[-1].tip is None  # the motion was that of another arm
 
 
 def test_the_film_of_a_motion_is_in_the_units_of_the_page():

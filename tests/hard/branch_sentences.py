@@ -123,16 +123,24 @@ def _size(true, own, text, pick):
     i = pick(np.where(own.cycles, own.y, np.inf if pick is np.argmin else -np.inf))
     at, y = float(own.at[i]), float(own.y[i])
     s = np.concatenate(
-        [[0.0], np.cumsum(np.hypot(np.diff(true.at) / np.ptp(true.at), np.diff(true.y) / np.ptp(true.y)))]
+        [
+            [0.0],
+            np.cumsum(
+                np.hypot(
+                    np.diff(true.parameter) / np.ptp(true.parameter),
+                    np.diff(true.y) / np.ptp(true.y),
+                )
+            ),
+        ]
     )
     step = np.linspace(0, s[-1], 20001)
     along, sizes = (
-        np.interp(step, s, values) for values in (true.at, true.y**2)
+        np.interp(step, s, values) for values in (true.parameter, true.y**2)
     )  # y^2 is smooth at Hopf points
     near = np.flatnonzero(np.diff(np.sign(along - at)) != 0)
     places = np.append(near, np.argmin(np.abs(along - at)))
     size = min(np.sqrt(sizes[places]), key=lambda one: abs(one - y))
-    return as_stated(text, size, CURVED * size + 0.02 * np.ptp(true.y) * (len(true.at) < 12))
+    return as_stated(text, size, CURVED * size + 0.02 * np.ptp(true.y) * (len(true.parameter) < 12))
 
 
 def _special_line(page, line, kind, true):

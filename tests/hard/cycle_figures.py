@@ -480,7 +480,7 @@ def branch_figure(d, view, fine):
 def _beside(curve):
     """(|at/at_H - 1|, y/|a|) of the cycles beside the Hopf points at both ends, until they turn back."""
     for special, order in ((curve.special[0], 1), (curve.special[-1], -1)):
-        a, at, y = special.amplitude_coefficient, curve.at[::order], curve.y[::order]
+        a, at, y = special.amplitude_coefficient, curve.parameter[::order], curve.y[::order]
         if special.kind != "hopf" or y[0] != 0 or not np.isfinite(a) or a == 0:
             continue
         away = np.sign(a) * (at / special.at - 1)
@@ -515,11 +515,11 @@ def _smooth(d, axes, lines, curves, name):
     worst, where = 0.0, None
     for curve in curves:
         some = curve.cycles
-        places = d.places(axes, curve.at[some], getattr(curve, name)[some])
+        places = d.places(axes, curve.parameter[some], getattr(curve, name)[some])
         inside = (np.abs(places - 0.5) <= 0.5).all(axis=1)
         off = np.array([_beside_pieces(begins, ends, place) for place in places])
         if len(off) and (off * inside).max() > worst:
-            worst, where = (off * inside).max(), float(curve.at[some][np.argmax(off * inside)])
+            worst, where = (off * inside).max(), float(curve.parameter[some][np.argmax(off * inside)])
     return "" if worst <= LINE else f"a cycle at {where} lies {worst:.2g} beside the curve"
 
 
@@ -541,9 +541,9 @@ def _stable(d, line, own, rods, colours, columns, view):
     for rod in rods:
         for curve in own[rod] if here[rod] else ():
             for i in np.flatnonzero(curve.cycles):
-                on = np.hypot(x - curve.at[i], y - curve.y[i])[1:-1]
+                on = np.hypot(x - curve.parameter[i], y - curve.y[i])[1:-1]
                 if len(on) and on.min() == 0:
                     beside = set(curve.stable[max(i - 1, 0) : i + 1].tolist())
                     if said not in beside:
-                        return f"stability at {curve.at[i]} is {beside}, not {said}"
+                        return f"stability at {curve.parameter[i]} is {beside}, not {said}"
     return ""

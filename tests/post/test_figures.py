@@ -20,7 +20,7 @@ from rodsweep.api.dataset import view_of_dataset
 from rodsweep.config.document.reading import resolved_config, validated_config
 from rodsweep.errors import InputError
 from rodsweep.post.figures import FIGURES, draw
-from rodsweep.post.figures.grid_sections import section_at_values
+from rodsweep.post.figures.grid_slices import slice_at_values
 from rodsweep.post.figures.point_lists import label_point_numbers
 from rodsweep.post.figures.request import FigureLook
 from rodsweep.post.figures.spectra.line import mark_thresholds, select_roots, with_gaps_between_roots
@@ -133,7 +133,7 @@ def test_one_row_of_a_diagram_is_a_bar_bounded_by_its_changes(command, drawn):
     rod = "{F: {start: 0, stop: 240, num: 13}, k1: [150, 200], k2: 1.0e4, gamma3: 1.0e-4, gamma1: 0.7}"
     command.write("c.yaml", f"task: phase_diagram\nparameters: {rod}\nphase_diagram: {{criticality: true}}\n")
     command.solved("c.yaml")
-    row = section_at_values(read_view(command.directory / "c.h5"), {"k1": 200.0})
+    row = slice_at_values(read_view(command.directory / "c.h5"), {"k1": 200.0})
     assert draw(row, command.directory / "f.png").endswith("f.png: behaviour of the rod over F")
     (bar,) = drawn[0].axes[0].collections
     edges, found = np.array(bar.get_coordinates()[0, :, 0]), np.array(bar.get_array()).ravel()
@@ -552,14 +552,14 @@ def test_a_section_between_the_values_of_a_long_axis_names_its_neighbours(comman
         (-1.0, "it has F = 0 to 20; the nearest values are 0 and 1"),
     ):
         with pytest.raises(InputError, match=f"{sentence}$"):
-            section_at_values(view, {"F": value})
+            slice_at_values(view, {"F": value})
 
 
 def test_a_section_of_a_grid_is_what_a_run_of_its_own_gives(command, monkeypatch):
     command.write("c.yaml", LINE)
     command("run", "c.yaml", "--set", "parameters.k2=[50, 100]", "--set", "spectrum.modes=3", "-o", "grid.h5")
     command("run", "c.yaml", "--set", "spectrum.modes=3", "-o", "line.h5")
-    cut = section_at_values(read_view(command.directory / "grid.h5"), {"k2": 100.0})
+    cut = slice_at_values(read_view(command.directory / "grid.h5"), {"k2": 100.0})
     line = read_view(command.directory / "line.h5")
     assert cut.variables["status"].shape == line.variables["status"].shape
     for name in ("F", "k2", "growth_rate", "frequency"):

@@ -126,7 +126,7 @@ def test_the_law_has_the_coefficient_to_which_the_cycles_tend_and_ends_where_the
     amplitude = 0.9 * np.sqrt(s * (1 - 1.2 * s))  # a fifth below the law at s = 0.2546
     F = np.r_[18, 20 * (1 + s)]
     (law,) = square_root_laws(F[::-1], np.r_[0, amplitude][::-1], [THRESHOLD])
-    assert (law.coefficient, law.above, law.end) == (pytest.approx(0.9), True, pytest.approx(25))
+    assert (law.coefficient, law.is_above, law.end) == (pytest.approx(0.9), True, pytest.approx(25))
     x, y = law.curve()
     assert (x[0], y[0], x[-1]) == (20, 0, law.end)
     assert y == pytest.approx(0.9 * np.sqrt((x - 20) / 20))
@@ -136,7 +136,7 @@ def test_cycles_that_shrink_towards_a_restabilization_have_a_law_below_it():
     F = np.array([18.0, 19, 19.5, 21])
     amplitude = np.r_[0.4 * np.sqrt((20 - F[:3]) / 20), 0]
     (law,) = square_root_laws(F, amplitude, [LocatedThreshold(20.0, 1e-6, "restabilization")])
-    assert (law.coefficient, law.above, law.end) == (pytest.approx(0.4), False, 18)
+    assert (law.coefficient, law.is_above, law.end) == (pytest.approx(0.4), False, 18)
 
 
 def test_the_smaller_of_two_cycles_at_a_force_follows_the_law():
@@ -144,7 +144,7 @@ def test_the_smaller_of_two_cycles_at_a_force_follows_the_law():
     unstable = 0.4 * np.sqrt((20 - F) / 20)
     amplitude = np.where([False, True, False, True, False, True], unstable, [0.6, 0, 0.5, 0, 0, 0])
     (law,) = square_root_laws(F, amplitude, [THRESHOLD])
-    assert (law.coefficient, law.above) == (pytest.approx(0.4), False)
+    assert (law.coefficient, law.is_above) == (pytest.approx(0.4), False)
 
 
 NOTHING = np.nan

@@ -48,7 +48,7 @@ def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, ris
         return 0.55 + rise * (u - 0.72)
 
     curve = curve_through(u, second)
-    places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
     assert len(branch_corners(places, np.ptp(places, axis=0))) == 1
     assert farthest(u, second) < 5e-4
 
@@ -57,7 +57,7 @@ def test_a_corner_is_drawn_where_another_maximum_becomes_the_largest(offset, ris
 def test_a_branch_of_one_maximum_has_no_corner(count):
     u = np.linspace(0, 1, count)
     curve = curve_through(u, lambda u: 0.0 * u)
-    places = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    places = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
     assert not branch_corners(places, np.ptp(places, axis=0))
     assert farthest(u, lambda u: 0.0 * u) < 5e-4
 

@@ -12,11 +12,11 @@ from rodsweep.errors import InputError
 from rodsweep.results.file import points, replacement, validation
 from rodsweep.results.file.combination.identity import config_difference
 from rodsweep.results.file.combination.merge import merge
-from rodsweep.results.file.creation import Plan
+from rodsweep.results.file.creation import FilePlan
 from rodsweep.results.file.current_state import write_snapshot
 from rodsweep.results.file.provenance import FAILURE_REASONS_ATTRIBUTE
 from rodsweep.results.file.seal import seal
-from rodsweep.results.file.store import Store
+from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.validation import read_header
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts import layout_of
@@ -38,7 +38,7 @@ LAYOUT = layout_of(CONFIG)
 
 def plan(is_grid=True, count=5, **config):
     columns = tuple(np.arange(1.0, n + 1) for n in ((3, 2, 1, 2) if is_grid else (count,) * 4))
-    return Plan(
+    return FilePlan(
         Points(LAYOUT.parameters, columns, is_grid),
         LAYOUT,
         {},
@@ -73,7 +73,7 @@ def journal(store, indices, rank=0, error=1e-12):
 @pytest.mark.parametrize("is_grid", [True, False])
 def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
     path = tmp_path / "a.h5"
-    store = Store(path, plan(is_grid))
+    store = ResultFileWriter(path, plan(is_grid))
     count = 12 if is_grid else 5
     assert store.missing() == [(0, count)]
     journal(store, [4, 0, 3], rank=0)
@@ -93,13 +93,13 @@ def test_journalled_points_reach_their_place_in_any_order(tmp_path, is_grid):
 @pytest.mark.parametrize("is_grid", [True, False])
 def test_blocks_of_any_size_give_the_same_file(tmp_path, monkeypatch, is_grid):
     """Whatever is read at once, in any order, and where a killed rank left points that were done again."""
-    whole = Store(tmp_path / "whole.h5", plan(is_grid))
+    whole = ResultFileWriter(tmp_path / "whole.h5", plan(is_grid))
     count = whole.missing()[0][1]
     journal(whole, range(count))
     whole.add_journals({})
     monkeypatch.setattr(pages_of, "BYTES_PER_READ", 3 * (LAYOUT.record_dtype.itemsize + 4))
     monkeypatch.setattr(points, "MAX_BLOCK_POINTS", 2)
-    store = Store(tmp_path / "a.h5", plan(is_grid))
+    store = ResultFileWriter(tmp_path / "a.h5", plan(is_grid))
     order = np.random.default_rng(1).permutation(count).tolist()
     journal(store, order[1:], rank=0)
     journal(store, [*order[:3], order[0]], rank=1)
@@ -121,7 +121,7 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
     whole = 65_536  # points that are read together
     shares = [1, whole - 1, whole + 1], [0, 1, whole - 1, whole, whole + 1, whole + 4]
     for path, indices, error in zip(paths, shares, (1e-12, 1e-11), strict=True):
-        store = Store(path, plan(False, count=whole + 5))
+        store = ResultFileWriter(path, plan(False, count=whole + 5))
         journal(store, indices, error=error)
         store.add_journals({})
         store.close()
@@ -135,7 +135,7 @@ def test_a_merge_reaches_every_point_of_files_larger_than_what_is_read_at_once(t
 
 
 def test_variables_are_read_when_they_are_asked_for(tmp_path):
-    Store(tmp_path / "a.h5", plan()).close()
+    ResultFileWriter(tmp_path / "a.h5", plan()).close()
     variables = read_view(tmp_path / "a.h5").variables
     assert not variables.values_read
     assert "growth_rate" in variables
@@ -147,11 +147,11 @@ def test_variables_are_read_when_they_are_asked_for(tmp_path):
 
 def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
     path = tmp_path / "a.h5"
-    store = Store(path, plan())
+    store = ResultFileWriter(path, plan())
     journal(store, range(7))
     assert read_view(path).journalled_count == 7
     store.close()
-    again = Store(path, plan())
+    again = ResultFileWriter(path, plan())
     assert again.missing() == [(7, 12)]
     assert again.status_counts() == {"missing": 5, "ok": 7}
     again.close()
@@ -159,7 +159,7 @@ def test_points_journalled_before_a_kill_are_folded_at_the_next_start(tmp_path):
 
 @pytest.mark.parametrize("lost", range(1, 140, 13))
 def test_torn_tail_of_a_journal_is_dropped(tmp_path, lost):
-    store = Store(tmp_path / "a.h5", plan())
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
     journal(store, range(7))
     (page,) = store.journal_directory.glob("rank-*")
     page.write_bytes(page.read_bytes()[:-lost])
@@ -176,7 +176,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
         "F=3.0: failed " + "w\N{GREEK SMALL LETTER OMEGA}" * LAYOUT.record_dtype.itemsize,
     )
     one, other = "F=1.0: failed a", "F=2.0: failed b"
-    store = Store(path, plan())
+    store = ResultFileWriter(path, plan())
     pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
     pages.append(0, record(0), [one])
     pages.append(1, record(1))
@@ -191,7 +191,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
     assert open_result(path).attrs[FAILURE_REASONS_ATTRIBUTE] == told
     write_snapshot(path, tmp_path / "s.h5")
     assert read_view(tmp_path / "s.h5").attributes[FAILURE_REASONS_ATTRIBUTE] == told
-    again = Store(path, plan())
+    again = ResultFileWriter(path, plan())
     assert again.missing() == [(4, 12)]
     assert again.attributes()[FAILURE_REASONS_ATTRIBUTE] == told
     again.close()
@@ -199,7 +199,7 @@ def test_a_killed_run_keeps_the_reasons_of_the_points_that_it_stored(tmp_path):
 
 @pytest.mark.parametrize("lost", [1, LAYOUT.record_dtype.itemsize + 4])
 def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
-    store = Store(tmp_path / "a.h5", plan())
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
     pages = Journal(store.journal_directory, 0, LAYOUT, store.plan.fingerprint)
     pages.append(0, record(0), ["F=1.0: failed a"])
     nothing = np.zeros(0, LAYOUT.record_dtype)
@@ -212,7 +212,7 @@ def test_a_torn_line_of_reasons_is_dropped_and_only_it(tmp_path, lost):
 
 
 def test_damaged_record_is_dropped_and_only_it(tmp_path):
-    store = Store(tmp_path / "a.h5", plan())
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
     journal(store, range(7))
     (page,) = store.journal_directory.glob("rank-*")
     data = bytearray(page.read_bytes())
@@ -224,7 +224,7 @@ def test_damaged_record_is_dropped_and_only_it(tmp_path):
 
 
 def test_journal_of_another_config_is_not_folded(tmp_path):
-    store = Store(tmp_path / "a.h5", plan())
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
     pages = Journal(store.journal_directory, 0, LAYOUT, "another")
     pages.append(0, record(0))
     pages.close()
@@ -235,12 +235,12 @@ def test_journal_of_another_config_is_not_folded(tmp_path):
 
 def test_file_of_another_config_is_refused_naming_the_difference(tmp_path):
     path = tmp_path / "a.h5"
-    Store(path, plan(accuracy=1e-8)).close()
+    ResultFileWriter(path, plan(accuracy=1e-8)).close()
     before = path.read_bytes()
     with pytest.raises(InputError, match="accuracy is 1e-08 in the file and 1e-10 in the config"):
-        Store(path, plan(accuracy=1e-10))
+        ResultFileWriter(path, plan(accuracy=1e-10))
     assert path.read_bytes() == before
-    Store(path, plan(accuracy=1e-10), replaces=True).close()
+    ResultFileWriter(path, plan(accuracy=1e-10), replaces=True).close()
 
 
 def test_foreign_file_is_refused_and_left_alone(tmp_path):
@@ -248,13 +248,13 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
     for content in (b"", b"not HDF5", b"\x89HDF\r\n\x1a\n" + b"\0" * 100):
         path.write_bytes(content)
         with pytest.raises(InputError, match="cannot be read as a result of rodsweep"):
-            Store(path, plan())
+            ResultFileWriter(path, plan())
         assert path.read_bytes() == content
         # --fresh, which replaces no file of another program, is advice for damaged results only.
         with pytest.raises(
             InputError, match="--fresh" if content.startswith(b"\x89") else "or move this file away"
         ):
-            Store(path, plan())
+            ResultFileWriter(path, plan())
         with pytest.raises(InputError, match="cannot be read as a result of rodsweep"):
             read_view(path)
 
@@ -266,7 +266,7 @@ def test_foreign_file_is_refused_and_left_alone(tmp_path):
 )
 def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path, other):
     path = tmp_path / "a.h5"
-    Store(path, plan()).close()
+    ResultFileWriter(path, plan()).close()
     with h5py.File(path, "r+") as file:
         del file["seconds"]
         file["seconds"] = other
@@ -277,11 +277,11 @@ def test_a_sealed_file_whose_variables_do_not_fit_its_config_is_refused(tmp_path
 
 def test_two_runs_on_one_file_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(replacement, "LOCK_TIMEOUT", 0.3)
-    store = Store(tmp_path / "a.h5", plan())
+    store = ResultFileWriter(tmp_path / "a.h5", plan())
     with pytest.raises(InputError, match="another run"):
-        Store(tmp_path / "a.h5", plan())
+        ResultFileWriter(tmp_path / "a.h5", plan())
     store.close()
-    Store(tmp_path / "a.h5", plan()).close()
+    ResultFileWriter(tmp_path / "a.h5", plan()).close()
 
 
 def test_difference_names_the_first_key_that_differs():
@@ -313,7 +313,7 @@ def test_a_view_is_of_one_file_though_a_run_exchanges_it_meanwhile(tmp_path, mon
     """What is checked, described and read is what was opened first; the other has fewer points."""
     path, other = tmp_path / "a.h5", tmp_path / "b.h5"
     for place, is_grid in ((path, True), (other, False)):
-        Store(place, plan(is_grid)).close()
+        ResultFileWriter(place, plan(is_grid)).close()
     real = validation.header_of
 
     def exchanged_before(place, file, **asked):

@@ -8,7 +8,7 @@ from surveyed import few
 from rodsweep.errors import InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.summary import show_summary
-from rodsweep.results.file.store import Store
+from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.sweep.points.ranges import Shard
 from rodsweep.tasks.running.job import job_of_file, plan_of
@@ -55,7 +55,7 @@ def test_file_cut_off_anywhere_is_refused_and_left_as_it_is(command, name, monke
         attempts = (
             lambda: show_summary(read_view(path)),
             lambda: draw([read_view(path)], command.directory / "c.png", "smallest", None, ()),
-            lambda: Store(path, plan).close(),
+            lambda: ResultFileWriter(path, plan).close(),
         )
         for attempt in attempts:
             with pytest.raises(InputError) as told:

@@ -155,7 +155,7 @@ def test_bug_outside_of_points_has_a_status_of_its_own(command):
     patch = (
         "import rodsweep.results.file.store as store\n"
         "def broken(self, *words): raise ValueError('a bug')\n"
-        "store.Store.__init__ = broken\n"
+        "store.ResultFileWriter.__init__ = broken\n"
     )
     run = command("run", "c.yaml", patch=patch)
     assert run.returncode == 70

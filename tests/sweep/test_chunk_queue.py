@@ -16,8 +16,8 @@ from rodsweep.sweep.chunk_requests import (
     PROGRESS_TAG,
     REQUEST_TAG,
     STOP_TAG,
-    FirstRankRequests,
-    OtherRankRequests,
+    ChunkClient,
+    ChunkServer,
 )
 from rodsweep.sweep.stop import StopRequest
 
@@ -177,9 +177,9 @@ class Mail:
 
 def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
-    monkeypatch.setattr(FirstRankRequests, "_serve_until_over", lambda self: None)
+    monkeypatch.setattr(ChunkServer, "_serve_until_over", lambda self: None)
     team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return FirstRankRequests(team, ChunkQueue(todo, 2), StopRequest(), show)
+    return ChunkServer(team, ChunkQueue(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):
@@ -246,7 +246,7 @@ def test_progress_counts_what_is_done_of_every_long_point_until_it_is_reported(m
 
 def other_claims(mail):
     """The claims of a rank that is not the first."""
-    return OtherRankRequests(SimpleNamespace(comm=mail), StopRequest())
+    return ChunkClient(SimpleNamespace(comm=mail), StopRequest())
 
 
 def test_another_rank_asks_for_its_next_chunk_when_it_begins_one():

@@ -16,7 +16,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.config.arm.status import CRUSHED, NO_WALL, NOT_SLENDER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.neglected import Validity
-from rodsweep.post.figures.grid_sections import section_at_values
+from rodsweep.post.figures.grid_slices import slice_at_values
 from rodsweep.results.file.view import read_view
 
 ROOT = Path(__file__).parents[2]
@@ -77,16 +77,16 @@ def test_values_are_selected_by_the_quantities_in_si(thresholds):
 def test_a_section_has_the_points_of_a_quantity_in_any_unit(thresholds):
     view = view_of_dataset(thresholds, Path("arm.h5"))
     for length in ("10 cm", "100 mm", 0.1):
-        cut = section_at_values(view, {"length": length, "young": "0.1 MPa"})
+        cut = slice_at_values(view, {"length": length, "young": "0.1 MPa"})
         assert cut.variables["F_hopf"].tolist() == [[thresholds.F_hopf.sel(length=0.1, young=1e5).item()]]
     with pytest.raises(rs.InputError, match=r"has no point there; it has length = 0\.04, 0\.1, 0\.12"):
-        section_at_values(view, {"length": "11 cm"})
+        slice_at_values(view, {"length": "11 cm"})
 
 
 def test_a_section_has_the_points_of_a_load_along_F():
     arm = GLYCEROL | {"length": "10 cm", "force": ["10 mN", "20 mN", "30 mN"]}
     view = view_of_dataset(rs.sweep("spectrum", arm=arm, modes=1), Path("arm.h5"))
-    cut = section_at_values(view, {"force": "20 mN"})
+    cut = slice_at_values(view, {"force": "20 mN"})
     assert cut.variables["force"].tolist() == [0.02]
     assert cut.variables["F"].tolist() == view.variables["F"][1:2].tolist()
     assert cut.variables["growth_rate"].shape[0] == 1
@@ -95,7 +95,7 @@ def test_a_section_has_the_points_of_a_load_along_F():
         ({"pressure": "2 kPa"}, "has no such axis; the points differ in F, force$"),
     ):
         with pytest.raises(rs.InputError, match=sentence):
-            section_at_values(view, at)
+            slice_at_values(view, at)
 
 
 def test_hopf_points_of_an_arm_with_a_force_are_forces():

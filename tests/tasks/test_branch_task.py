@@ -120,8 +120,8 @@ def test_curves_of_a_file_go_through_cycles_and_special_points(command):
     view = read_view(command.directory / "c.h5")
     (curve,) = RodBranches(view).curves
     assert (curve.y[0], curve.y[-1]) == (0, 0)
-    assert int(np.argmax(curve.at)) == np.flatnonzero(~curve.cycles)[1]
-    assert curve.at.max() == pytest.approx(FOLD, rel=1e-8)
+    assert int(np.argmax(curve.parameter)) == np.flatnonzero(~curve.cycles)[1]
+    assert curve.parameter.max() == pytest.approx(FOLD, rel=1e-8)
     stable, unstable = RodBranches(view).straight_ranges((0.0, 200.0))
     assert stable == [
         (0.0, pytest.approx(67.3869842879)),
@@ -364,10 +364,10 @@ def test_the_curve_in_the_figure_is_the_branch(k1, stop):
     for curve, true in zip(coarse, fine, strict=True):
         at, y, period, stable = smooth_curve_of_branch(curve)
         assert len(stable) == len(at) - 1
-        assert np.isin(curve.at.round(9), at.round(9)).all()
+        assert np.isin(curve.parameter.round(9), at.round(9)).all()
         for drawn, exact in (
-            ((at, y), (true.at, true.y)),
-            ((at, np.log(period)), (true.at, np.log(true.period))),
+            ((at, y), (true.parameter, true.y)),
+            ((at, np.log(period)), (true.parameter, np.log(true.period))),
         ):
             assert distance(np.column_stack(drawn), np.column_stack(exact)) < NEAR
 

@@ -16,8 +16,8 @@ from rodsweep.cli.checking import print_job_check
 from rodsweep.errors import InputError
 from rodsweep.post.summary import show_summary
 from rodsweep.post.summary.limit_cycle import limit_cycle_summary
-from rodsweep.results.file.creation import Plan
-from rodsweep.results.file.store import Store
+from rodsweep.results.file.creation import FilePlan
+from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
@@ -277,8 +277,8 @@ def filled_file(directory, text=None):
     """The file of a run whose last point is straight."""
     job = job_of(directory, text or config(STORED))
     attributes = {"title": "t", "task": job.config.task}
-    plan = Plan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
-    store = Store(directory / "c.h5", plan)
+    plan = FilePlan(job.points, job.layout, job.task.coordinates(), tuple, job.resolved, attributes, FLAGS)
+    store = ResultFileWriter(directory / "c.h5", plan)
     journal = Journal(store.journal_directory, 0, job.layout, plan.fingerprint)
     for index in range(job.points.count):
         outcome = nothing() if index == job.points.count - 1 else cycle(index)

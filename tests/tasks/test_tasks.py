@@ -16,8 +16,8 @@ import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
-from rodsweep.results.file.creation import Additions, Plan
-from rodsweep.results.file.store import Store
+from rodsweep.results.file.creation import FilePlan, FinalVariables
+from rodsweep.results.file.store import ResultFileWriter
 from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 from rodsweep.results.layouts.variables import Variable
@@ -64,7 +64,7 @@ def job_of(tmp_path, task, *overrides):
 
 
 def plan_of(job):
-    return Plan(
+    return FilePlan(
         job.points,
         job.layout,
         job.task.coordinates(),
@@ -153,7 +153,7 @@ def record_of(task, index=0):
 def filled_file(tmp_path, task):
     """The file of a small run in which every point has a record."""
     job = job_of(tmp_path, task)
-    store = Store(tmp_path / "c.h5", plan_of(job))
+    store = ResultFileWriter(tmp_path / "c.h5", plan_of(job))
     journal = Journal(store.journal_directory, 0, job.layout, store.plan.fingerprint)
     for index in range(job.points.count):
         journal.append(index, record_of(task, index))
@@ -255,7 +255,7 @@ def test_transient_growth_is_stored_only_where_it_is_computed(tmp_path):
 def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path):
     (tmp_path / "p.csv").write_text("k2,k1,gamma3\n1,9,0\n2,inf,0.5\n")
     (tmp_path / "c.yaml").write_text("task: thresholds\nparameters: {points: p.csv}\n")
-    Store(tmp_path / "c.h5", plan_of(job_of_file(tmp_path / "c.yaml", ()))).close()
+    ResultFileWriter(tmp_path / "c.h5", plan_of(job_of_file(tmp_path / "c.yaml", ()))).close()
     with xarray.open_dataset(tmp_path / "c.h5", engine="h5netcdf") as data:
         assert data.crossing_F.dims == ("point", "crossing")
         assert set(data.coords) == {"point", "crossing", "k1", "k2", "gamma3"}
@@ -266,13 +266,13 @@ def test_point_list_of_rods_without_a_force_opens_with_its_coordinates(tmp_path)
 def test_variables_added_when_a_run_ends_have_their_own_dimensions(tmp_path, count):
     path = filled_file(tmp_path, "phase_diagram")
     job = job_of(tmp_path, "phase_diagram")
-    store = Store(path, plan_of(job))
+    store = ResultFileWriter(path, plan_of(job))
     curve = [
         (Variable("curve_number", "<i4", -1, "1", "curve", ("curve_point",)), np.arange(count)),
         (Variable("curve_F", "<f8", np.nan, "k3/L^2", "F", ("curve_point",)), np.arange(count) / 2),
         (Variable("fold_F", "<f8", np.nan, "k3/L^2", "F", ("fold",)), np.array([3.5])),
     ]
-    store.finish({"finished": "now"}, Additions(curve))
+    store.finish({"finished": "now"}, FinalVariables(curve))
     store.close()
     with h5py.File(path) as file:
         assert dimensions(file["curve_F"]) == dimensions(file["curve_number"]) == ("curve_point",)

@@ -11,7 +11,7 @@ from matplotlib.collections import PolyCollection
 
 import rodsweep as rs
 from rodsweep.api.keyword_arguments import config_tree, job_of_tree
-from rodsweep.config.arm.section import ArmSection
+from rodsweep.config.arm.section import ArmConfig
 from rodsweep.config.arm.status import CRUSHED, NO_FLUTTER
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.arm.drag import DRAG_NAMES
@@ -176,7 +176,7 @@ def test_a_taper_beside_an_arm_that_is_no_taper_is_refused_before_flutter_is_sea
 
 
 def test_an_arm_without_flutter_is_a_point_with_a_status():
-    section = ArmSection(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
+    section = ArmConfig(**SILICONE | {"length": ["10 cm", "14 cm"], "pressure": "1.2 of flutter"})
     stiff = SlenderArm(**SILICONE).k1
     grid = grid_of_arms(
         section, {}, ("F", "k1"), lambda arm, taper: FlutterForce(36.0 if arm.k1 == stiff else np.inf)

@@ -142,7 +142,9 @@ class Answer:
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
-        is_missing_counts = column.values.dtype.kind in "iu" and column.absent.any() and not column.words
+        is_missing_counts = (
+            column.values.dtype.kind in "iu" and column.absent.any() and not column.flag_meanings
+        )
         values = np.asarray(
             np.where(column.absent, np.nan, column.values) if is_missing_counts else series_of(column)
         )

@@ -28,7 +28,7 @@ def series_of(column: Column) -> Any:
     """Values of a column for pandas: texts or None, booleans, real numbers or NaN, integers or <NA>."""
     if column.is_boolean:
         return column.values.astype(bool)
-    if column.words:
+    if column.flag_meanings:
         return np.array([text or None for text in column.texts()], dtype=object)
     if column.values.dtype.kind in "iu" and column.absent.any():
         return pd.Series(column.values, dtype="Int64").mask(column.absent)

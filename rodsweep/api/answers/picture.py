@@ -15,7 +15,7 @@ from ...config.document.call_arguments import refusing_wrong_arguments, unknown_
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.figures import draw
-from ...post.figures.grid_sections import checked_section_values, section_at_values
+from ...post.figures.grid_slices import checked_slice_values, slice_at_values
 from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
 from ...results.file.view import View
 from ...solve.solve_lock import one_at_a_time
@@ -200,8 +200,8 @@ def plot(
         raise InputError(
             f"{short_repr(data)} has nothing to draw; give a Dataset, an answer or a file, or several"
         )
-    values = checked_section_values(at)
-    views = [section_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
+    values = checked_slice_values(at)
+    views = [slice_at_values(view_of_result(item, PLOT_EXAMPLE), values) for item in views_or_answers]
     choices: dict[str, Any] = {"roots": roots, "what": what, "points": tuple(points)}
     choices |= {"look": FigureLook(**look), "shapes": CachedShapeSolver()}
     file = None if output is None else named_file_path(output, PLOT_EXAMPLE)

@@ -115,7 +115,8 @@ class RodPortrait:
 
 def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
     """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
-    progress: as in `rod.portrait`. Raises InputError for an invalid request.
+    progress: whether to display progress; None: only in a terminal or a notebook. Raises InputError for an
+    invalid request.
     """
     answers: dict[str, Answer] = {}
     plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}

@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...discretization.beam import Beam
 from ...solve.motion.integrator import RunEnding, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
-from ..study import Contender
+from ..study import TimedMethod
 
 TIGHT_TOLERANCE = 3e-7
 """At integrator tolerances up to this number, Newton's method has the tolerance TIGHT_NEWTON_TOLERANCE,
@@ -38,7 +38,7 @@ fails."""
 
 
 @dataclass(frozen=True, slots=True)
-class IntegratorFamily:
+class IntegratorGroup:
     """An integrator with its name in the tables, and its tolerances, from the loosest.
 
     integrate: the integrator. tolerances: tolerances of the runs that follow a cycle. waiting_tolerances:
@@ -50,19 +50,19 @@ class IntegratorFamily:
     tolerances: tuple[float, ...]
     waiting_tolerances: tuple[float, ...] = ()
 
-    def following_contenders(self) -> list[Contender]:
+    def following_contenders(self) -> list[TimedMethod]:
         """Contenders of the race FOLLOWING_RACE, which follow a cycle in time: one for each of
         `tolerances`."""
         return [self._at(tolerance) for tolerance in self.tolerances]
 
-    def settling_contenders(self) -> list[Contender]:
+    def settling_contenders(self) -> list[TimedMethod]:
         """Contenders of the race WAITING_RACE, which integrate until the motion is periodic: one for each of
         `waiting_tolerances`."""
         return [self._at(tolerance) for tolerance in self.waiting_tolerances]
 
-    def _at(self, tolerance: float) -> Contender:
+    def _at(self, tolerance: float) -> TimedMethod:
         run = partial(self.integrate, tolerance)
-        return Contender(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
+        return TimedMethod(self.name, f"{tolerance:.0e}", self.name.split()[0], run)
 
 
 def petsc_trajectory(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
@@ -80,7 +80,7 @@ def petsc_trajectory(family: str, variant: str, tolerance: float, task: Integrat
 
 WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances at which integrators run until the motion is periodic, from the loosest."""
-DEFAULT_INTEGRATOR = IntegratorFamily(
+DEFAULT_INTEGRATOR = IntegratorGroup(
     "ARKIMEX 5 (default)",
     partial(petsc_trajectory, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),

@@ -9,7 +9,7 @@ from math import inf, isfinite, log, nan
 import numpy as np
 
 from ...solve.motion.leading_mode import leading_mode
-from ..study import Contender, TimedRuns, by_method, markdown_table, time_runs
+from ..study import TimedMethod, TimedRuns, by_method, markdown_table, time_runs
 from .default_integrator import IntegrationTask
 from .tracking import (
     CYCLE_FORCE,
@@ -74,7 +74,7 @@ class SettlingMethod:
         }
 
 
-def compare_settling(reference: ReferenceCycle, contenders: Sequence[Contender], rounds: int) -> str:
+def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
     WAITING_RACE. rounds: number of timed rounds.
@@ -118,7 +118,7 @@ def _cycle_error(reference: ReferenceCycle, period: float, height: float) -> flo
     return max(abs(period / reference.period - 1), abs(height / reference.tip_y_max - 1))
 
 
-def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Contender]) -> SettlingMethod:
+def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[TimedMethod]) -> SettlingMethod:
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. settings: contenders of one integrator, from the loosest tolerance."""
@@ -150,7 +150,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Cont
     return SettlingMethod(CYCLE_FORCE, name, "", nan, inf, lambda: None, failed=failed)
 
 
-def _methods_near_hopf(settled_contenders: Sequence[Contender]) -> list[SettlingMethod]:
+def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
     periodic is estimated from the largest Floquet multiplier. settled_contenders: contender of each
     integrator."""

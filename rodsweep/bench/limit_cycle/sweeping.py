@@ -22,8 +22,8 @@ from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import (
     CaseWithErrorMeasure,
-    Contender,
     Measurement,
+    TimedMethod,
     grouped_by_fields,
     markdown_table,
     measure_cases,
@@ -70,7 +70,7 @@ class AccurateCycle:
         return cls(result.orbit, result.measures.period, result.measures.tip_y_max)
 
     def cycle_at_force(self, F: float) -> "AccurateCycle":
-        """The reference cycle of the same rod at the force F, which must be close to the present force."""
+        """The reference cycle of the same rod at the force F, which must be close to the current force."""
         stress_form = self.orbit.form
         moved_orbit = replace(self.orbit, form=replace(stress_form, rod=replace(stress_form.rod, F=F)))
         orbit = newton(moved_orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
@@ -143,16 +143,18 @@ def require_cycle(cycle: Cycle) -> Cycle:
     return cycle
 
 
-def cycle_contenders(accuracy: float) -> list[Contender]:
+def cycle_contenders(accuracy: float) -> list[TimedMethod]:
     """Contenders that solve the cycle of a `SweptRod` to an accuracy: one for each of SWEPT_PARAMETERS, which
     starts from a neighbour's cycle, and one for each of COLD_STARTS."""
     setting = f"{accuracy:.0e}"
     with_neighbour = [
-        Contender(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
+        TimedMethod(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
         for axis in SWEPT_PARAMETERS
     ]
     without_neighbour = [
-        Contender(COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_without_neighbour, start, accuracy))
+        TimedMethod(
+            COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_without_neighbour, start, accuracy)
+        )
         for name, start in COLD_STARTS.items()
     ]
     return with_neighbour + without_neighbour

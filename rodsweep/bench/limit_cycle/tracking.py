@@ -28,7 +28,7 @@ from ...solve.motion.time_scheme import TimeScheme
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
-from ..study import Contender, Measurement, measure_case
+from ..study import Measurement, TimedMethod, measure_case
 from .default_integrator import IntegrationTask
 
 FIG5_ROD = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -118,7 +118,7 @@ def solve_reference() -> ReferenceCycle:
 
 
 def measure_following(
-    reference: ReferenceCycle, contenders: Iterable[Contender], rounds: int
+    reference: ReferenceCycle, contenders: Iterable[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
     divided by the number of periods. rounds: number of timed rounds.

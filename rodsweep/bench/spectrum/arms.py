@@ -17,7 +17,7 @@ from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
 from ...wording import counted
-from ..study import Contender, Measurement, measure_case
+from ..study import Measurement, TimedMethod, measure_case
 from .exact import relative_error_by_name
 from .rodsweep_spectrum import (
     CERTIFIED_NAME,
@@ -84,7 +84,7 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
     return roots
 
 
-def measure_arm_spectra(peers: Sequence[Contender], rounds: int) -> list[Measurement]:
+def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
     """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the eigenproblem.
     peers: contenders of the peers. rounds: number of timed rounds."""
     measurements = []
@@ -141,14 +141,14 @@ def _rodsweep_solver(certify: bool, arms: UncachedArms) -> Complex:
     return rodsweep_spectrum(arms.next_arm(), certify)
 
 
-def contenders() -> list[Contender]:
+def contenders() -> list[TimedMethod]:
     """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
     rodsweep_contenders = [
-        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, False)),
-        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, True)),
+        TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, False)),
+        TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, True)),
     ]
     krylov = [
-        Contender(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
+        TimedMethod(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
         for order in ELEMENT_ORDERS
     ]
     return rodsweep_contenders + krylov

@@ -21,8 +21,8 @@ from ...wording import counted
 from ..peers import Peers
 from ..study import (
     BenchmarkReport,
-    Contender,
     Measurement,
+    TimedMethod,
     every_nth_setting,
     markdown_table,
     measure_case,
@@ -97,14 +97,14 @@ def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
 
 
 def cheapest_contenders(
-    methods: Sequence[Contender], rod: Rod, exact: list[Any], target: float
-) -> dict[str, Contender]:
+    methods: Sequence[TimedMethod], rod: Rod, exact: list[Any], target: float
+) -> dict[str, TimedMethod]:
     """For every method that reaches the error `target` on a rod: the contender with the smallest size that
     reaches this error, by name of the method.
 
     methods: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
     """
-    cheapest: dict[str, Contender] = {}
+    cheapest: dict[str, TimedMethod] = {}
     for contender in methods:
         if contender.method not in cheapest:
             error = relative_error(result_or_error(contender.run, rod), exact)
@@ -113,7 +113,11 @@ def cheapest_contenders(
 
 
 def equal_error_table(
-    methods: Sequence[Contender], rods: Sequence[Rod], exact: Sequence[list[Any]], target: float, rounds: int
+    methods: Sequence[TimedMethod],
+    rods: Sequence[Rod],
+    exact: Sequence[list[Any]],
+    target: float,
+    rounds: int,
 ) -> str:
     """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
     `target`, and returns the table of the methods. methods: contenders of all methods, by ascending size.
@@ -150,7 +154,7 @@ def equal_error_table(
     )
 
 
-def measure_hard_rods(methods: Sequence[Contender], rounds: int) -> list[Measurement]:
+def measure_hard_rods(methods: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
     """Measurements of the contenders `methods` on all HARD_RODS. rounds: number of timed rounds."""
     measurements = []
     for case, rod in HARD_RODS.items():
@@ -194,13 +198,13 @@ def krylov_schur(rod: Rod, size: int) -> Complex:
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
-def contenders() -> list[Contender]:
+def contenders() -> list[TimedMethod]:
     """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
     return [
-        Contender(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
-        Contender(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
+        TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
+        TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
         *(
-            Contender(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
+            TimedMethod(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
             for size in ELEMENT_ORDERS
         ),
     ]

@@ -100,8 +100,9 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
 def measure_instant_sweeps(
     folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
 ) -> list[Measurement]:
-    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder,
-    quick, ranks: as in `measure_solved_sweeps`; killed and resumed sweeps have one rank."""
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder:
+    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks; killed
+    and resumed sweeps have one rank."""
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:

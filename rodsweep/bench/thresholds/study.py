@@ -19,8 +19,8 @@ from ..peers import Peers
 from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 from ..study import (
     BenchmarkReport,
-    Contender,
     Measurement,
+    TimedMethod,
     grouped_by_fields,
     markdown_table,
     measure_case,
@@ -37,8 +37,8 @@ threshold was missed."""
 
 @dataclass(frozen=True)
 class ThresholdCase:
-    """A rod, with its name in the tables, and its exact first thresholds. k1, k2, gamma3, taper, build: as in
-    `Rod`.
+    """A rod, with its name in the tables, and its exact first thresholds. k1, k2, gamma3, taper,
+    build: parameters, and constitutive law with profile, of the rod.
 
     onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if the rod has
     no such threshold. search_end: F at which the searches of peers end.
@@ -148,14 +148,14 @@ def thresholds_study(quick: bool, peers: Peers) -> BenchmarkReport:
     return BenchmarkReport("thresholds", "\n\n".join([*blocks, *peers.skipped]), measurements, "rod")
 
 
-def contenders(kind: str) -> list[Contender]:
+def contenders(kind: str) -> list[TimedMethod]:
     """Contenders of the race for the threshold `kind`: rodsweep with and without its proof of
     completeness."""
     return [
-        Contender(
+        TimedMethod(
             "rodsweep, all changes", "with proof", RODSWEEP_GROUP, partial(rodsweep_threshold, kind, True)
         ),
-        Contender(
+        TimedMethod(
             "rodsweep, all changes", "without proof", RODSWEEP_GROUP, partial(rodsweep_threshold, kind, False)
         ),
     ]
@@ -176,7 +176,7 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
 
 
 def measure_rods(
-    kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[Contender], rounds: int
+    kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
     or HOPF. rounds: number of timed rounds.

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...results.file import provenance
-from ...results.file.creation import Plan
+from ...results.file.creation import FilePlan
 from ...sweep.loop import RankStatistics
 from ...wording import counted, duration
 
@@ -29,7 +29,7 @@ class RunContribution:
     statistics: RankStatistics
 
 
-def last_run_attributes(plan: Plan) -> dict[str, Any]:
+def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
     """Attributes of a plan that describe only the last run: versions, commit, options and shard."""
     names = ("_version", "_commit", "_options")
     return {k: v for k, v in plan.attributes.items() if k.endswith(names) or k == "shard"}
@@ -56,7 +56,7 @@ def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> d
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RunEnd:
+class RunStatistics:
     """Counts and times at the end of a run. ranks: number of ranks."""
 
     ranks: int

@@ -10,8 +10,8 @@ import click
 from ...config import load_config
 from ...errors import STOPPED_STATUS
 from ...results.file import provenance
-from ...results.file.creation import Additions
-from ...results.file.store import Store
+from ...results.file.creation import FinalVariables
+from ...results.file.store import ResultFileWriter
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_solvers, require_working_directory
 from ...sweep.points.ranges import IndexRange, index_count
@@ -23,7 +23,7 @@ from ...tasks.running.job import Job, job_of_config, plan_of
 from ...tasks.running.unforeseen_exceptions import TracebackLog, guarded_solver
 from ...wording import counted
 from ..shared_computations import report_stop, shared_flutter_forces, with_variables_from_config
-from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunEnd, last_run_attributes, run_history
+from .run_end import MAX_FAILURES_PRINTED, RunContribution, RunStatistics, last_run_attributes, run_history
 from .run_request import RunRequest
 from .shard_solver import ShardSolver
 from .sweep_wide_computation import PendingSweepWideVariables, SweepWideComputation
@@ -47,7 +47,7 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
 class _RankRun:
     """The part of a run that this rank executes."""
 
-    store: Store
+    store: ResultFileWriter
     """The result file, on the first rank, after `_open_store`."""
 
     def __init__(self, team: Team, job: Job, output: Path, request: RunRequest, stop: StopRequest):
@@ -149,7 +149,7 @@ class _RankRun:
 
     def _open_store(self) -> list[IndexRange]:
         """Opens or creates the result file; returns the ranges of the flat indices of missing points."""
-        self.store = Store(self.output, self.plan, self.request.fresh, self.request.extend)
+        self.store = ResultFileWriter(self.output, self.plan, self.request.fresh, self.request.extend)
         if self.sweep_wide and (self.request.fresh or not self._lacks_sweep_wide_variables(0)):
             self.sweep_wide.item_results.remove_all()
         self._print_store_notes()
@@ -186,7 +186,7 @@ class _RankRun:
             return True
         attributes = {"finished": provenance.utc_time(), "stopped": self.stop.name}
         reasons = reasons_of_changed_points(result, self.solver.statuses, self._point_text)
-        self.store.finish(attributes, Additions(result.variables, result.changed_points, reasons))
+        self.store.finish(attributes, FinalVariables(result.variables, result.changed_points, reasons))
         if self.sweep_wide:
             self.sweep_wide.item_results.remove_all()
         return False
@@ -224,7 +224,7 @@ class _RankRun:
         self.store.close()
         unsolved = self.shard_solver.items_to_solve(missing)[1]
         text = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
-        run_end = RunEnd(
+        run_end = RunStatistics(
             ranks=self.team.size,
             requested_points=count,
             unsolved_points=unsolved,

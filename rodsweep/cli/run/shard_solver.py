@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import EnvironmentIncomplete
-from ...results.file.creation import Plan
+from ...results.file.creation import FilePlan
 from ...results.run.checkpoints import Checkpoints
 from ...results.run.journal import Journal, journal_directory, journalled_points_clause
 from ...sweep.chunk_queue import ChunkQueue
@@ -40,7 +40,7 @@ class ShardSolver:
     team: Team
     job: Job
     solver: Solver
-    plan: Plan
+    plan: FilePlan
     shard: Shard
     output: Path
     stop: StopRequest

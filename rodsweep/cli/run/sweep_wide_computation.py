@@ -113,7 +113,7 @@ class SweepWideComputation:
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again. items: as in `PendingSweepWideVariables`.
+        these points again. items: the current work items.
         """
         item_numbers = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
         for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 from .axes import LOAD_KEYS
 
 if TYPE_CHECKING:
-    from .section import ArmSection
+    from .section import ArmConfig
 
 
-def refuse_conflicting_keys(arm: "ArmSection", needs_force: bool, given_parameters: Collection[str]) -> None:
+def refuse_conflicting_keys(arm: "ArmConfig", needs_force: bool, given_parameters: Collection[str]) -> None:
     """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
     Poisson's ratio.
 

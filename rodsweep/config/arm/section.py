@@ -16,7 +16,7 @@ from ...model.material.build import Build
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
-from ..values import StrictSection
+from ..values import StrictConfigSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
 from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
 from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
@@ -31,7 +31,7 @@ PoissonField = Field(description="a number above -1 and up to 0.5, a list or a r
 NO_LOAD = {"pressure": 0.0}
 
 
-class ArmSection(StrictSection):
+class ArmConfig(StrictConfigSection):
     """The arm in the quantities of `rodsweep arm`; each quantity is a value or an axis."""
 
     length: Annotated[QuantityAxis | None, QuantityField] = None
@@ -88,7 +88,7 @@ class ArmSection(StrictSection):
         return with_length(with_load_over_flutter(section)) if isinstance(section, dict) else section
 
     @model_validator(mode="after")
-    def _require_length_and_modulus(self) -> "ArmSection":
+    def _require_length_and_modulus(self) -> "ArmConfig":
         for name in ("length", "young"):
             if getattr(self, name) is None and self.segments is None:
                 raise ValueError(f"parameters.arm.{name} is missing; give it, or give segments")

@@ -14,7 +14,7 @@ from ...model.units import unit_of, value_in_unit
 from .status import ArmOutsideModel
 
 if TYPE_CHECKING:
-    from .section import ArmSection
+    from .section import ArmConfig
 
 MATERIAL_KEYS = ("segments", "law", "section")
 """Keys of an arm that correspond to the config section `material` of a dimensionless rod."""
@@ -48,7 +48,7 @@ def with_length(section: dict[str, Any]) -> dict[str, Any]:
     return section | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 
-def build_of(arm: "ArmSection") -> Build:
+def build_of(arm: "ArmConfig") -> Build:
     """Constitutive law of all arms, with the profile of the first arm to which the rod model applies; without
     a profile if there is no such arm.
 
@@ -69,7 +69,7 @@ def build_of(arm: "ArmSection") -> Build:
     return next(builds_of(arm), uniform_build)
 
 
-def builds_of(arm: "ArmSection") -> Iterator[Build]:
+def builds_of(arm: "ArmConfig") -> Iterator[Build]:
     """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
     section.
     """
@@ -78,7 +78,7 @@ def builds_of(arm: "ArmSection") -> Iterator[Build]:
             yield arm.arm_of(values).build
 
 
-def tapers_of(arm: "ArmSection") -> set[float]:
+def tapers_of(arm: "ArmConfig") -> set[float]:
     """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius or no
     base radius is given.
     """
@@ -88,7 +88,7 @@ def tapers_of(arm: "ArmSection") -> set[float]:
     return {tip_value / base_value for tip_value, base_value in pairs}
 
 
-def refuse_misused_shape(arm: "ArmSection", given_parameters: dict[str, Any]) -> None:
+def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> None:
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
     segments.
 
@@ -103,7 +103,7 @@ def refuse_misused_shape(arm: "ArmSection", given_parameters: dict[str, Any]) ->
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
 
 
-def refuse_compressible(arm: "ArmSection", section: str) -> None:
+def refuse_compressible(arm: "ArmConfig", section: str) -> None:
     """Raises ValueError if the cross-section `section` is "swelling" but a Poisson's ratio of the arm is not
     0.5.
     """

@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...model.parameters import OPTIONAL_PARAMETERS
 from ...wording import enumeration
 from ..arm.quantities import drag_names
-from ..arm.section import ArmSection
+from ..arm.section import ArmConfig
 from ..axis import Axis, axis_from_resolved
 from ..base_config import Config
 from ..material import with_profile_read
@@ -108,7 +108,7 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
 
     in_diagram: whether the task is phase_diagram.
     """
-    arm = ArmSection.model_validate(parameters["arm"])
+    arm = ArmConfig.model_validate(parameters["arm"])
     dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
     return {
         name: value

@@ -13,11 +13,11 @@ from ...model.parameters import (
     parameter_names_except,
 )
 from ..base_config import Config
-from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParameters
-from ..values import Number, StrictSection
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, NonlinearParametersSection
+from ..values import Number, StrictConfigSection
 
 
-class BranchOptions(StrictSection):
+class BranchOptions(StrictConfigSection):
     """Options of the task branch: parameter and range of the branches, number of stored cycles."""
 
     along: Literal[TRANSVERSE_PARAMETERS] = "F"  # type: ignore[valid-type]  # pydantic reads it at run time
@@ -60,7 +60,7 @@ class BranchConfig(Config):
     """The task branch follows limit cycles, stable or not, through folds, from every Hopf point of a rod."""
 
     task: Literal["branch"]
-    parameters: NonlinearParameters
+    parameters: NonlinearParametersSection
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the parameter of each cycle at a given deflection, and of its period and largest y at
     the stored parameter p. Where the largest y is steep, |(p/y) dy/dp| > 100 as near Hopf points and folds,

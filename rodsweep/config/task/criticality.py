@@ -8,11 +8,11 @@ from pydantic import Field, model_validator
 
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..base_config import Config, CrossingCount
-from ..parameters_section import DEFAULT_F_MAX, NonlinearParameters
-from ..values import Number, StrictSection
+from ..parameters_section import DEFAULT_F_MAX, NonlinearParametersSection
+from ..values import Number, StrictConfigSection
 
 
-class CriticalityOptions(StrictSection):
+class CriticalityOptions(StrictConfigSection):
     """Options of the task criticality: range of the search for Hopf points, and number of stored points."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = DEFAULT_F_MAX
@@ -30,7 +30,7 @@ class CriticalityConfig(Config):
     """
 
     task: Literal["criticality"]
-    parameters: NonlinearParameters
+    parameters: NonlinearParametersSection
     accuracy: Annotated[Number, Field(ge=1e-13, le=1e-2)] = 1e-10
     """Relative error of each Hopf point, of the eigenvalue's slope and of the Landau coefficient. The errors
     of the amplitude coefficient and of the frequency slope follow from these errors; the file has all error

@@ -8,14 +8,14 @@ from ...model.parameters import NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from ...wording import enumeration
 from ..arm.axes import SINGLE_PARAMETER_OF
 from ..base_config import Config, NodeCount
-from ..parameters_section import NonlinearParameters
-from ..values import Number, StrictSection
+from ..parameters_section import NonlinearParametersSection
+from ..values import Number, StrictConfigSection
 
 LONGEST_AXIS = "longest"
 ChainParameter = Literal[(*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS, *SINGLE_PARAMETER_OF, LONGEST_AXIS)]  # type: ignore[valid-type]  # pydantic reads it at run time, from the table
 
 
-class LimitCycleOptions(StrictSection):
+class LimitCycleOptions(StrictConfigSection):
     """Options of the task limit_cycle: initial guess, limits of the computation, stored data of a cycle."""
 
     method: Literal["collocation", "integration"] = "collocation"
@@ -54,7 +54,7 @@ class LimitCycleConfig(Config):
     """The task limit_cycle computes the limit cycle of the nonlinear rod, if there is one, at every point."""
 
     task: Literal["limit_cycle"]
-    parameters: NonlinearParameters
+    parameters: NonlinearParametersSection
     accuracy: Annotated[Number, Field(ge=1e-11, le=1e-2)] = 1e-7
     """Relative error of the period and of the tip's largest y. Other extrema of the tip may have errors a
     hundred times larger, relative to the largest y. The file has error estimates of all these numbers."""

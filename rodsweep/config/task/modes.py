@@ -5,10 +5,10 @@ from typing import Literal
 from pydantic import model_validator
 
 from ..base_config import LinearConfig, ModeCount, NodeCount
-from ..values import StrictSection
+from ..values import StrictConfigSection
 
 
-class ModesOptions(StrictSection):
+class ModesOptions(StrictConfigSection):
     """Options of the task modes: numbers of modes and of nodes, numerical abscissa and transient growth,
     certificate."""
 

@@ -14,8 +14,8 @@ from ...wording import enumeration
 from ..arm.axes import FLUID_QUANTITIES, SINGLE_PARAMETER_OF
 from ..axis import Axis
 from ..base_config import CrossingCount, LinearConfig
-from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParameters, LinearAxes
-from ..values import Number, StrictSection
+from ..parameters_section import DEFAULT_VALUES_OF_PARAMETERS, DiagramParametersSection, LinearAxes
+from ..values import Number, StrictConfigSection
 
 
 class BautinAlong(LinearAxes):
@@ -24,7 +24,7 @@ class BautinAlong(LinearAxes):
     """
 
 
-class PhaseDiagramOptions(StrictSection):
+class PhaseDiagramOptions(StrictConfigSection):
     """Options of the task phase_diagram, for the rows of the diagram and for the boundary curves."""
 
     crossings: CrossingCount = 16
@@ -80,7 +80,7 @@ class PhaseDiagramConfig(LinearConfig):
     """
 
     task: Literal["phase_diagram"]
-    parameters: DiagramParameters
+    parameters: DiagramParametersSection
     phase_diagram: PhaseDiagramOptions = PhaseDiagramOptions()
 
     allows_crushed_rods: ClassVar[bool] = True

@@ -7,10 +7,10 @@ from pydantic import model_validator
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ..base_config import LinearConfig, ModeCount, NodeCount
-from ..values import StrictSection
+from ..values import StrictConfigSection
 
 
-class SpectrumOptions(StrictSection):
+class SpectrumOptions(StrictConfigSection):
     """Options of the task spectrum: number of eigenvalues at each point, method, and stored eigenvectors."""
 
     modes: ModeCount = 4

@@ -9,10 +9,10 @@ from pydantic import Field, model_validator
 from ...model.parameters import parameter_names_except
 from ..base_config import CrossingCount, LinearConfig
 from ..parameters_section import DEFAULT_F_MAX
-from ..values import Number, StrictSection
+from ..values import Number, StrictConfigSection
 
 
-class ThresholdsOptions(StrictSection):
+class ThresholdsOptions(StrictConfigSection):
     """Options of the task thresholds: range of the search for crossings, and number of stored crossings."""
 
     F_max: Annotated[Number, Field(gt=0, lt=inf)] = DEFAULT_F_MAX

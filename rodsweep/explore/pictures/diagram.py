@@ -57,16 +57,16 @@ def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
 
 
-def joined_cells(edges: Array, levels: Array, counts: Array) -> list[DiagramCell]:
+def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes in rows of cells. edges: edges of the columns, (columns +
-    1,). levels: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
+    1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
     """
     cells = []
     for row, line in enumerate(counts):
         start = 0
         for count, group in groupby(map(int, line)):
             end = start + len(list(group))
-            cells.append(DiagramCell(edges[start], edges[end], levels[row], levels[row + 1], count))
+            cells.append(DiagramCell(edges[start], edges[end], row_edges[row], row_edges[row + 1], count))
             start = end
     return cells
 
@@ -139,7 +139,7 @@ class DiagramPicture:
         return len(self.cell_source.data["left"]) > 0
 
     def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
-        """Draws the answer `answer` to the question "diagram". load, row_scale: scales of the controls whose
+        """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
         units the axes have.
         """
         x = answer["x"] * load.factor
@@ -148,7 +148,9 @@ class DiagramPicture:
         grid = (
             diagram_cells(x, y, answer["unstable_count"])
             if regions is None
-            else joined_cells(regions.sides * load.factor, regions.levels * row_scale.factor, regions.counts)
+            else joined_cells(
+                regions.column_edges * load.factor, regions.row_edges * row_scale.factor, regions.counts
+            )
         )
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]

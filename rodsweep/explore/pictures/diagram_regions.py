@@ -16,17 +16,17 @@ PIXELS_PER_ROW = 2
 
 
 class RegionTable(NamedTuple):
-    """Numbers of unstable modes in narrow rows of cells. sides: edges of the columns, (columns + 1,). levels:
-    edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
+    """Numbers of unstable modes in narrow rows of cells. column_edges: edges of the columns, (columns + 1,).
+    row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
     """
 
-    sides: Array
-    levels: Array
+    column_edges: Array
+    row_edges: Array
     counts: Array
 
 
 def region_table(answer: dict[str, Any]) -> RegionTable | None:
-    """Regions of the answer `answer` to the question "diagram", in its units. None if the answer has no curve
+    """Regions of the answer `answer` to the request "diagram", in its units. None if the answer has no curve
     of Hopf points, or fewer than two finite positive values of the second parameter.
     """
     x = answer["x"]
@@ -55,12 +55,12 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
     pixels = pixel_classes(computed, row_points, curves, ratio > CURVES_END_AT_RATIO, UNKNOWN_COUNT)
     pixels = np.where(ratio < 1, pixels, CRUSHED_COUNT)
     column_edges = np.linspace(x[0], x[-1], PIXEL_COUNT + 1)
-    levels = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
-    return RegionTable(column_edges, levels, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
+    row_edges = np.geomspace(y[0], y[-1], PIXEL_COUNT // PIXELS_PER_ROW + 1)
+    return RegionTable(column_edges, row_edges, pixels[PIXELS_PER_ROW // 2 :: PIXELS_PER_ROW])
 
 
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
-    """Load divided by the load that crushes the rod, at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
+    """Load divided by the crushing load (zero stretch), at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
     logarithms of the second parameter, (rows,). load: crushing load of each row, infinite on no row or on all
     rows, (rows,).
     """

@@ -13,7 +13,7 @@ from ...arrays import Array
 from ...post.figures.cycle.tip_path import smooth_tip_path
 from ..page_style import template_text
 from ..slider_scales import PictureAxis
-from ..solving.tip_release import Tip
+from ..solving.tip_release import TipPosition
 from . import card
 
 PERIOD_SECONDS = 2.0
@@ -80,7 +80,7 @@ class MovingArmPicture:
         variables = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
         return CustomJS(args=sources | variables, code=template_text("beating.js"))
 
-    def on_drag(self, drag: Callable[[str, Tip], None]) -> None:
+    def on_drag(self, drag: Callable[[str, TipPosition], None]) -> None:
         """Registers the callback `drag(kind, tip)`, called when the user drags or releases the tip. kind:
         "bent" or "motion". tip: position of the tip, in L.
         """

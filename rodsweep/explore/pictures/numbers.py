@@ -28,9 +28,9 @@ ROW_LABELS_BY_KIND = {
         "pressure_hopf": "flutters from", "frequency_hopf_hz": "frequency at flutter",
     },
 }  # fmt: skip
-"""Rows of the table for each kind of question: label of each variable."""
+"""Rows of the table for each kind of request: label of each variable."""
 HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
-"""Heading above the rows of each kind of question."""
+"""Heading above the rows of each kind of request."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""
 TABLE_UNITS = {"m": ("cm", 1e2), "Pa": ("kPa", 1e-3), "W": ("mW", 1e3)}
@@ -46,16 +46,16 @@ SI_NAMES = {
 
 
 class NumbersTable:
-    """Table of numbers from the latest answer to each kind of question, below sentences that say where the
+    """Table of numbers from the latest answer to each kind of request, below sentences that say where the
     model does not apply to an arm, or is doubtful."""
 
     def __init__(self) -> None:
         self.root = PageText(name="numbers")
         self.answers_by_kind: dict[str, dict[str, Any]] = {}
-        """Latest answer to each kind of question in the table."""
+        """Latest answer to each kind of request in the table."""
 
     def show(self, kind: str, answer: dict[str, Any] | None) -> None:
-        """Replaces the rows for the kind of question `kind` by numbers of the answer `answer`; None removes
+        """Replaces the rows for the kind of request `kind` by numbers of the answer `answer`; None removes
         these rows. A kind that is not in ROW_LABELS_BY_KIND has no effect.
         """
         if kind not in ROW_LABELS_BY_KIND:

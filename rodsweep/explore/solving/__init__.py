@@ -1,1 +1,1 @@
-"""Questions of the page, and the processes that solve them. Independent of controls and pictures."""
+"""Requests of the page, and the processes that solve them. Independent of controls and pictures."""

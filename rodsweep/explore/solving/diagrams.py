@@ -29,7 +29,7 @@ thresholds on this row."""
 ARM_ROW_COUNT = 12
 """Number of values of the second quantity of the diagram, for arms."""
 ARM_SPAN_RATIO = 2.0
-"""The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the present
+"""The values of an arm's second quantity extend from 1/ARM_SPAN_RATIO to ARM_SPAN_RATIO times the current
 value; the ratio is small, so that all arms are slender."""
 CACHED_DIAGRAM_COUNT = 8
 """Number of solved diagrams that a solver process keeps, some 100 kB each: the search of folds and torus
@@ -44,7 +44,7 @@ CRUSHED_COUNT = -2
 """Value of `unstable_count` at a point whose load crushes the rod."""
 PARAMETER_SPAN_RATIO = 10.0
 """The values of a rod's second parameter extend from 1/PARAMETER_SPAN_RATIO to PARAMETER_SPAN_RATIO times the
-present value."""
+current value."""
 TAPER_RANGE = (0.4, 1.6)
 """(smallest, largest) taper of the diagram. Cones with a smaller taper take minutes."""
 
@@ -54,9 +54,9 @@ def diagram_answer(state: PageState) -> dict[str, Any]:
 
     x: load, (columns,). y: second parameter, (rows,). unstable_count: number of unstable modes, UNKNOWN_COUNT
     or CRUSHED_COUNT, (rows, columns). between_x, between_y, between_count: places between neighbouring
-    crossings of a row, and numbers of unstable modes there, (places,). crushing_load: load that crushes the
-    rods of a row, (rows,), or empty. curve_x, curve_y, curve_number, curve_kind: stability boundaries, (curve
-    points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
+    crossings of a row, and numbers of unstable modes there, (places,). crushing_load: the crushing load (zero
+    stretch) of a row, (rows,), or empty. curve_x, curve_y, curve_number, curve_kind: stability boundaries,
+    (curve points,); cycle_curve_x, ...: curves of folds and torus points of cycles. crossing_x, crossing_y,
     crossing_kind: thresholds on the rows, (crossings,), empty for uniform rods.
     """
     state.subject()
@@ -94,8 +94,8 @@ def has_uniform_linear_rods(state: PageState) -> bool:
 
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
-    """Values of the second parameter, (rows,): logarithmically spaced around the present value, or linearly
-    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the present value is
+    """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
+    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the current value is
     finite and positive.
     """
     if state.second == "taper":

@@ -1,5 +1,5 @@
-"""Known numbers of unstable modes between the crossings of the rows of a phase diagram, and the load that
-crushes the rods; with the curves they determine the areas of the diagram of a page.
+"""Known numbers of unstable modes between the crossings of the rows of a phase diagram, and the crushing load
+(zero stretch); with the curves they determine the areas of the diagram of a page.
 """
 
 import json

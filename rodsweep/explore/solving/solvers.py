@@ -1,4 +1,4 @@
-"""Solver processes, one for each group of kinds of questions. A new question replaces the older question of
+"""Solver processes, one for each group of kinds of requests. A new request replaces the older request of
 the same session and kind.
 """
 
@@ -16,12 +16,12 @@ from tornado.ioloop import IOLoop
 from ..state import PageState
 from . import worker
 from .fork_server import FORK_SERVER, start_fork_server
-from .questions import Question, Reply
+from .requests import Reply, SolveRequest
 
-Key = tuple[str, str]
-"""(session, kind) of a question. A new question replaces an older question with an equal key."""
-ReplyCallback = Callable[[Reply], None]
-"""Function that is called with the reply to a question, or with a progress message."""
+RequestKey = tuple[str, str]
+"""(session, kind) of a request. A new request replaces an older request with an equal key."""
+OnReply = Callable[[Reply], None]
+"""Function that is called with the reply to a request, or with a progress message."""
 
 
 def ignore_progress(reply: Reply) -> None:
@@ -33,14 +33,14 @@ PROCESS_GROUPS = {
     "branch": "branch", "diagram": "diagram", "bent": "spectrum", "motion": "cycle", "film": "film",
     "cycles": "diagram",
 }  # fmt: skip
-"""Process group of each kind of question, chosen so that fast questions do not wait for slow questions."""
+"""Process group of each kind of request, chosen so that fast requests do not wait for slow requests."""
 GROUP_NICENESS = {"spectrum": 0, "cycle": 10, "thresholds": 12, "branch": 15, "diagram": 15, "film": 15}
 """Unix niceness of the solver process of each group. Only the group "spectrum" has the priority of the page
 and the browser, so its pictures are drawn while other processes solve."""
 INTERRUPT_RETRY_SECONDS = 0.1
 """Time after which a cancellation is repeated if the process was not yet ready, in seconds."""
 WARM_UP_KINDS = ("spectrum", "cycle", "thresholds")
-"""Kinds of questions that are solved once at the start of the server, to start their processes and to load
+"""Kinds of requests that are solved once at the start of the server, to start their processes and to load
 compiled code."""
 
 
@@ -49,9 +49,9 @@ class CancellationDelays:
     """Times, in seconds, until a superseded solve is cancelled, and until a process that does not react is
     killed.
 
-    interrupt_seconds: a solve of at least this age is cancelled when a newer question with the same key
+    interrupt_seconds: a solve of at least this age is cancelled when a newer request with the same key
     waits. Younger solves finish, so that pictures follow a moving slider. kill_seconds: a process that has
-    not replied this time after a cancellation is killed, and restarted for the next question.
+    not replied this time after a cancellation is killed, and restarted for the next request.
     """
 
     interrupt_seconds: float = 0.3
@@ -59,7 +59,7 @@ class CancellationDelays:
 
 
 class SolverProcess:
-    """One solver process, and the queue of its questions. A question starts the process if it is not running.
+    """One solver process, and the queue of its requests. A request starts the process if it is not running.
     delays: times until a superseded solve is cancelled, and until a process that does not react to the
     cancellation is killed; None for the default times. niceness: Unix niceness of the process.
     """
@@ -67,10 +67,10 @@ class SolverProcess:
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
         self.delays = delays or CancellationDelays()
         self.niceness = niceness
-        self.waiting: dict[Key, tuple[Question, ReplyCallback, ReplyCallback]] = {}
-        self.current_question: tuple[Key, ReplyCallback, ReplyCallback] | None = None
-        self.question_number = 0
-        """Number of questions sent so far. A timer compares this number with the number at which the timer
+        self.waiting: dict[RequestKey, tuple[SolveRequest, OnReply, OnReply]] = {}
+        self.current_request: tuple[RequestKey, OnReply, OnReply] | None = None
+        self.request_number = 0
+        """Number of requests sent so far. A timer compares this number with the number at which the timer
         was set, and acts only if both are equal."""
         self.solve_start_time = 0.0
         self.start_count = 0
@@ -87,36 +87,36 @@ class SolverProcess:
         return None if self._process is None else self._process.pid
 
     def ask(
-        self, key: Key, question: Question, on_reply: ReplyCallback, progress: ReplyCallback = ignore_progress
+        self, key: RequestKey, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
-        """Queues a question. An older question with the same key is removed from the queue, or cancelled if
+        """Queues a request. An older request with the same key is removed from the queue, or cancelled if
         it is being solved. on_reply: callback for the reply. progress: callback for progress messages.
         """
         self.waiting.pop(key, None)
-        self.waiting[key] = question, on_reply, progress
-        if self.current_question is None:
+        self.waiting[key] = request, on_reply, progress
+        if self.current_request is None:
             self._send_next()
-        elif self.current_question[0] == key:
+        elif self.current_request[0] == key:
             age = time.monotonic() - self.solve_start_time
-            number = self.question_number
+            number = self.request_number
             IOLoop.current().call_later(
                 max(0.0, self.delays.interrupt_seconds - age), lambda: self._cancel(number, key)
             )
 
     def cancel_session(self, session: str) -> None:
-        """Removes all questions of a session from the queue, and cancels the session's question that is being
+        """Removes all requests of a session from the queue, and cancels the session's request that is being
         solved.
         """
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
-        if self.current_question is not None and self.current_question[0][0] == session:
-            self._interrupt(self.question_number)
+        if self.current_request is not None and self.current_request[0][0] == session:
+            self._interrupt(self.request_number)
 
-    def cancel(self, key: Key) -> None:
-        """Removes the question with the given key from the queue, and cancels its solve if it has started."""
+    def cancel(self, key: RequestKey) -> None:
+        """Removes the request with the given key from the queue, and cancels its solve if it has started."""
         self.waiting.pop(key, None)
-        if self.current_question is not None and self.current_question[0] == key:
-            self._interrupt(self.question_number)
+        if self.current_request is not None and self.current_request[0] == key:
+            self._interrupt(self.request_number)
 
     def close(self) -> None:
         """Ends the process and empties the queue."""
@@ -131,7 +131,7 @@ class SolverProcess:
         self._connection, far_end = FORK_SERVER.Pipe()
         lifetime_end, self._lifetime_pipe = FORK_SERVER.Pipe(duplex=False)
         self._process = FORK_SERVER.Process(
-            target=worker.answer_questions, args=(far_end, lifetime_end, self.niceness), daemon=True
+            target=worker.answer_requests, args=(far_end, lifetime_end, self.niceness), daemon=True
         )
         self._process.start()
         self.start_count += 1
@@ -144,13 +144,13 @@ class SolverProcess:
         if not self.waiting:
             return
         key = next(iter(self.waiting))
-        question, on_reply, progress = self.waiting.pop(key)
+        request, on_reply, progress = self.waiting.pop(key)
         self.start()
         assert self._connection is not None
-        self.current_question = (key, on_reply, progress)
+        self.current_request = (key, on_reply, progress)
         self.solve_start_time = time.monotonic()
-        self.question_number += 1
-        self._connection.send(question)
+        self.request_number += 1
+        self._connection.send(request)
 
     def _receive_replies(self, descriptor: int, events: int) -> None:
         assert self._connection is not None
@@ -162,26 +162,26 @@ class SolverProcess:
         if reply.outcome == "ready":
             self.is_ready = True
             return
-        current = self.current_question
+        current = self.current_request
         if reply.outcome == "progress":
             if current is not None:
                 current[2](reply)
             return
-        self.current_question = None
+        self.current_request = None
         if current is not None and reply.outcome != "cancelled":
             current[1](reply)
-        if self.current_question is None:
+        if self.current_request is None:
             self._send_next()
 
-    def _cancel(self, number: int, key: Key) -> None:
-        """Cancels question `number` if it is still being solved while a newer question with an equal
+    def _cancel(self, number: int, key: RequestKey) -> None:
+        """Cancels request `number` if it is still being solved while a newer request with an equal
         key waits.
         """
-        if number == self.question_number and key in self.waiting:
+        if number == self.request_number and key in self.waiting:
             self._interrupt(number)
 
     def _interrupt(self, number: int) -> None:
-        if self.current_question is None or number != self.question_number or self._process is None:
+        if self.current_request is None or number != self.request_number or self._process is None:
             return
         if not self.is_ready:
             IOLoop.current().call_later(INTERRUPT_RETRY_SECONDS, lambda: self._interrupt(number))
@@ -191,10 +191,10 @@ class SolverProcess:
         IOLoop.current().call_later(self.delays.kill_seconds, lambda: self._kill(number))
 
     def _kill(self, number: int) -> None:
-        if self.current_question is None or number != self.question_number:
+        if self.current_request is None or number != self.request_number:
             return
         self._end_process()
-        self.current_question = None
+        self.current_request = None
         self._send_next()
 
     def _end_process(self) -> None:
@@ -217,30 +217,26 @@ class Solvers:
         self.groups = {group: SolverProcess(delays, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Sends one question of each of the WARM_UP_KINDS, to start their processes and load compiled
+        """Sends one request of each of the WARM_UP_KINDS, to start their processes and load compiled
         code.
         """
         for kind in WARM_UP_KINDS:
-            self.ask("warm up", Question(kind, PageState()), lambda reply: None)
+            self.ask("warm up", SolveRequest(kind, PageState()), lambda reply: None)
 
     def ask(
-        self,
-        session: str,
-        question: Question,
-        on_reply: ReplyCallback,
-        progress: ReplyCallback = ignore_progress,
+        self, session: str, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
-        """Queues a question of a session. on_reply: callback for the reply. progress: callback for progress
+        """Queues a request of a session. on_reply: callback for the reply. progress: callback for progress
         messages.
         """
-        self.groups[PROCESS_GROUPS[question.kind]].ask((session, question.kind), question, on_reply, progress)
+        self.groups[PROCESS_GROUPS[request.kind]].ask((session, request.kind), request, on_reply, progress)
 
     def cancel(self, session: str, kind: str) -> None:
-        """Cancels the question of the given kind in a session."""
+        """Cancels the request of the given kind in a session."""
         self.groups[PROCESS_GROUPS[kind]].cancel((session, kind))
 
     def cancel_session(self, session: str) -> None:
-        """Cancels all questions of a session."""
+        """Cancels all requests of a session."""
         for solver in self.groups.values():
             solver.cancel_session(session)
 

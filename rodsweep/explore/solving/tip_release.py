@@ -15,11 +15,11 @@ from ...tasks.running.job import Job
 from ..slider_scales import length_axis
 from ..state import MATERIAL_CHOICES, PageState, rod_of
 
-Tip = tuple[float, float]
+TipPosition = tuple[float, float]
 """Coordinates (x, y) of the tip, in units of the arm's length L."""
 
 
-def dragged_equilibrium(state: PageState, tip: Tip | None) -> dict[str, Any]:
+def dragged_equilibrium(state: PageState, tip: TipPosition | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
     None for the straight arm.
     """
@@ -27,7 +27,7 @@ def dragged_equilibrium(state: PageState, tip: Tip | None) -> dict[str, Any]:
     return {"x": x, "y": y}
 
 
-def released_motion_answer(state: PageState, tip: Tip) -> dict[str, Any]:
+def released_motion_answer(state: PageState, tip: TipPosition) -> dict[str, Any]:
     """Motion of the arm after its tip is released at `tip`: fields of `ReleasedMotion`, and the variables
     below.
 
@@ -42,7 +42,7 @@ def released_motion_answer(state: PageState, tip: Tip) -> dict[str, Any]:
     return vars(motion) | _film_shapes(motion) | page_values
 
 
-def motion_film_answer(state: PageState, tip: Tip) -> dict[str, Any]:
+def motion_film_answer(state: PageState, tip: TipPosition) -> dict[str, Any]:
     """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
     `gif`.
     """

@@ -1,6 +1,6 @@
-"""Main loop of a solver process, which reads questions from a pipe and writes replies to the same pipe.
+"""Main loop of a solver process, which reads requests from a pipe and writes replies to the same pipe.
 
-SIGINT cancels the question being solved. The process ends when the pipe closes. The solver process also
+SIGINT cancels the request being solved. The process ends when the pipe closes. The solver process also
 watches a second pipe, whose other end only the page's process holds; it therefore ends with the page, even
 during a solve.
 """
@@ -15,10 +15,10 @@ from threading import Thread
 from types import FrameType
 from typing import Any
 
-from ...errors import Refusal
+from ...errors import UserError
 from ...solve_progress import SolvePosition, reporting_to
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from .questions import Question, Reply, answer_to
+from .requests import Reply, SolveRequest, answer_to
 
 CANCELLATION_RETRY_SECONDS = 0.05
 """A cancellation that arrives during an import, or while a progress message is sent, is repeated after this
@@ -36,7 +36,7 @@ class Cancellation:
         self.is_solving = False
         self.is_sending_progress = False
         self.is_due = False
-        """Whether the question being solved was cancelled."""
+        """Whether the request being solved was cancelled."""
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         if not self.is_solving:
@@ -58,8 +58,8 @@ def is_importing(frame: FrameType | None) -> bool:
     return False
 
 
-def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
-    """Solves a question and returns the reply. An unexpected exception gives the outcome "failed", and its
+def reply_to(request: SolveRequest, cancellation: Cancellation, send: Callable[[Reply], None]) -> Reply:
+    """Solves a request and returns the reply. An unexpected exception gives the outcome "failed", and its
     traceback is printed to standard error.
 
     cancellation: handler of SIGINT. send: called with replies of the outcome "progress" during a long solve.
@@ -79,14 +79,14 @@ def reply_to(question: Question, cancellation: Cancellation, send: Callable[[Rep
             cancellation.is_solving = True
             outcome = "answer"
             with reporting_to(RankListener(SingleRankCommunication(send_progress), StopRequest())):
-                content = answer_to(question)
+                content = answer_to(request)
         finally:
             cancellation.is_solving = False
-            signal.setitimer(signal.ITIMER_REAL, 0)  # a pending alarm would cancel the next question
+            signal.setitimer(signal.ITIMER_REAL, 0)  # a pending alarm would cancel the next request
     except KeyboardInterrupt:
         outcome = "cancelled"
         content = {}
-    except Refusal as error:
+    except UserError as error:
         outcome = "refused"
         content = {"sentence": str(error)}
     except Exception as error:
@@ -108,10 +108,10 @@ def end_with_page(life: "Connection[Any, Any]") -> None:
     os._exit(0)
 
 
-def answer_questions(
-    connection: "Connection[Reply, Question]", life: "Connection[Any, Any]", niceness: int
+def answer_requests(
+    connection: "Connection[Reply, SolveRequest]", life: "Connection[Any, Any]", niceness: int
 ) -> None:
-    """Answers the questions from the pipe `connection` until the pipe closes. life: pipe that closes when the
+    """Answers the requests from the pipe `connection` until the pipe closes. life: pipe that closes when the
     page's process ends. niceness: Unix niceness.
     """
     os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
@@ -130,7 +130,7 @@ def answer_questions(
     send(Reply("ready", {}, 0.0))
     while True:
         try:
-            question = connection.recv()
+            request = connection.recv()
         except (EOFError, OSError):  # the page has ended, perhaps before it read the last reply
             return
-        send(reply_to(question, cancellation, send))
+        send(reply_to(request, cancellation, send))

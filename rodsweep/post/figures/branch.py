@@ -153,7 +153,7 @@ def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """
     [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
-        high = min(high, 1.1 * max(float(np.nanmax(curve.at)) for curve in rod.curves))
+        high = min(high, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
     return low, high
 
 

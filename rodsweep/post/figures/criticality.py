@@ -19,7 +19,7 @@ from .arm.quantities import constant_quantities_text
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
-from .grid_sections import left_out_clause
+from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 
@@ -70,7 +70,7 @@ def draw_criticality(request: FigureRequest) -> str:
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
-    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.left_out}"
+    caption = f"the normal form of the first Hopf point over {' and '.join(points.names)}{points.omissions}"
     return request.write(_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
 
 

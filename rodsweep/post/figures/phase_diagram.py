@@ -19,7 +19,7 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
 from .arm.quantities import constant_quantities_text
-from .grid_sections import left_out_clause
+from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
 from .stability.class_bars import BAR_ASPECT
@@ -37,8 +37,8 @@ from .stability.row_classes import classes_between_crossings, pixel_classes_of_r
 @dataclass(frozen=True, slots=True)
 class ClassMap:
     """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
-    computed point, (rows, columns). crushing_ratio: force divided by the force that crushes the rod, at every
-    pixel, (pixels, pixels).
+    computed point, (rows, columns). crushing_ratio: force divided by the crushing force (zero stretch), at
+    every pixel, (pixels, pixels).
     """
 
     plane: DrawnPlane

@@ -30,10 +30,10 @@ SLOPE_CYCLE_COUNT = 5
 CORNER_CYCLE_COUNT = 4
 """Number of cycles on each side of a corner in the polynomials that locate the corner; fewer near an end of
 the branch."""
-MIN_ANGLE = 0.25
+MIN_SLOPE_JUMP = 0.25
 """A jump of the slope is drawn as a corner if the jump exceeds this fraction of the steepest chord near the
 corner. A smaller jump changes the curve by at most a few per cent of the chord."""
-MIN_ANGLE_RATIO = 3.0
+MIN_SLOPE_JUMP_RATIO = 3.0
 """At a corner, the jump of the slope of y exceeds this multiple of the jumps of the slopes of parameter and
 log period, which are smooth there. At a sharp bend that the cycles do not resolve, all three jumps are
 similar."""
@@ -51,7 +51,7 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     The branch has a corner where a different maximum of y(t) becomes the largest maximum; the curve is smooth
     between corners.
     """
-    vertices = np.column_stack([curve.at, curve.y, np.log(curve.period)])
+    vertices = np.column_stack([curve.parameter, curve.y, np.log(curve.period)])
     extent = np.ptp(vertices, axis=0)
     extent[extent == 0] = 1.0
     # The end of the range is stored as a cycle and as a special point.
@@ -59,7 +59,7 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
     cycles = vertices[np.append(True, is_distinct)]
     stable = curve.stable[is_distinct]
     if len(cycles) <= MIRRORED_CYCLE_COUNT:
-        return curve.at, curve.y, curve.period, curve.stable
+        return curve.parameter, curve.y, curve.period, curve.stable
     corners = branch_corners(cycles, extent)
     for i in sorted(corners, reverse=True):
         cycles = np.insert(cycles, i + 1, corners[i], axis=0)
@@ -124,8 +124,8 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
             if (
                 is_between
-                and slope_jumps[1] > MIN_ANGLE
-                and slope_jumps[1] > MIN_ANGLE_RATIO * max(map(abs, slope_jumps[::2]))
+                and slope_jumps[1] > MIN_SLOPE_JUMP
+                and slope_jumps[1] > MIN_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
             ):
                 corner = scipy.interpolate.barycentric_interpolate(x, cycles[window], root.real)
                 corner[1] = scipy.interpolate.barycentric_interpolate(

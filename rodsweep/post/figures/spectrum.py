@@ -15,7 +15,7 @@ from ...errors import InputError
 from ...results.file.view import View
 from . import style
 from .arm.quantities import constant_quantities_text
-from .grid_sections import left_out_clause, section_at_values, without_infinite_values
+from .grid_slices import left_out_clause, slice_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
 from .request import FigureRequest
@@ -99,7 +99,7 @@ def _draw_line_per_value(view: View, curve_parameter: str, request: FigureReques
     """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
     for a map; returns a sentence."""
     lines = [
-        without_infinite_values(section_at_values(view, {curve_parameter: float(value)}))
+        without_infinite_values(slice_at_values(view, {curve_parameter: float(value)}))
         for value in view.parameter_values[curve_parameter]
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]

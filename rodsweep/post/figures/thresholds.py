@@ -102,8 +102,8 @@ def searched_range_clause(*views: View) -> str:
 
 
 def _threshold_maps(view: View, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
-    """Returns (figure, left_out). The figure has a map over two parameters for each kind of threshold in
-    `names`. left_out: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
+    """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
+    `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
     Raises InputError if nothing can be drawn.
     """
     points = point_map(view)
@@ -130,4 +130,4 @@ def _threshold_maps(view: View, names: list[str], is_narrow: bool) -> tuple[Figu
             searched_range_clause(view),
         )
     )
-    return figure, points.left_out
+    return figure, points.omissions

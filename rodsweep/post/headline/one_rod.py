@@ -63,7 +63,7 @@ class ColumnTexts:
         column = self.columns[name]
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
-        if column.words or column.values.dtype.kind != "f":
+        if column.flag_meanings or column.values.dtype.kind != "f":
             return [(text, "") for text in column.texts()]
         if column.is_estimate:
             stated_error = self._values[name] + self._rounding(name)

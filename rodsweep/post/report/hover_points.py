@@ -49,11 +49,11 @@ class HoverPoint:
 
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
-    """Texts for n values of a curve. places: positions relative to the lower left corner of the figure, in
+    """Texts for n values of a curve. positions: positions relative to the lower left corner of the figure, in
     pixels, (n, 2). texts: texts of the values.
     """
 
-    places: Array
+    positions: Array
     texts: Sequence[str]
 
 
@@ -69,7 +69,7 @@ def hover_points(figure: Figure) -> list[HoverPoint]:
     points = []
     for series in series_list:
         stride = step if len(series.texts) > MAX_UNTHINNED_POINTS else 1
-        for (x, y), text in zip(series.places[::stride], series.texts[::stride], strict=True):
+        for (x, y), text in zip(series.positions[::stride], series.texts[::stride], strict=True):
             points.append(HoverPoint(float(scale * x), float(height - scale * y), text))
     return points
 
@@ -88,9 +88,9 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
     ]
     panel_box = axes.bbox.padded(FRAME_MARGIN)
     for series in series_list:
-        is_inside = np.isfinite(series.places).all(axis=1)
-        is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.places[is_inside]]
-        yield HoverSeries(series.places[is_inside], [series.texts[i] for i in np.flatnonzero(is_inside)])
+        is_inside = np.isfinite(series.positions).all(axis=1)
+        is_inside[is_inside] = [panel_box.contains(x, y) for x, y in series.positions[is_inside]]
+        yield HoverSeries(series.positions[is_inside], [series.texts[i] for i in np.flatnonzero(is_inside)])
 
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:

@@ -31,11 +31,11 @@ TEX_SIGNS = {
 
 def label_text(label: str) -> str:
     """A label as plain text on one line. An escaped dollar sign becomes a dollar sign."""
-    text = FORMULA.sub(lambda match: _formula(match[1]), label).replace(r"\$", "$")
+    text = FORMULA.sub(lambda match: _unicode_of_formula(match[1]), label).replace(r"\$", "$")
     return " ".join(text.split())
 
 
-def _formula(tex: str) -> str:
+def _unicode_of_formula(tex: str) -> str:
     """A formula as text: a subscript directly after its letter, a power after "^"."""
     tex = DERIVATIVE.sub(lambda match: rf"d{match[1] or match[2]}/dt\,", tex)
     previous = None
@@ -44,7 +44,11 @@ def _formula(tex: str) -> str:
         tex = COMMAND_WITH_ARGUMENT.sub(lambda match: match[1] or match[2] or "", tex)
     tex = SUBSCRIPT.sub(lambda match: match[1] or match[2], tex)
     tex = SUPERSCRIPT.sub(lambda match: _superscript_text(match[1] or match[2]), tex)
-    return TEX_COMMAND.sub(lambda match: _command_text(match[1]), tex).replace("{", "").replace("}", "")
+    return (
+        TEX_COMMAND.sub(lambda match: _unicode_of_tex_command(match[1]), tex)
+        .replace("{", "")
+        .replace("}", "")
+    )
 
 
 def _superscript_text(exponent: str) -> str:
@@ -53,7 +57,7 @@ def _superscript_text(exponent: str) -> str:
 
 
 @cache
-def _command_text(command: str) -> str:
+def _unicode_of_tex_command(command: str) -> str:
     """Unicode text of a TeX command: a Greek letter, a sign, or the name of the command, such as "max"."""
     if command in TEX_SIGNS:
         return TEX_SIGNS[command]

@@ -92,7 +92,7 @@ def _cell(column: Column, text: str, value: float) -> Cell:
     """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
     missing.
     """
-    is_number = column.values.dtype.kind == "f" and not column.words and not column.is_estimate
+    is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
     if not text or not is_number:
         return Cell(text)
     rounded = f"{value:.{CELL_DIGITS}g}"

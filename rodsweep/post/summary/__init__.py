@@ -82,7 +82,8 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
 
 
 def show_summary(view: View, every_status: bool = False) -> None:
-    """Prints the summary of a result file. every_status: as in `summary_of`.
+    """Prints the summary of a result file. every_status: whether the list of statuses includes statuses that
+    no point has.
 
     The answer comes first, for an arm also in SI units. Reliability, further results, parameters and
     provenance follow, each below a heading. Lines are wrapped at the width of a terminal window, and not

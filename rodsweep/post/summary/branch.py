@@ -103,7 +103,8 @@ def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
     if not cycles.any():
         return "no cycle is stored"
     sizes = curve.y[cycles]
-    text = f"{parameter} = {span_text(curve.at[cycles])}, largest tip y {span_text(sizes, errors * sizes)} L"
+    y_text = f"largest tip y {span_text(sizes, errors * sizes)} L"
+    text = f"{parameter} = {span_text(curve.parameter[cycles])}, {y_text}"
     return f"{counted(int(cycles.sum()), 'cycle')}, {text}"
 
 

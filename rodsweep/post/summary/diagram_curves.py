@@ -57,8 +57,8 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
-    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line, row:
-    as in `curve_lines`.
+    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line:
+    parameter that varies along a row. row: parameter that is constant on a row.
     """
     v = view.variables
     lines = []
@@ -105,7 +105,7 @@ def curve_count_lines(view: View, line: str) -> list[str]:
 
 def incomplete_curve_lines(view: View, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
-    list was full. line, row: as in `curve_lines`.
+    list was full. line: parameter that varies along a row. row: parameter that is constant on a row.
     """
     v = view.variables
     lines = []
@@ -130,7 +130,7 @@ def _on_no_curve_clause(count: int, noun: str) -> str:
 
 def fold_lines(view: View, line: str, row: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
-    line, row: as in `curve_lines`.
+    line: parameter that varies along a row. row: parameter that is constant on a row.
     """
     v = view.variables
     lines = []
@@ -178,7 +178,7 @@ def criticality_lines(view: View) -> list[str]:
 
 def bautin_lines(view: View, line: str, row: str) -> list[str]:
     """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
-    line, row: as in `curve_lines`.
+    line: parameter that varies along a row. row: parameter that is constant on a row.
     """
     v = view.variables
     lines = [

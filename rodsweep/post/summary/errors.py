@@ -112,8 +112,8 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 
 def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
-    """Range of the known values of the variable `name` over the points in `mask`, (...,), as text, rounded
-    according to the errors. v: variables of the file.
+    """Range of the variable `name` over the points in `mask`, (...,), as text, rounded according to the
+    errors; unknown values of transient_time are left out. v: variables of the file.
     """
     selected = mask & is_known(v, name) if name == "transient_time" else mask
     return span_text(v[name][selected], absolute_errors(v, name)[selected])

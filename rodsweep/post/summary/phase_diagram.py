@@ -41,7 +41,7 @@ def phase_diagram_summary(view: View, computed: np.ndarray) -> SummaryLines:
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next(name for name in view.parameters if len(view.parameter_values[name]) > 1)
-    answer = [*class_share_lines(v["class"][computed]), *lines_about_rows(view, computed, line, row)]
+    answer = [*class_fraction_lines(v["class"][computed]), *lines_about_rows(view, computed, line, row)]
     if "stable_states" in v:
         answer += state_lines(view, computed, line, row)
     reliability = search_lines(view, computed, "row")
@@ -92,7 +92,7 @@ def cost_saving_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
     ]
 
 
-def class_share_lines(classes: np.ndarray) -> list[str]:
+def class_fraction_lines(classes: np.ndarray) -> list[str]:
     """List with a line on the fraction of the grid points in each class. classes: class of each point, of any
     shape."""
     percents = ((100 * float((classes == value).mean()), word) for value, word in STABILITY_CLASSES)

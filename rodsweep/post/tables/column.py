@@ -33,7 +33,7 @@ class Column:
     meaning: str
     values: NDArray
     absent: NDArray[np.bool_]
-    words: Mapping[int, str] = field(default_factory=dict)
+    flag_meanings: Mapping[int, str] = field(default_factory=dict)
     """Words by integer value; empty for a column of numbers."""
     is_input: bool = False
     """Whether the values are input, such as parameters, and not results."""
@@ -72,8 +72,8 @@ class Column:
         """
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
-        elif self.words:
-            texts = [self.words.get(int(v), "") for v in np.nan_to_num(self.values)]
+        elif self.flag_meanings:
+            texts = [self.flag_meanings.get(int(v), "") for v in np.nan_to_num(self.values)]
         elif self.values.dtype.kind == "f":
             texts = self._numbers()
         else:
@@ -106,7 +106,7 @@ def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, s
 
 def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Column:
     """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
-    missing value, stands for an arm to which no rod corresponds.
+    missing value, stands for an arm outside the rod model.
     """
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), is_input=True)
 

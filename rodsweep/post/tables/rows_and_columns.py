@@ -57,7 +57,7 @@ def list_columns(
     view: View, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
 ) -> Iterator[Column]:
     """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
-    is_sweep_wide: as in `item_rows`.
+    is_sweep_wide: whether the list belongs to the whole file, not to single points.
     """
     names = variables[0].extra
     for name, item_indices in zip(names, rows[1:], strict=True):
@@ -119,7 +119,7 @@ def line_columns(view: View, rows: Rows) -> Iterator[Column]:
 def quantity_column(name: str, values: NDArray) -> Column:
     """Column of an arm's quantity `name`, with values of shape (rows,)."""
     column = coordinate_column(name, *ALL_QUANTITIES[name][:2], values)
-    return replace(column, words=dict(enumerate(DRAG_NAMES))) if name == "drag" else column
+    return replace(column, flag_meanings=dict(enumerate(DRAG_NAMES))) if name == "drag" else column
 
 
 def _is_of_points(view: View, variable: Variable) -> bool:

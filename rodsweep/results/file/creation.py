@@ -28,7 +28,7 @@ from .validation import FORMAT, PROGRAM
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class FilePlan:
     """Plan of a result file: points, layout, resolved config, and the variables that do not belong to single
     points.
     """
@@ -68,7 +68,7 @@ class Plan:
 
 
 @dataclass(frozen=True, slots=True)
-class Additions:
+class FinalVariables:
     """Contents that complete a file with all points. variables: variables that do not belong to single
     points. changed_points: new values of the variables of points, by name, by flat index. reasons: lines that
     say why some of these points failed."""
@@ -78,10 +78,10 @@ class Additions:
     reasons: Sequence[str] = ()
 
 
-NO_ADDITIONS = Additions()
+NO_ADDITIONS = FinalVariables()
 
 
-def create_file(path: Path, plan: Plan) -> None:
+def create_file(path: Path, plan: FilePlan) -> None:
     """Creates the file of a plan at `path`; all points are missing."""
     # Constants may need a solve: a process that MPI starts would inherit the open file with its lock.
     constants = plan.variables_from_config()
@@ -114,7 +114,7 @@ def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
         _write_attributes(file, data, variable, variable.extra)
 
 
-def _write_parameters(file: h5py.File, plan: Plan) -> None:
+def _write_parameters(file: h5py.File, plan: FilePlan) -> None:
     """Writes the coordinates of the points: axes of a grid, or all parameters along `point`."""
     names = plan.layout.parameters
     points = plan.points

@@ -7,7 +7,7 @@ from ...errors import EnvironmentIncomplete, InputError
 from ..run.journal import journals_with_fingerprint
 from .combination.extension import extension_of
 from .combination.identity import config_change_text
-from .creation import Plan
+from .creation import FilePlan
 from .points import points_of_file
 from .validation import InvalidResultFile, ResultHeader, is_rodsweep_file, read_header
 
@@ -18,7 +18,7 @@ EXTRA_SPACE_BYTES = 300_000
 """Additional disk space that a run needs, in bytes, for attributes, coordinates and checkpoints."""
 
 
-def require_room(path: Path, plan: Plan) -> None:
+def require_room(path: Path, plan: FilePlan) -> None:
     """Raises EnvironmentIncomplete unless the disk has space for the file of a plan, journals and a copy."""
     size = SPACE_FACTOR * plan.points.count * (plan.layout.bytes_per_point + 12) + EXTRA_SPACE_BYTES
     free = shutil.disk_usage(path.parent).free
@@ -28,7 +28,7 @@ def require_room(path: Path, plan: Plan) -> None:
         )
 
 
-def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHeader:
+def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> ResultHeader:
     """Header of the existing file at `path`, where the file of a plan belongs.
 
     Raises InputError unless the existing file is a complete result. journals: journal directory of the file.
@@ -44,7 +44,7 @@ def header_of_existing_file(path: Path, plan: Plan, journals: Path) -> ResultHea
         raise InputError(f"{error}; the file is left unchanged: {remedies}") from None
 
 
-def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> None:
+def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) -> None:
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
     the plan. journals: journal directory of the file.
     """
@@ -58,7 +58,7 @@ def require_same_config(header: ResultHeader, plan: Plan, journals: Path) -> Non
     raise InputError(f"{header.path} was made from another config ({change}); {remedies}")
 
 
-def _remedies_clause(plan: Plan, journals: Path) -> str:
+def _remedies_clause(plan: FilePlan, journals: Path) -> str:
     """Clause that tells the user what to do with a file that is in the way of the result file. journals:
     journal directory of the file.
     """

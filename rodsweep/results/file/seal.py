@@ -35,7 +35,7 @@ ByteRange = tuple[int, int]
 """Byte range of a file: (offset, size), in bytes."""
 
 
-class BrokenSeal(ValueError):
+class ChecksumMismatch(ValueError):
     """A file differs from its seal; the message is a clause."""
 
 
@@ -58,20 +58,20 @@ def seal(path: Path) -> None:
 def has_valid_structure_checksum(path: Path) -> bool:
     """Whether the HDF5 structures of the file match its checksum; False if the file has no checksum.
 
-    Another program that writes the file removes the checksum. Raises BrokenSeal for a wrong checksum, or
-    OSError. Takes a millisecond.
+    Another program that writes the file removes the checksum. Raises ChecksumMismatch for a wrong checksum,
+    or OSError. Takes a millisecond.
     """
     with path.open("rb") as stream:
         end = _hdf5_end(stream)
         size = os.fstat(stream.fileno()).st_size
         if size < end:
-            raise BrokenSeal(f"it ends after {size} of {end} bytes")
+            raise ChecksumMismatch(f"it ends after {size} of {end} bytes")
         stream.seek(end)
         data = stream.read(MAX_CHECKSUM_TEXT_BYTES)
         if not data or data.startswith(FORMER_CHECKSUM_HEAD):
             return False
         if not data.startswith(CHECKSUM_HEAD) or not data.endswith(b"\n"):
-            raise BrokenSeal("its checksum cannot be read")
+            raise ChecksumMismatch("its checksum cannot be read")
         try:
             stored = json.loads(data[len(CHECKSUM_HEAD) :])
             ranges = [(int(start), int(length)) for start, length in stored["pieces"]]
@@ -79,9 +79,9 @@ def has_valid_structure_checksum(path: Path) -> bool:
                 stream, _left_out_pieces(ranges, end)
             )
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):
-            raise BrokenSeal("its checksum cannot be read") from None
+            raise ChecksumMismatch("its checksum cannot be read") from None
     if not is_valid:
-        raise BrokenSeal("its content differs from its checksum")
+        raise ChecksumMismatch("its content differs from its checksum")
     return True
 
 
@@ -90,7 +90,7 @@ def _hdf5_end(stream: BinaryIO) -> int:
     stream.seek(0)
     header = stream.read(64)
     if not header.startswith(HDF5_SIGNATURE) or len(header) < 64 or header[8] not in END_OFFSETS:
-        raise BrokenSeal("it is not HDF5")
+        raise ChecksumMismatch("it is not HDF5")
     offset = END_OFFSETS[header[8]]
     return int.from_bytes(header[offset : offset + 8], "little")
 
@@ -107,7 +107,7 @@ def _left_out_pieces(ranges: list[ByteRange], end: int) -> Iterator[ByteRange]:
     position = 0
     for start, size in [*ranges, (end, 0)]:
         if not 0 <= position <= start <= end:
-            raise BrokenSeal("its checksum cannot be read")
+            raise ChecksumMismatch("its checksum cannot be read")
         yield position, start - position
         position = start + size
 

@@ -32,7 +32,7 @@ from ..run.journal import (
     read_reasons,
 )
 from .combination.extension import extension_of
-from .creation import NO_ADDITIONS, Additions, Plan, add_variables, create_file
+from .creation import NO_ADDITIONS, FilePlan, FinalVariables, add_variables, create_file
 from .current_state import SNAPSHOT_ATTRIBUTE
 from .points import iterate_statuses, missing_ranges, points_of_file, records_of_points, write_records
 from .provenance import merged_history, with_failure_reasons
@@ -44,10 +44,10 @@ BACKUP_GLOB = "before-*.h5"
 """Pattern of the names of backups of the file, kept with the journals until an extension is complete."""
 
 
-class Store:
+class ResultFileWriter:
     """Result file of one run. Only the first rank has a store, and only one run at a time can open a file."""
 
-    def __init__(self, path: Path, plan: Plan, replaces: bool = False, extends: bool = False):
+    def __init__(self, path: Path, plan: FilePlan, replaces: bool = False, extends: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
 
         replaces: whether to replace an existing result file of any plan. extends: whether to extend the file
@@ -153,11 +153,11 @@ class Store:
         with damage_refusals(self.path):
             return missing_ranges(self.path)
 
-    def finish(self, attributes: dict[str, Any], additions: Additions = NO_ADDITIONS) -> None:
+    def finish(self, attributes: dict[str, Any], additions: FinalVariables = NO_ADDITIONS) -> None:
         """Stores journalled points, attributes, `additions`, and variables computed from all points."""
         self.add_journals(attributes, additions)
 
-    def add_journals(self, attributes: dict[str, Any], additions: Additions | None = None) -> None:
+    def add_journals(self, attributes: dict[str, Any], additions: FinalVariables | None = None) -> None:
         """Adds journalled points and attributes by one replacement; deletes the journals. additions: as for
         `finish`; None if points are missing."""
         plan = self.plan
@@ -196,12 +196,12 @@ class Store:
         layout: Layout,
         fingerprint: str,
         attributes: dict[str, Any],
-        additions: Additions | None = None,
+        additions: FinalVariables | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
         the journals.
 
-        layout: layout of the records. attributes, additions: as in `add_journals`.
+        additions: variables that end the file; None if points are missing.
         """
         with disk_refusals(self.path, self._journalled_points_clause):
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)

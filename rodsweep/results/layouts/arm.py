@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...config.arm.axes import PARAMETER_STORED_ALONG, grid_axis_names
 from ...config.arm.quantities import typed_unit
-from ...config.arm.section import ArmSection
-from ...config.parameters_section import Axes
+from ...config.arm.section import ArmConfig
+from ...config.parameters_section import ParametersSection
 from ...config.tasks import makes_diagram
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.neglected import Validity
@@ -143,7 +143,7 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
-def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...]:
+def arm_variables(parameters: ParametersSection, points: Points) -> tuple[FilledVariable, ...]:
     """(variable, values) of each quantity and unit of a config's arm; empty if the config has no arm.
 
     For a grid over the arm's quantities the axes come first, and every parameter is included, along the grid.
@@ -167,7 +167,7 @@ def arm_variables(parameters: Axes, points: Points) -> tuple[FilledVariable, ...
     )
 
 
-def _si_variable(arm: ArmSection, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
+def _si_variable(arm: ArmConfig, name: str, values: Any, dimensions: tuple[str, ...]) -> FilledVariable:
     """(variable, values) of the arm's quantity or parameter `name`, along the given dimensions."""
     units, meaning = DIMENSIONS[name] if name in PARAMETERS else ALL_QUANTITIES[name][:2]
     variable = real(name, units, meaning, *dimensions)

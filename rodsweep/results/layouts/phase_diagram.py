@@ -132,7 +132,7 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
 
 def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
-    line, row: as in `curve_variables`."""
+    line, row: parameters."""
     dimension = "cycle_curve_point"
     force = PARAMETERS[line].unit
     kind = "kind of the special points on the curve, fold or torus"
@@ -198,7 +198,7 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
-    `phase_diagram.criticality`. line, row: as in `curve_variables`."""
+    `phase_diagram.criticality`. line, row: parameters."""
     units = {name: PARAMETERS[name].unit for name in (line, row)}
     error = "estimate of the error of bautin_"
     variables = (

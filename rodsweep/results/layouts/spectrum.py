@@ -27,7 +27,7 @@ from .variables import (
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
     """Variables for the real and the imaginary part of a complex field of every mode, along the rod. name:
-    name of the field. units, long_name: as in `Variable`.
+    name of the field. units, long_name: unit and long name of the field.
     """
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),

@@ -69,8 +69,8 @@ def crossing_variables(line: str, position_name: str) -> tuple[Variable, ...]:
 
 
 def search_variables(line: str, position_name: str) -> tuple[Variable, ...]:
-    """Variables of a search for crossings along the parameter `line`; position_name: as in
-    `crossing_variables`."""
+    """Variables of a search for crossings along the parameter `line`; position_name: name of the variable
+    with the value of this parameter at a crossing."""
     units = PARAMETERS[line].unit
     undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
     return (

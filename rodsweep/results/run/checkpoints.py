@@ -17,7 +17,8 @@ import numpy as np
 from .journal import delete_matching_files
 
 CHECKPOINT_GLOB = "chain-*"
-"""Pattern of the file names of checkpoints of chains, including files that a kill left unfinished."""
+"""Pattern of the file names of checkpoints of chains of points, including files that a kill left
+unfinished."""
 ITEM_RESULT_GLOB = "unit-*"
 """Pattern of the file names of results of work items, including files that a kill left unfinished."""
 CHECKPOINT_HEAD = b"rodsweep checkpoint 7\n"
@@ -33,7 +34,7 @@ STATE_PREFIX = "state_"
 
 
 class StateWithArrays(Protocol):
-    """Solver state of a chain, which can be written as arrays."""
+    """Solver state after a point of a chain of points, which can be written as arrays."""
 
     def arrays(self) -> Arrays:
         """The complete solver state as arrays of any shape, (...,), by name."""
@@ -81,13 +82,14 @@ class ArrayStore:
 
 
 class Checkpoints(ArrayStore):
-    """Store with the last solved point of each unfinished chain, and the solver state after this point."""
+    """Store with the last solved point of each unfinished chain of points, and the solver state after this
+    point."""
 
     pattern = CHECKPOINT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
-        """directory, fingerprint: as in `ArrayStore`. state_of: makes a solver state from its arrays (the
-        result of the state's method `arrays`).
+        """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
+        state from its arrays (the result of the state's method `arrays`).
         """
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
@@ -121,7 +123,7 @@ class ItemResults(ArrayStore):
     pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory, fingerprint: as in `ArrayStore`."""
+        """directory: journal directory. fingerprint: digest of config and points."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:

@@ -65,7 +65,7 @@ class Journal:
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
-        name, (n, ...). reasons: as in `append`.
+        name, (n, ...). reasons: lines that say why points failed, for `read_reasons`.
         """
         records = np.zeros(len(index), self.record.dtype)
         records["index"] = index

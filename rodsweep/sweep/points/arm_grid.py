@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...config.arm.section import ArmSection
+from ...config.arm.section import ArmConfig
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, ArmOutsideModel
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
@@ -29,7 +29,7 @@ NO_FORCE = FlutterForce(np.nan)
 
 
 def grid_of_arms(
-    section: ArmSection,
+    section: ArmConfig,
     given_parameters: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterSearch,
@@ -84,7 +84,7 @@ def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[Sle
     return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
-def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
+def _arm_or_status(section: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
     """Returns (arm without load, status code). The arm is None if the rod model does not apply. values:
     quantities of the arm in SI units, by name.
     """
@@ -95,7 +95,7 @@ def _arm_or_status(section: ArmSection, values: Mapping[str, float]) -> tuple[Sl
 
 
 def _unit_load_forces(
-    section: ArmSection, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterSearch
+    section: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterSearch
 ) -> ForceArray:
     """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm.
 
@@ -112,7 +112,7 @@ def _unit_load_forces(
 
 
 def _unit_load_force(
-    section: ArmSection, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
+    section: ArmConfig, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
 ) -> FlutterForce:
     """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load.
 
@@ -147,10 +147,11 @@ def _search_failures(codes: Array, forces: ForceArray) -> dict[int, str]:
 
 
 def _refuse_grid_without_rods(
-    section: ArmSection, given_parameters: Mapping[str, Array], no_flutter: bool, forces: ForceArray
+    section: ArmConfig, given_parameters: Mapping[str, Array], no_flutter: bool, forces: ForceArray
 ) -> None:
-    """Raises ValueError with the reason why the rod model applies to no point. given_parameters: as in
-    `grid_of_arms`. no_flutter: whether some arm does not flutter. forces: result of `_unit_load_forces`."""
+    """Raises ValueError with the reason why the rod model applies to no point. given_parameters: values,
+    (n,), of the parameters that replace the arm's parameters, by name. no_flutter: whether some arm does not
+    flutter. forces: result of `_unit_load_forces`."""
     section.arm_of(section.first_values, with_load=True)
     for force in forces.ravel():
         if force.failure:

@@ -35,7 +35,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 class CheckpointStore(Protocol):
     """Store of checkpoints: (flat index of the last solved point, solver state after this point) of each
-    unfinished chain.
+    unfinished chain of points.
     """
 
     def write(self, chain: int, index: int, state: State) -> None: ...
@@ -47,7 +47,8 @@ class CheckpointStore(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """All chains of a grid of shape `shape` along its axis number `axis`.
+    """All chains, lines of points each of which starts from its neighbour's solution, of a grid of shape
+    `shape` along its axis number `axis`.
 
     is_upward: whether points are solved in order of increasing values on the axis.
     """
@@ -96,7 +97,7 @@ class ChainSolver:
     """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
 
     work: the chains. missing: flat indices of the missing points. checkpoints: store of solver states. stop:
-    a stop request ends the chain after the present point.
+    a stop request ends the chain after the current point.
     """
 
     work: ChainedWork

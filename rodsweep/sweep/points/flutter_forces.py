@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from math import inf, nan
 from typing import TypeAlias
 
-from ...config.arm.section import ArmSection
+from ...config.arm.section import ArmConfig
 from ...config.arm.status import ArmOutsideModel
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
@@ -40,7 +40,7 @@ OWN_TAPER: ReplacedTapers = (None,)
 
 
 def rods_needing_flutter_force(
-    section: ArmSection | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
+    section: ArmConfig | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
     flutter.
@@ -56,7 +56,7 @@ def rods_needing_flutter_force(
     return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, build, taper)))
 
 
-def _unloaded_arms(section: ArmSection) -> Iterable[SlenderArm]:
+def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
     an invalid arm.
     """
@@ -87,8 +87,8 @@ def flutter_force_of_arm(
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
-    flutter_forces: forces of all rods of `rods_needing_flutter_force`. build: as in
-    `rods_needing_flutter_force`.
+    flutter_forces: forces of all rods of `rods_needing_flutter_force`. build: constitutive law and profile
+    from the config section `material`, None if the section is not given.
     """
     from ...verdict.relative_load import rods_by_plane
 

@@ -85,7 +85,7 @@ class Points:
             return self.columns_by_name
         return self.values_of(np.flatnonzero(self.arm_statuses == SLENDER))
 
-    def has_rod(self, index: int) -> bool:
+    def is_in_model(self, index: int) -> bool:
         """Whether the point at a flat index has a rod."""
         return self.arm_statuses is None or self.arm_statuses[index] == SLENDER
 

@@ -48,7 +48,8 @@ SolveStretch = Callable[[NDArray[np.int64]], StretchResult]
 
 @dataclass(frozen=True, slots=True)
 class Stretches:
-    """All stretches of a grid of shape `shape` along its axis number `axis`."""
+    """All stretches, runs of neighbouring points along one axis whose eigenvalues are followed from point to
+    point, of a grid of shape `shape` along its axis number `axis`."""
 
     shape: tuple[int, ...]
     axis: int
@@ -122,7 +123,7 @@ def stretches_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) 
 
 @dataclass(frozen=True, slots=True)
 class StretchSolver:
-    """Function from the number of a stretch to the results of its missing points.
+    """Function from the number of a stretch of points to the results of its missing points.
 
     stretches: all stretches of the grid. solve_stretch: solves the points of a stretch together. solve:
     solves a point, given its flat index, that could not be solved together with its stretch. missing: flat
@@ -135,8 +136,8 @@ class StretchSolver:
     missing: IndexSet
 
     def __call__(self, stretch: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
-        """Solves a stretch; yields (flat indices, (m,), `StretchResult`) of all missing points that are
-        solved together, then (flat index, outcome) of each further missing point.
+        """Solves a stretch of points; yields (flat indices, (m,), `StretchResult`) of all missing points that
+        are solved together, then (flat index, outcome) of each further missing point.
 
         A run that ends between two points loses no point that was yielded before.
         """

@@ -29,7 +29,7 @@ MIN_OUTCOME_BYTES = 10_000
 """Minimum assumed memory of an outcome, in bytes: an outcome has more fields than the stored variables."""
 
 
-class NoRodStatus(PointStatus):
+class OutsideModelStatus(PointStatus):
     """Statuses, in every task, of the points of an arm to which the rod model does not apply."""
 
     not_slender = (
@@ -58,12 +58,12 @@ class NoRodStatus(PointStatus):
 
 
 @dataclass(frozen=True, slots=True)
-class OutcomeWithoutRod:
+class OutcomeOutsideModel:
     """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
     text on the reason, or empty.
     """
 
-    status: NoRodStatus
+    status: OutsideModelStatus
     message: str = ""
 
 
@@ -156,9 +156,9 @@ class SkippingSolver:
     """A solver that skips the points to which the rod model does not apply, and gives these points fill
     values.
 
-    rod_solver: solver of the points with a rod. arm_statuses: SLENDER for points with a rod, else a value of
-    `NoRodStatus`, (points,). failures: additional messages by flat index of the point. layout: variables of a
-    point.
+    rod_solver: solver of the points to which the rod model applies. arm_statuses: SLENDER for points to which
+    the rod model applies, else a value of `OutsideModelStatus`, (points,). failures: additional messages by
+    flat index of the point. layout: variables of a point.
     """
 
     rod_solver: Solver
@@ -167,9 +167,9 @@ class SkippingSolver:
     layout: Layout
 
     def solver_of_all_points(self) -> Solver:
-        """The solver of all points. It solves points with a rod, and gives fill values to the other
-        points."""
-        statuses = (*self.rod_solver.statuses, *NoRodStatus)
+        """The solver of all points. It solves the points to which the rod model applies, and gives fill
+        values to the other points."""
+        statuses = (*self.rod_solver.statuses, *OutsideModelStatus)
         return self.rod_solver.with_wrapper(
             self._solve, self._solve_stretch, record=self._record, statuses=statuses
         )
@@ -177,24 +177,25 @@ class SkippingSolver:
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.arm_statuses[index] == SLENDER:
             return solve()
-        return OutcomeWithoutRod(self._status(index), self.failures.get(index, "")), None
+        return OutcomeOutsideModel(self._status(index), self.failures.get(index, "")), None
 
-    def _status(self, index: int) -> NoRodStatus:
-        """Status of a point without a rod."""
-        return next(status for status in NoRodStatus if status == self.arm_statuses[index])
+    def _status(self, index: int) -> OutsideModelStatus:
+        """Status of a point to which the rod model does not apply."""
+        return next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
-        if not isinstance(outcome, OutcomeWithoutRod):
+        if not isinstance(outcome, OutcomeOutsideModel):
             return self.rod_solver.record(index, outcome)
         return self._empty_values | {STATUS.name: int(outcome.status)}
 
     @property
     def _empty_values(self) -> dict[str, Any]:
-        """Every variable of a point without a rod, except its status."""
+        """Every variable of a point to which the rod model does not apply, except its status."""
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
     def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Results for the points of a stretch at flat indices, (n,); only points with a rod are solved."""
+        """Results for the points of a stretch at flat indices, (n,); only points to which the rod model
+        applies are solved."""
         assert self.rod_solver.stretched is not None
         arm_statuses = self.arm_statuses[indices]
         rod_indices = np.flatnonzero(arm_statuses == SLENDER)

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...config.arm.axes import NON_LOAD_KEYS
-from ...config.arm.section import ArmSection
+from ...config.arm.section import ArmConfig
 from ...config.arm.status import SLENDER
 from ...config.base_config import Config
 from ...model.arm.arm import SlenderArm
@@ -137,7 +137,7 @@ class ArmValidity:
     def __init__(self, config: Config, points: Points, statuses: Iterable[PointStatus] = ()):
         """statuses: all statuses that points of the task can have."""
         assert config.parameters.arm is not None
-        self.section: ArmSection = config.parameters.arm
+        self.section: ArmConfig = config.parameters.arm
         self.points = points
         self.task = config.task
         at_rest = AT_REST_STATUSES.get(self.task, ())
@@ -160,7 +160,7 @@ class ArmValidity:
         return self._validity_variables(arm, replace(motion, may_be_missed=may_be_missed), index)
 
     def variables_at_rest(self) -> dict[str, Array]:
-        """The VALIDITY_VARIABLES at the n points with a rod, (n,), as if all arms were at rest."""
+        """The VALIDITY_VARIABLES at the n points in the rod model, (n,), as if all arms were at rest."""
         parts = []
         for start in range(0, self.points.count, self.points_per_arm):
             indices = np.arange(start, start + self.points_per_arm)
@@ -205,7 +205,7 @@ class ArmValidity:
 
     def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load. index: as in `variables_of_points`.
+        if the arm has no load. index: index of the point, or indices, (n,).
         """
         k1 = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
@@ -228,14 +228,14 @@ class ArmValidity:
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter. index: as in `variables_of_points`.
+        have this parameter. index: index of the point, or indices, (n,).
         """
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])
 
 
-def _arm_of_number(section: ArmSection) -> Callable[[int], SlenderArm]:
+def _arm_of_number(section: ArmConfig) -> Callable[[int], SlenderArm]:
     """Function from a number to the arm with this number, without load.
 
     Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated

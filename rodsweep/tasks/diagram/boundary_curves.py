@@ -57,8 +57,9 @@ def criticality_along(
 def generalised_hopf_curves(
     plane: "Plane", criticalities: Sequence["CurveCriticality"], third_axis: tuple[str, Axis], accuracy: float
 ) -> list[FilledVariable]:
-    """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities,
-    accuracy: as in `criticality_along`. third_axis: name and values of the third parameter.
+    """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities: of
+    the Hopf curves of the plane. accuracy: relative accuracy of the linear results. third_axis: name and
+    values of the third parameter.
     """
     from ...determinant.parameter_plane import PlaneAxis
     from ...solve.hopf.bautin_curves import (

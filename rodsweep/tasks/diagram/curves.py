@@ -85,7 +85,7 @@ class DiagramCurves:
         self.special_points_by_row.update(starts)
 
     def work_items(self, view: View, results: Mapping[int, NamedArrays]) -> "Stage | None":
-        """The present stage of the search for curves of folds and torus points of cycles; None if these
+        """The current stage of the search for curves of folds and torus points of cycles; None if these
         curves are not requested, or if fewer than two rows have a finite value.
 
         view: the result file with all rows. results: results of half curves and rows so far, by number.

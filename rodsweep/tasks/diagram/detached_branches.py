@@ -68,8 +68,8 @@ def rows_with_further_branches(view: View, solved_again: Mapping[int, NamedArray
 
 
 def detached_branch_values(view: View, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:
-    """Variables of the rows that have further branches; [] if there are none. view, changed: as in
-    `rows_with_further_branches`."""
+    """Variables of the rows that have further branches; [] if there are none. view: the file with
+    all rows. changed: new results of these rows, by index."""
     if not changed:
         return []
     stored_counts = view.by_point("cycle_special_count")

@@ -75,7 +75,7 @@ class HopfLine:
 
     @property
     def _crushing_force_ratio(self) -> float:
-        """The force that crushes the rods, in units of k1."""
+        """The the crushing force (zero stretch), in units of k1."""
         return self.build.relative_crushing_force(self.fixed_parameters.get("taper", 1.0))
 
 

@@ -52,8 +52,9 @@ class FailureReasons:
 def reasons_of_changed_points(
     result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
 ) -> list[str]:
-    """Distinct reasons why points that have changed since they were solved failed, as in `FailureReasons`.
-    statuses: all statuses that a point can have. point_text: as in `FailureReasons`."""
+    """Distinct reasons why points that have changed since they were solved failed.
+    statuses: all statuses that a point can have. point_text: function from the flat index of a point to a
+    text with its parameters."""
     status_by_value = {int(status): status for status in statuses}
     reasons = FailureReasons(point_text)
     for index, values in result.changed_points.items():

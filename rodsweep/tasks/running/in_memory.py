@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import ThreadpoolController
 
-from ...results.file.creation import Plan
+from ...results.file.creation import FilePlan
 from ...results.file.provenance import utc_time
 from ...results.file.view import View
 from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
@@ -52,7 +52,7 @@ def solved_view(job: Job) -> View:
 
 
 def view_in_memory(
-    job: Job, plan: Plan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable] = ()
+    job: Job, plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable] = ()
 ) -> View:
     """Results as a `View`, with only the attributes `task` and `config_resolved`.
 
@@ -75,10 +75,11 @@ def view_in_memory(
 
 
 def stored_variables(
-    plan: Plan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
+    plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
-    """Returns (coordinates, variables) of the file of a plan, by name. values, sweep_wide: as in
-    `view_in_memory`.
+    """Returns (coordinates, variables) of the file of a plan, by name. values: variables of the layout by
+    name, shape (points, own dimensions). sweep_wide: variables that do not belong to single points, with
+    values.
     """
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
@@ -94,7 +95,7 @@ def stored_variables(
     return coordinates, variables
 
 
-def _coordinates(plan: Plan) -> dict[str, StoredVariable]:
+def _coordinates(plan: FilePlan) -> dict[str, StoredVariable]:
     """Coordinates of the points and of all other dimensions of a plan, by name."""
     points = plan.points
     coordinates: dict[str, StoredVariable] = {}

@@ -13,7 +13,7 @@ from ...config import Config, load_config
 from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
-from ...results.file.creation import Plan
+from ...results.file.creation import FilePlan
 from ...results.layouts import LAYOUT_MAKERS, layout_of
 from ...results.layouts.arm import arm_variables, quantities_at_points, si_values
 from ...results.layouts.si_units import load_kind_of
@@ -162,15 +162,15 @@ def job_of_config(
     return Job(path, config, source, points, TASKS[config.task](config, points), document, layout)
 
 
-def plan_without_solver(config: Config, points: Points) -> Plan:
+def plan_without_solver(config: Config, points: Points) -> FilePlan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
     document = resolved_config(config)
     task = TASKS[config.task](config, replace(points, build=config.build))
     return _plan(task, document, layout_of(document))
 
 
-def _plan(task: Task, document: dict[str, Any], layout: Layout) -> Plan:
-    return Plan(
+def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
+    return FilePlan(
         points=task.points,
         layout=layout,
         coordinates=task.coordinates(),
@@ -184,7 +184,7 @@ def _plan(task: Task, document: dict[str, Any], layout: Layout) -> Plan:
     )
 
 
-def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
+def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
     """Plan of the results of a job with these statuses, without the attributes of a file."""
     return replace(
         _plan(job.task, job.resolved, job.layout),
@@ -193,7 +193,7 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> Plan:
     )
 
 
-def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> Plan:
+def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
     """Plan of the result file that a run of the job creates or continues.
 
     shard: part of the points that the run solves. kernels: BLAS kernels of all ranks.

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import __version__
-from ...errors import Refusal
+from ...errors import UserError
 from ...results.file.provenance import utc_time
 from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.backend.solver_pools import destroy_pooled_solvers
@@ -26,7 +26,7 @@ from ...sweep.points.chains import State
 from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
-RUN_ENDING_EXCEPTIONS = (Refusal, OSError)
+RUN_ENDING_EXCEPTIONS = (UserError, OSError)
 """Exceptions that end the run with a message, because they concern all points."""
 MAX_LOGGED_EXCEPTIONS = 1000
 """Maximum number of exceptions that a rank writes into the log; more exceptions would repeat the same bug."""
@@ -57,11 +57,11 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> 
     After an exception in a stretch, each of its points is solved alone. Only points that fail again get fill
     values.
     """
-    return _Guard(solver, layout, note).guarded_solver()
+    return _GuardedSolver(solver, layout, note).guarded_solver()
 
 
 @dataclass(frozen=True, slots=True)
-class _Guard:
+class _GuardedSolver:
     """Implementation of `guarded_solver`. guarded: the solver whose exceptions are caught. layout: variables
     of a point. note_exception: function called with every exception that is caught.
     """

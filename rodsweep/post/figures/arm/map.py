@@ -2,7 +2,7 @@
 over two quantities.
 
 Each point of the file is the centre of a cell of a map. Cells are hatched where the model does not apply, and
-grey where no rod corresponds to the arm.
+grey where the rod model does not apply.
 """
 
 from dataclasses import replace
@@ -47,7 +47,8 @@ drawn as a band."""
 BAND_OPACITY = 0.25
 """Opacity of the band between the smallest and the largest value over all drags."""
 EMPTY_CELL_LOOK: dict[str, Any] = {"fc": "#E8EDF2"}
-"""Look of cells whose arm corresponds to a rod but has no result, such as a rod without flutter."""
+"""Matplotlib style of cells whose arm corresponds to a rod but has no result, such as a rod without
+flutter."""
 MAP_HATCH_COLOUR = "0.35"
 """Grey of hatches, and of the edges of covered cells."""
 
@@ -175,8 +176,9 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
 
 def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
-    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: as in
-    `_draw_curves`. The list is empty if the drag does not vary, or is the quantity on the horizontal axis.
+    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
+    of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
+    horizontal axis.
     """
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
@@ -195,8 +197,9 @@ def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, c
 def _cover_invalid_cells(
     axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any
 ) -> list[Artist]:
-    """Hatches the cells where the model does not apply, and fills the cells without a rod or a value; returns
-    legend entries. names: quantities on x and y. index: as in `_draw_map`.
+    """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
+    a value; returns legend entries. names: quantities on x and y. index: index of the drawn points in the
+    grid.
     """
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER

@@ -18,7 +18,7 @@ from ..style import LABELS
 HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
 HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6", "lw": 0}
-"""Look of all hatches."""
+"""Matplotlib style of all hatches."""
 NOTES = {
     Validity.does_not_apply: ("hatched", "the model does not apply"),
     Validity.doubtful: ("dotted", "the model is doubtful"),

@@ -53,7 +53,7 @@ def write_animation(view: View, points: Sequence[int], output: Path) -> str:
             for arm in arms:
                 arm.show_frame(k)
             writer.grab_frame()
-    return f"one period in {frames} frames" + selection.left_out
+    return f"one period in {frames} frames" + selection.omissions
 
 
 def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingArm"]]:

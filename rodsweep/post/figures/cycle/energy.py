@@ -41,7 +41,7 @@ def draw_energy(view: View, points: Sequence[int], is_narrow: bool = False) -> t
     legend_below(figure, handles, columns=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
-    return figure, "energy, injection and dissipation over a cycle" + selection.left_out
+    return figure, "energy, injection and dissipation over a cycle" + selection.omissions
 
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:

@@ -81,7 +81,7 @@ def draw_maps(view: View, is_narrow: bool = False) -> tuple[Figure, str]:
         rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
         style.legend_below(figure, handles, columns=-(-len(handles) // rows))
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
-    return figure, f"period and amplitude over {' and '.join(points.names)}{points.left_out}"
+    return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
 
 def _common_parameters_text(view: View, points: PointMap, is_in_si: bool) -> str:

@@ -12,7 +12,7 @@ from ....arrays import Array
 from ....errors import InputError
 from ....results.file.view import View
 from ...summary.summary_lines import varied_parameters_at_points
-from ..grid_sections import left_out_clause
+from ..grid_slices import left_out_clause
 from ..style import is_logarithmic
 
 
@@ -30,7 +30,7 @@ class PointMap:
     """Index in the file of the point in each cell, (ny, nx)."""
     common_parameters: dict[str, float]
     """Parameters that are equal at all points, by name."""
-    left_out: str
+    omissions: str
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 

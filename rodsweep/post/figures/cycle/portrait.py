@@ -89,7 +89,7 @@ def draw_portrait(view: View, points: Sequence[int], is_narrow: bool = False) ->
     _draw_phase_bar(figure, shapes, colours, step, is_narrow)
     figure.suptitle(selection.title)
     tip_text = "the tip from the start on" if has_transients else "the tip in time"
-    return figure, f"shapes through the cycle and {tip_text}{selection.left_out}"
+    return figure, f"shapes through the cycle and {tip_text}{selection.omissions}"
 
 
 def _new_panels(

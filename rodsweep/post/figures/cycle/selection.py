@@ -110,7 +110,7 @@ class CycleSelection:
     """The cycles, at most MAX_CYCLES."""
     title: str
     """Title of the file, and text of the parameters that all cycles share."""
-    left_out: str
+    omissions: str
     """Clause on cycles that the figure leaves out; empty if all cycles are shown."""
 
 

@@ -38,7 +38,7 @@ def draw_transients(view: View, points: Sequence[int], is_narrow: bool = False) 
     label_tip_axes(rows[0, 0], rows[1, 0], selection.cycles[0].units)
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
-    return figure, "the tip from the start on" + selection.left_out
+    return figure, "the tip from the start on" + selection.omissions
 
 
 def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:

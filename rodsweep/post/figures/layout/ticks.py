@@ -67,7 +67,7 @@ def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
 
 def _thin_powers(axis: Axis, label_count: int) -> bool:
     """Removes labelled powers of ten from a symmetric logarithmic axis; returns whether any label was
-    removed. label_count: present number of labels.
+    removed. label_count: current number of labels.
     """
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:

@@ -40,7 +40,7 @@ THRESHOLD_LOOKS = {
 THRESHOLD_LINE: dict[str, Any] = {"color": "0.3", "lw": 0.9}
 """Colour and width of lines at thresholds."""
 SHADE_LOOK: dict[str, Any] = {"color": "0.92", "lw": 0, "zorder": 0}
-"""Look of the range in which the straight rod is unstable."""
+"""Matplotlib style of the range in which the straight rod is unstable."""
 
 
 def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.ndarray:

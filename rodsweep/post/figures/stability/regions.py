@@ -53,17 +53,17 @@ class DrawnPlane:
 
 @dataclass(frozen=True, slots=True)
 class ClassifiedPoints:
-    """Points with known classes. at: fractions of the axes, (n, 2). classes: (n,)."""
+    """Points with known classes. coordinates: fractions of the axes, (n, 2). classes: (n,)."""
 
-    at: Array
+    coordinates: Array
     classes: NDArray[Any]
 
     def with_regions(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
         """
-        is_inside = ((self.at >= 0) & (self.at <= 1)).all(axis=1)
-        coordinates = self.at[is_inside]
+        is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
+        coordinates = self.coordinates[is_inside]
         return ClassifiedPoints(coordinates, self.classes[is_inside]), regions[
             tuple(_pixels_of_points(coordinates).T)
         ]
@@ -98,9 +98,11 @@ def pixel_classes(
         for source, of_region in sources:
             if of_region is None and is_visible:
                 break
-            is_inside = np.full(len(source.at), True) if of_region is None else of_region == region
+            is_inside = np.full(len(source.coordinates), True) if of_region is None else of_region == region
             if is_inside.any():
-                table[pixels] = _nearest_classes(pixels, source.at[is_inside], source.classes[is_inside])
+                table[pixels] = _nearest_classes(
+                    pixels, source.coordinates[is_inside], source.classes[is_inside]
+                )
                 break
     if walls.any() and not walls.all():
         nearest = scipy.ndimage.distance_transform_edt(walls, return_distances=False, return_indices=True)

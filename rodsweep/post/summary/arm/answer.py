@@ -72,7 +72,7 @@ def load_range_text(view: View, loads: np.ndarray) -> str:
 
 
 def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
-    """Function from (view, mask of the points with a rod) to the answer's lines, with a line on failed
+    """Function from (view, mask of the points in the model) to the answer's lines, with a line on failed
     searches. answer: function from (view, mask of the solved points) to (answer, further lines)."""
 
     def lines(view: View, rods: np.ndarray) -> Lines:
@@ -152,7 +152,7 @@ def _flutter_lines(view: View, loads: np.ndarray, end: np.ndarray, frequency: np
 
 def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
-    outcomes. rods: mask of the points with a rod."""
+    outcomes. rods: mask of the points to which the rod model applies."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
     v = {name: view.variables[name][rods] for name in names}
     errors = {name: errors_in_si(view.variables, own, name)[rods] for name, own in names.items()}
@@ -173,7 +173,7 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
 
 def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
-    list if drag is not varied or an outcome is undecided. rods: mask of the points with a rod."""
+    list if drag is not varied or an outcome is undecided. rods: mask of the points in the model."""
     arms = arms_of_drags(view)
     if arms is None:
         return []

@@ -22,7 +22,7 @@ from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_a
 from ....wording import enumeration
 from ...layouts import EXTENSION_RULES
 from ...layouts.variables import ExtensionRule, Layout
-from ..creation import Plan
+from ..creation import FilePlan
 from ..points import stored_records
 from ..validation import ResultHeader
 from .identity import config_difference
@@ -104,7 +104,7 @@ class Extension:
         return converted
 
 
-def extension_of(header: ResultHeader, points: Points, plan: Plan) -> Extension:
+def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extension:
     """Extension of the stored file of `header`, with the points `points`, to the file of `plan`.
 
     Raises InputError, naming the difference, if the plan lacks a point or a result of the stored file, or has
@@ -150,7 +150,7 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
         )
 
 
-def _stored_point_map(header: ResultHeader, old: Points, plan: Plan) -> StoredPointMap:
+def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
     point."""
     new = plan.points

@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....config.document.reading import config_from_resolved
-from ....config.parameters_section import Axes
+from ....config.parameters_section import ParametersSection
 
 LONGEST_VALUE = 80
 """Maximum number of characters of a value in a message; longer values are cut."""
@@ -64,7 +64,7 @@ def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     )
 
 
-def _point_set_kind(parameters: Axes) -> str:
+def _point_set_kind(parameters: ParametersSection) -> str:
     """Text stating whether the points of a config are a grid, a grid over an arm's quantities, or a list."""
     if parameters.arm_axes:
         return f"a grid over {' and '.join(parameters.arm_axes)}"

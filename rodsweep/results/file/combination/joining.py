@@ -21,7 +21,7 @@ from ....errors import InputError
 from ....sweep.points.points import Points
 from ...layouts.variables import MISSING_STATUS, SECONDS
 from ..content_digests import SEAL_ATTRIBUTE
-from ..creation import Plan
+from ..creation import FilePlan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
@@ -36,7 +36,7 @@ NOT_INHERITED_ATTRIBUTES = (
 ROUNDING_FACTOR = 1e3
 """Two results with a relative difference of at most this multiple of the requested accuracy are treated as
 equal up to rounding."""
-PlanMaker = Callable[[Config, Points], Plan]
+FilePlanMaker = Callable[[Config, Points], FilePlan]
 """Function from a config and its points to the plan of the result file, without attributes and flags."""
 
 
@@ -44,7 +44,7 @@ PlanMaker = Callable[[Config, Points], Plan]
 class JoinedFile:
     """File joined from `sources`. point_maps: map from the points of each source to the points of `plan`."""
 
-    plan: Plan
+    plan: FilePlan
     sources: Sequence[ResultHeader]
     point_maps: Sequence[StoredPointMap]
 
@@ -109,7 +109,7 @@ def _point_text(points: Points, index: int) -> str:
     return ", ".join(f"{name} = {value:.15g}" for name, value in points.values(index).items())
 
 
-def joined_file_of(sources: Sequence[ResultHeader], planner: PlanMaker) -> JoinedFile:
+def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> JoinedFile:
     """The `JoinedFile` of sources with different points; raises InputError if the files cannot be joined."""
     first, *others = sources
     settings = config_from_resolved(first.config).settings_of_results
@@ -216,7 +216,7 @@ def _axis_from_values(own: Axis, values: Array) -> Axis:
     return Axis(values=tuple(values.tolist()))
 
 
-def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: Plan) -> None:
+def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: FilePlan) -> None:
     """Raises InputError if the points of a chain of the joined file would come from several files. sources,
     grids: source files and their grids. plan: plan of the joined file."""
     if not plan.chains:
@@ -230,7 +230,7 @@ def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Point
             )
 
 
-def _with_attributes(plan: Plan, header: ResultHeader, config: Config) -> Plan:
+def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> FilePlan:
     """Copy of the plan with the attributes and status flags of the first file, and the joined config."""
     text = config_yaml(config)
     tree = resolved_config(config)

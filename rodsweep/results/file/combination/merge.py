@@ -14,12 +14,12 @@ from ....config.document.reading import config_from_resolved
 from ....errors import InputError
 from ....sweep.points.ranges import index_count
 from ...run.journal import JOURNAL_GLOB, journal_directory
-from ..creation import Plan, add_variables, create_file
+from ..creation import FilePlan, add_variables, create_file
 from ..points import missing_ranges, points_of_file, records_to_add, write_records
 from ..provenance import KERNELS_ATTRIBUTE, kernels_sentence, merged_history, utc_time
 from ..replacement import FileReplacement, disk_refusals
 from ..validation import ResultHeader, read_header
-from .joining import JoinedFile, PlanMaker, joined_file_of
+from .joining import FilePlanMaker, JoinedFile, joined_file_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class MergeResult:
     """Warning about the BLAS kernels that computed the points; empty for a single kernel."""
 
 
-def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResult:
+def merge(output: Path, paths: Sequence[Path], planner: FilePlanMaker) -> MergeResult:
     """Writes `output` with all points of the result files `paths`: shards of one sweep, or several grids or
     lists; returns the outcome of the merge.
 
@@ -59,7 +59,9 @@ def merge(output: Path, paths: Sequence[Path], planner: PlanMaker) -> MergeResul
         replacement.close()
 
 
-def _merge(replacement: FileReplacement, sources: Sequence[ResultHeader], planner: PlanMaker) -> MergeResult:
+def _merge(
+    replacement: FileReplacement, sources: Sequence[ResultHeader], planner: FilePlanMaker
+) -> MergeResult:
     """Replaces the output by a copy of the first source with the points of all other sources added."""
     layout = sources[0].layout
     plan = planner(config_from_resolved(sources[0].config), points_of_file(sources[0].path, layout))
@@ -79,7 +81,7 @@ def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> Merg
         return _finish_merge(copy, joined.plan, used or joined.sources[:1])
 
 
-def _finish_merge(copy: Path, plan: Plan, used: Sequence[ResultHeader]) -> MergeResult:
+def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. copy: path of the merged file. used: sources of the stored points.
     """

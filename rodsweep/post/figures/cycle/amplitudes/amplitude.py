@@ -14,10 +14,10 @@ from .....errors import InputError
 from .....results.file.view import View
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from ... import style
-from ...grid_sections import left_out_clause
+from ...grid_slices import left_out_clause
 from ..selection import shared_and_own_of_arms, shared_and_own_texts
 from ..units_and_labels import units_of_files
-from .branches import AmplitudeBranch, abscissa_parameter, amplitude_branches
+from .branches import AmplitudeSeries, abscissa_parameter, amplitude_branches
 from .hopf_marks import draw_square_root_laws, mark_hopf_points
 from .square_root import square_root_laws
 
@@ -26,7 +26,8 @@ BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Look of the open markers of unstable cycles, which are drawn over the markers of the line."""
+"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the
+line."""
 
 
 def draw_amplitude(views: Sequence[View], is_narrow: bool = False) -> tuple[Figure, str]:
@@ -77,7 +78,7 @@ def draw_amplitude(views: Sequence[View], is_narrow: bool = False) -> tuple[Figu
 
 def _draw_branches(
     panels: Sequence[Axes],
-    branches: Sequence[AmplitudeBranch],
+    branches: Sequence[AmplitudeSeries],
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
@@ -128,7 +129,7 @@ def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tupl
     }
 
 
-def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: bool, colour: str) -> None:
+def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str) -> None:
     """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
     upward: whether the parameter increased.
     """
@@ -144,7 +145,7 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeBranch, upward: boo
         axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
-def _common_and_own_texts(branches: Sequence[AmplitudeBranch], name: str) -> tuple[str, list[str]]:
+def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
     axis.
@@ -176,7 +177,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
             axes.set_xlabel(style.LABELS[name])
 
 
-def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, keywords: dict[str, Any]) -> set[str]:
+def _draw_branch(panels: Sequence[Axes], branch: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
     without a known amplitude. keywords: keywords for matplotlib.
     """
@@ -190,7 +191,7 @@ def _draw_branch(panels: Sequence[Axes], branch: AmplitudeBranch, keywords: dict
     return unknown_statuses
 
 
-def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeBranch, colour: str) -> set[str]:
+def _mark_unknown_amplitudes(axes: Axes, branch: AmplitudeSeries, colour: str) -> set[str]:
     """Marks points without a known amplitude at the top of a panel, in the colour of the branch; returns the
     statuses of these points. Points with status missing are not marked."""
     is_unknown = ~np.isin(branch.status_names, (*CYCLE_STATUSES, "straight", "missing"))

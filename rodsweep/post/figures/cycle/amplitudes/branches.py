@@ -15,7 +15,7 @@ from ..units_and_labels import PLAIN_UNITS, CycleUnits
 
 
 @dataclass(frozen=True, slots=True)
-class AmplitudeBranch:
+class AmplitudeSeries:
     """Limit cycles of the file `view` at points that differ in one parameter x, in the order of the file.
 
     Arrays have the shape (points,). amplitude_x: (x_max - x_min)/2 of the tip. amplitude_y: largest y of the
@@ -66,7 +66,7 @@ def abscissa_parameter(view: View) -> str:
     return name
 
 
-def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeBranch]:
+def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeSeries]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """
@@ -90,7 +90,7 @@ def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -
             change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability
         ]
         branches.append(
-            AmplitudeBranch(
+            AmplitudeSeries(
                 view=view,
                 parameters=line.parameters,
                 x=line.x,

@@ -19,7 +19,7 @@ HOPF_WORDS = {"hopf": f"${HOPF_SYMBOL}$", "restabilization": "restabilization"}
 HOPF_DIGITS = 6
 """Number of significant digits of a Hopf point in a legend."""
 HOPF_LINE_LOOK: dict[str, Any] = {"ls": ":", "lw": 1.1}
-"""Look of a vertical line at a Hopf point."""
+"""Matplotlib style of a vertical line at a Hopf point."""
 SHARED_POINT_COLOUR = "0.3"
 """Colour of a Hopf point that belongs to several lines."""
 LAW_COLOUR = "0.45"
@@ -67,7 +67,7 @@ def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str =
     """
     handles = []
     for is_above in (True, False):
-        chosen_laws = [law for law in laws if law.above == is_above]
+        chosen_laws = [law for law in laws if law.is_above == is_above]
         if not chosen_laws:
             continue
         keywords: dict[str, Any] = {"color": LAW_COLOUR, "lw": 1.0, "ls": (0, (5, 2.5))}

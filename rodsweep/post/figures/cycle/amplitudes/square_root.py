@@ -34,7 +34,7 @@ class SquareRootLaw:
     """Force F** of the Hopf point, in k3/L^2."""
     coefficient: float
     """Coefficient a, in L."""
-    above: bool
+    is_above: bool
     """Whether the law holds at F > F**; otherwise at F < F**."""
     end: float
     """Force F farthest from F** up to which the amplitudes follow the law, see MAX_LAW_DEVIATION."""
@@ -63,7 +63,8 @@ def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int)
     """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
 
     To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this
-    ratio at distance 0 is extrapolated from the two nearest cycles. F, amplitude: as in `square_root_laws`.
+    ratio at distance 0 is extrapolated from the two nearest cycles. F, amplitude: force and amplitude of n
+    cycles, (n,) each, in any order; an amplitude is NaN or 0 if there is no cycle.
     """
     distance = side * (F - point.position) / abs(point.position)
     # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.

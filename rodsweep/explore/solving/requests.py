@@ -1,4 +1,4 @@
-"""Questions of the page and the functions that answer them in a solver process. Answers are plain arrays.
+"""Requests of the page and the functions that answer them in a solver process. Answers are plain arrays.
 
 The functions report progress to the page and never to the terminal, which all solver processes share.
 """
@@ -21,7 +21,7 @@ from ...errors import InputError
 from ...post.branch_curves import RodBranches, stability_runs
 from ..state import MATERIAL_CHOICES, PageState, rod_of
 from .diagrams import Dataset, cycle_diagram_answer, diagram_answer, flag_words
-from .tip_release import Tip, dragged_equilibrium, motion_film_answer, released_motion_answer
+from .tip_release import TipPosition, dragged_equilibrium, motion_film_answer, released_motion_answer
 
 AnswerVariables = dict[str, Any]
 """Variables of an answer, by name: arrays, and texts such as `status`, `sentence` and `message`."""
@@ -32,11 +32,11 @@ SHAPE_COUNT = 48
 GROWTH_FORCE_COUNT = 121
 """Number of forces at which growth rates are computed."""
 MAX_CRUSHING_FRACTION = 0.98
-"""Largest force at which growth rates are computed, divided by the force that crushes the rod."""
+"""Largest force at which growth rates are computed, divided by the crushing force (zero stretch)."""
 
 
 @dataclass(frozen=True)
-class Question:
+class SolveRequest:
     """Request of a page to a solver process.
 
     kind: a key of `STATE_SOLVERS`, or of `TIP_SOLVERS` if `tip` is given. state: state of the page at the
@@ -46,7 +46,7 @@ class Question:
 
     kind: str
     state: PageState
-    tip: Tip | None = None
+    tip: TipPosition | None = None
     stored: Dataset | None = None
 
 
@@ -89,7 +89,7 @@ def thresholds_answer(state: PageState) -> AnswerVariables:
 
 def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
-    the force that crushes the rod. unit: "1/tau2" for a rod, "1/s" for an arm."""
+    the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
     rod_or_arm = state.subject()
     tau2 = rod_or_arm.tau2 if isinstance(rod_or_arm, Arm) else 1.0
     rod = rod_of(rod_or_arm)
@@ -157,24 +157,24 @@ STATE_SOLVERS: dict[str, Callable[[PageState], AnswerVariables]] = {
     "cycles": cycle_diagram_answer,
     "film": film_answer,
 }
-"""For each kind of question about the state of the page, the function that answers the question."""
-TIP_SOLVERS: dict[str, Callable[[PageState, Tip], AnswerVariables]] = {
+"""For each kind of request about the state of the page, the function that answers the request."""
+TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
     "bent": dragged_equilibrium,
     "motion": released_motion_answer,
     "film": motion_film_answer,
 }
-"""For each kind of question about a dragged tip, the function that answers the question."""
+"""For each kind of request about a dragged tip, the function that answers the request."""
 
 
-def answer_to(question: Question) -> AnswerVariables:
-    """Answer to a question, as variables by name. Raises InputError for invalid values in the state of the
+def answer_to(request: SolveRequest) -> AnswerVariables:
+    """Answer to a request, as variables by name. Raises InputError for invalid values in the state of the
     page.
     """
-    if question.stored is not None:
-        return film_of_cycle(question.stored)
-    if question.tip is not None:
-        return TIP_SOLVERS[question.kind](question.state, question.tip)
-    return STATE_SOLVERS[question.kind](question.state)
+    if request.stored is not None:
+        return film_of_cycle(request.stored)
+    if request.tip is not None:
+        return TIP_SOLVERS[request.kind](request.state, request.tip)
+    return STATE_SOLVERS[request.kind](request.state)
 
 
 BranchPiece = tuple[Array, Array, int]
@@ -189,7 +189,7 @@ def drawn_branches(rod: RodBranches, end: float) -> dict[str, Any]:
     special: (F, y, kind, period) of each special point except ends of branches.
     """
     pieces: list[BranchPiece] = [
-        (curve.at[run], curve.y[run], stable)
+        (curve.parameter[run], curve.y[run], stable)
         for curve in rod.curves
         for run, stable in stability_runs(curve.stable)
     ]

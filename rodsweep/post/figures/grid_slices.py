@@ -25,7 +25,7 @@ MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
-def section_at_values(view: View, typed_values: Mapping[str, float | str]) -> View:
+def slice_at_values(view: View, typed_values: Mapping[str, float | str]) -> View:
     """View of the points at which parameters, or quantities of an arm, have the values `typed_values`, by
     name.
 
@@ -33,7 +33,7 @@ def section_at_values(view: View, typed_values: Mapping[str, float | str]) -> Vi
     a value; the message lists the values in the file.
     """
     for name, value in typed_values.items():
-        view = _section_at_value(view, name, _number_in_si(name, value))
+        view = _slice_at_value(view, name, _number_in_si(name, value))
     return view
 
 
@@ -53,7 +53,7 @@ def _number_in_si(name: str, value: float | str) -> float:
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
-def _section_at_value(view: View, name: str, value: float) -> View:
+def _slice_at_value(view: View, name: str, value: float) -> View:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
     quantity_names = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
@@ -137,7 +137,7 @@ def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> 
     return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
-def checked_section_values(section_values: Mapping[str, float | str]) -> dict[str, float | str]:
+def checked_slice_values(section_values: Mapping[str, float | str]) -> dict[str, float | str]:
     """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
     that is neither a number nor a text.
     """

@@ -1,7 +1,7 @@
-"""When each kind of question is sent to a solver, and on what its answer depends: part of the page's state,
+"""When each kind of request is sent to a solver, and on what its answer depends: part of the page's state,
 and the dragged tip.
 
-A question is not sent again while nothing on which its answer depends has changed, unless the user presses a
+A request is not sent again while nothing on which its answer depends has changed, unless the user presses a
 button.
 """
 
@@ -9,33 +9,33 @@ from dataclasses import replace
 
 from ..state import PageState
 from .diagrams import second_parameter_values
-from .questions import Question
-from .tip_release import Tip
+from .requests import SolveRequest
+from .tip_release import TipPosition
 
-AnswerInputs = tuple[PageState, Tip | None]
+AnswerInputs = tuple[PageState, TipPosition | None]
 """Part of the page's state, and position of the dragged tip, on which an answer depends."""
 INSTANT_KINDS = ("spectrum", "cycle", "thresholds", "growth")
-"""Kinds of questions that are sent after every change of the controls."""
+"""Kinds of requests that are sent after every change of the controls."""
 IDLE_KINDS = ("branch", "diagram")
-"""Kinds of questions that take seconds; they are sent once the controls have not changed for
+"""Kinds of requests that take seconds; they are sent once the controls have not changed for
 `PAUSE_MILLISECONDS`."""
 MANUAL_KINDS = ("motion", "film", "cycles")
-"""Kinds of questions that are sent only when the user presses a button or drags the tip. A change of the rod
-cancels these questions."""
+"""Kinds of requests that are sent only when the user presses a button or drags the tip. A change of the rod
+cancels these requests."""
 STOPPABLE_KINDS = ("cycle", *IDLE_KINDS, *MANUAL_KINDS)
-"""Kinds of questions that the button "Stop" cancels."""
+"""Kinds of requests that the button "Stop" cancels."""
 TIP_KINDS = ("bent", "motion")
-"""Kinds of questions about a dragged tip. An answer for an earlier position of the tip is not shown."""
+"""Kinds of requests about a dragged tip. An answer for an earlier position of the tip is not shown."""
 
 
-def answer_inputs(question: Question) -> AnswerInputs:
-    """Returns (state, tip). state: copy of the question's state in which all values without effect on the
+def inputs_of_request(request: SolveRequest) -> AnswerInputs:
+    """Returns (state, tip). state: copy of the request's state in which all values without effect on the
     answer are blank. tip: position of the tip if the answer depends on the tip, else None.
     """
-    kind = question.kind
-    state = question.state
+    kind = request.kind
+    state = request.state
     if kind in ("spectrum", "cycle", "film", *TIP_KINDS):
-        return replace(state, across="", F_max=""), question.tip
+        return replace(state, across="", F_max=""), request.tip
     blank = {state.load: ""}
     if kind in ("diagram", "cycles"):
         return state.with_values(**blank, **{state.second: ""}), None
@@ -43,13 +43,15 @@ def answer_inputs(question: Question) -> AnswerInputs:
 
 
 def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None) -> PageState:
-    """State for a question of the kind `kind`: `diagram_state` for the question "cycles" if the rod of the
+    """State for a request of the kind `kind`: `diagram_state` for the request "cycles" if the rod of the
     page lies in the drawn diagram, to which the curves of cycles are then added; otherwise `state`. state:
     state of the page. diagram_state: state around which the drawn diagram was solved; None if there is no
     diagram."""
     if kind != "cycles" or diagram_state is None or state.tab != "rod":
         return state
-    if answer_inputs(Question("diagram", state)) != answer_inputs(Question("diagram", diagram_state)):
+    if inputs_of_request(SolveRequest("diagram", state)) != inputs_of_request(
+        SolveRequest("diagram", diagram_state)
+    ):
         return state
     low, high = second_parameter_values(diagram_state, 2)
     return diagram_state if low <= float(state.values[state.second]) <= high else state
