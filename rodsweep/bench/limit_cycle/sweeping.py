@@ -109,7 +109,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
                 solve_cycle(there, cycle_request(accuracy), before, axis, workspace)
             ).neighbour
         neighbours[axis] = before
-    here = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
+    here = solve_cycle(point, cycle_request(accuracy), parameter=SWEPT_PARAMETERS[0])
     return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(here)), neighbours, workspace)
 
 

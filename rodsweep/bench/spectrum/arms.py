@@ -131,7 +131,7 @@ def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: Uncach
 def _krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur on elements of the given order,
     without Newton's method for D."""
-    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, tight=True)
+    w = arm_solver(mesh_of_arm(rod, order)).solve(rod, ArmProblem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 

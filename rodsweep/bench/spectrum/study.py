@@ -188,7 +188,9 @@ def pencil_mesh(order: int) -> Resolution:
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
     order of the pencil."""
-    w = uniform_solver(pencil_mesh(size)).solve(rod, transverse_problem(rod).shift, MODE_COUNT, tight=True)
+    w = uniform_solver(pencil_mesh(size)).solve(
+        rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True
+    )
     return leading_eigenvalues(w, MODE_COUNT + 1)
 
 

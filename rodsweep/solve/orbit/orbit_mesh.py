@@ -145,8 +145,8 @@ class OrbitMesh:
     @property
     def finer(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no allowed mesh is predicted to suffice."""
-        more = int(ORBIT_MESH_SETTINGS.interval_factor * self.interval_count) + 1
-        return replace(self.finer_in_space, interval_count=more)
+        interval_count = int(ORBIT_MESH_SETTINGS.interval_factor * self.interval_count) + 1
+        return replace(self.finer_in_space, interval_count=interval_count)
 
     @property
     def finer_in_space(self) -> "OrbitMesh":

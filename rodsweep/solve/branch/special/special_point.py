@@ -160,13 +160,13 @@ class RowSpecialPoint:
 
 
 def _are_near(
-    one: SpecialPoint | RowSpecialPoint, other: SpecialPoint | RowSpecialPoint, error: float
+    first: SpecialPoint | RowSpecialPoint, second: SpecialPoint | RowSpecialPoint, error: float
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
     the two parameters."""
-    far = abs(one.at - other.at) - error
+    excess = abs(first.at - second.at) - error
     return (
-        one.kind == other.kind
-        and far <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(one.at)
-        and abs(one.period / other.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
+        first.kind == second.kind
+        and excess <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.at)
+        and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
     )
