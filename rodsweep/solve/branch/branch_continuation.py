@@ -92,7 +92,7 @@ def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimi
 def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.parameter_name
-    # The end of the range towards which the parameter moves at present.
+    # The end of the range towards which the parameter currently moves.
     end_coordinate = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.parameter_coordinate)
     end_value = PARAMETERS[name].value(end_coordinate)

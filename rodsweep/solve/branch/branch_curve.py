@@ -103,12 +103,12 @@ class BranchCurve:
     """Whether special points explain every multiplier that crosses the unit circle along the branch."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle, and sets its
+        """Appends a special point that lies beyond the current last cycle, and sets its
         `index_of_cycle_before`."""
         self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
 
     def add_special_points(self, special_points: Sequence[SpecialPoint], are_complete: bool) -> None:
-        """Appends the special points `special_points`, which lie between the present last cycle and the next
+        """Appends the special points `special_points`, which lie between the current last cycle and the next
         cycle. are_complete: whether these points explain every multiplier that crosses the unit circle
         there."""
         for special in special_points:

@@ -31,7 +31,7 @@ class BranchMeshSettings:
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
     max_cheaper_cost_ratio: float = 0.5
-    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the present cost
+    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the current cost
     is at most this number."""
     planned_error_ratio: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the

@@ -36,7 +36,11 @@ class BranchStatus(PointStatus):
         "the search may have stopped before the end of the range, or a count of unstable modes may "
         "disagree with the list; `certify: false` ignores the count",
     )
-    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search for Hopf points failed and nothing is stored; the message says why; "
+        "shorten the range, change the accuracy, or move a parameter slightly",
+    )
 
 
 def _status_as_in_thresholds(status: ThresholdStatus) -> tuple[int, str, bool]:

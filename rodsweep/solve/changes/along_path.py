@@ -79,7 +79,7 @@ class AxisCrossings:
     evaluation_count: int = 0
 
     def restricted_to(self, search_end: SearchEnd) -> "AxisCrossings":
-        """The crossings and gaps up to `search_end`, an earlier end of the search or the present end."""
+        """The crossings and gaps up to `search_end`, an earlier end of the search or the current end."""
         if search_end.p == self.search_end.p:
             return self
         crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= search_end.p]
@@ -153,8 +153,8 @@ def find_axis_crossings(
 def _with_counts(
     counts: ModeCounter, start_count: int, crossings: tuple[Threshold, ...], end_count: int
 ) -> ThresholdSearchResult:
-    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
-    end_count: numbers of unstable modes at the two ends."""
+    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search.
+    start_count, end_count: numbers of unstable modes at the two ends."""
     known = all(number >= 0 for number in (start_count, end_count, *(c.unstable_after for c in crossings)))
     return ThresholdSearchResult(
         thresholds=crossings,

@@ -31,9 +31,9 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
 
 
 def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[float, bool]:
-    """Returns (share, may_hold_two). fraction: position of an additional sample as a fraction of the interval
-    from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading
-    eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
+    """Returns (fraction, may_hold_two). fraction: position of an additional sample as a fraction of the
+    interval from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the
+    leading eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
 
     The leading eigenvalue must be real at both samples, or a pair at both samples.
     """

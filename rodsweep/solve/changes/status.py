@@ -24,7 +24,11 @@ class ThresholdStatus(PointStatus):
         "nearly coincide; use a larger number for the accuracy",
     )
     list_full = 4, "the list has no room for all thresholds; raise the option crossings"
-    failed = 5, "the search failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search failed and nothing is stored; the message says why; "
+        "shorten the range, change the accuracy, or move a parameter slightly",
+    )
     ended_early = (
         9,
         "only a part of the requested range is searched: the search ends, or on a row of a diagram begins, "

@@ -39,7 +39,7 @@ class CurveProblem(Protocol[Solution]):
     curve."""
 
     def step(self, previous: Sequence[Solution], length: float) -> StepResult[Solution]:
-        """The solution one step of the length `length` beyond `behind[-1]`; raises Unsolvable if Newton's
+        """The solution one step of the length `length` beyond `previous[-1]`; raises Unsolvable if Newton's
         method fails."""
 
     def margins(self, solution: Solution) -> Array:
@@ -47,12 +47,12 @@ class CurveProblem(Protocol[Solution]):
         that the solution is beyond this limit."""
 
     def located_zero(self, previous: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
-        """The solution between `behind[-1]` and `outer` at which the margin with the index `margin` is 0;
-        None if `behind[-1]` is to be the last solution. Raises an error of FAILURES if no solution is found:
-        the step is then repeated with half its length."""
+        """The solution between `previous[-1]` and `outer` at which the margin with the index `margin` is 0;
+        None if `previous[-1]` is to be the last solution. Raises an error of FAILURES if no solution is
+        found: the step is then repeated with half its length."""
 
     def is_closed_by(self, previous: Sequence[Solution], solution: Solution) -> bool:
-        """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
+        """Whether the first solution of the curve lies on the step from `previous[-1]` to the next solution
         `solution`."""
 
 
@@ -231,7 +231,7 @@ def zero_along_step(
 
     end_values = {0.0: ends[0], length: ends[1]}
     if not ends[0] * ends[1] <= 0:
-        raise Unsolvable("the function whose zero is sought has the same sign at both ends of the step")
+        raise Unsolvable("the function has the same sign at both ends of the step, so no zero lies between")
 
     def settled(position: float) -> float:
         value_here = end_values[position] if position in end_values else value(position)

@@ -46,13 +46,13 @@ class NextMeshSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
     max_error_ratio_of_same_mesh: float = 0.9
-    """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
+    """A mesh is sufficient for the next cycle if the error of the current cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
     at most this number."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
-    """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
+    """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the current cycle:
     measuring the errors of a new mesh costs as much as three cycles."""
 
 
@@ -139,7 +139,7 @@ def _next_mesh_and_calibration(
 
 
 def _max_cost_ratio(refined: RefinedCycle, previous: "Neighbour | None", name: str) -> float:
-    """Largest cost of a new mesh divided by the cost of the present, sufficient mesh; 0 if the present mesh
+    """Largest cost of a new mesh divided by the cost of the current, sufficient mesh; 0 if the current mesh
     remains in use. previous: data of the previous rod, or None. name: varied parameter."""
     if previous is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.

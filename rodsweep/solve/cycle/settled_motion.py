@@ -11,7 +11,7 @@ from .status import MarchedStatus
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that has settled on a cycle. state: present state of the beam, (unknowns,).
+    """A motion that has settled on a cycle. state: current state of the beam, (unknowns,).
     returns_per_period: number of returns of the tip to theta = 0 per period. last_time_step: last time step,
     in tau2."""
 

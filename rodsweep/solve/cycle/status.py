@@ -25,7 +25,11 @@ class CycleStatus(PointStatus):
         "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
         "start from a smaller amplitude or from a neighbour's cycle, lower F, or raise k1",
     )
-    failed = 4, "the integration failed and nothing is stored; the message says why"
+    failed = (
+        4,
+        "the solve failed and nothing is stored; the message says why; "
+        "change the accuracy or the start, or move a parameter slightly",
+    )
     unstable = (
         5,
         "unstable limit cycle: a Floquet multiplier lies outside the unit circle, so the rod leaves "
@@ -62,4 +66,8 @@ class MarchedStatus(PointStatus):
         "a section of the rod was crushed (h1 <= 0) or lost its stiffness, so the model is no longer valid; "
         "start from a smaller amplitude, lower F, or raise k1",
     )
-    failed = 4, "the integration failed and nothing is stored; the message says why"
+    failed = (
+        4,
+        "the solve failed and nothing is stored; the message says why; "
+        "change the accuracy or the start, or move a parameter slightly",
+    )

@@ -128,9 +128,9 @@ class BautinProblem:
         return StepResult(point, 0.0 if on_edge or len(previous) == 1 else prediction_error, 1.0)
 
     def _point_in_ranges(self, v: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
+        """(point near v + change, (4,), or on the range end that the step crosses; whether on an end).
 
-        No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
+        No point outside the ranges is solved: its parameters may not be allowed. Raises Unsolvable.
         """
         predicted = (v + change)[:3]
         range_ends = np.where(predicted > 1, 1.0, np.where(predicted < 0, 0.0, np.nan))
@@ -164,7 +164,7 @@ class BautinProblem:
 
     @staticmethod
     def _zero_by_secants(hopf: HopfCurve, start: Array, direction: Array) -> GeneralisedHopfPoint:
-        """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
+        """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step

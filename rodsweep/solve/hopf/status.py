@@ -24,7 +24,11 @@ class CriticalityStatus(PointStatus):
         "number for the accuracy",
     )
     list_full = 4, "the list has no room for all Hopf points; raise the option crossings"
-    failed = 5, "the search for Hopf points failed and nothing is stored; the message says why"
+    failed = (
+        5,
+        "the search for Hopf points failed and nothing is stored; the message says why; "
+        "shorten the range, change the accuracy, or move a parameter slightly",
+    )
     coefficients_failed = (
         6,
         "the normal form of a Hopf point could not be computed; the other Hopf points are stored; the "

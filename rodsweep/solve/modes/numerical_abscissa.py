@@ -22,7 +22,7 @@ class NumericalAbscissaSettings:
     """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
     large."""
     final_shift_distance: float = 0.05
-    """Distance of the next shift above the present estimate a of the numerical abscissa, divided by 1 + |a|:
+    """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
     at most twice this distance above it."""
     min_positive_ratio: float = 1e-9

@@ -183,7 +183,8 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
 def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
     relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
-    tau2. decay_exponent: the other modes are negligible once they are exp(-patience) times the leading modes.
+    tau2. decay_exponent: the other modes are negligible once they are exp(-decay_exponent) times the leading
+    modes.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every

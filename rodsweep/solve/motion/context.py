@@ -61,7 +61,7 @@ CONTEXT_DTYPE = np.dtype(
         ("matrix_state", INTEGER),  # PETSc's state number of this matrix, which increases with every change
         ("factorisations", INTEGER),  # number of LU factorisations so far, for tests
         ("contraction", FLOAT),  # ratio of successive steps of Newton's method
-        ("measured", INTEGER),  # whether the contraction was measured with the present matrix
+        ("measured", INTEGER),  # whether the contraction was measured with the current matrix
         ("growing", INTEGER),  # number of successive growing Newton steps
         ("last_step", FLOAT),  # 2-norm of the last Newton step
         ("small_error", FLOAT),  # 2-norm of an acceptable error
@@ -93,7 +93,7 @@ OUTPUTS_OFFSET, MATRIX_STATE_OFFSET = (CONTEXT_FIELDS[name][1] for name in ("out
 """Offsets, in bytes, of the fields of `CONTEXT_DTYPE` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the present
+"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the current
 iterate of Newton's method."""
 
 

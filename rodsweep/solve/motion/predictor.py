@@ -128,7 +128,7 @@ def predict_stage(c: Any, guess: Array) -> None:
     if len(points) and c.length <= STAGE_PREDICTOR_SETTINGS.max_extrapolated_step_ratio * (
         times[current] - times[last]
     ):
-        # Indices start at the present half; indices of the last step are larger by MAX_STAGES, modulo
+        # Indices start at the current half; indices of the last step are larger by MAX_STAGES, modulo
         # 2 MAX_STAGES.
         extrapolate((points + current) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
 

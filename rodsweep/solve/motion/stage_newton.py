@@ -53,7 +53,7 @@ class StageNewtonSettings(CompiledSettings):
     Newton steps."""
 
     new_matrix_contraction: float = 0.3
-    """If the contraction exceeds this, a new matrix is computed at the present iterate."""
+    """If the contraction exceeds this, a new matrix is computed at the current iterate."""
     stagnant_contraction: float = 0.5
     """If the contraction exceeds this and the Newton steps are as small as rounding error, the iteration ends
     as converged."""

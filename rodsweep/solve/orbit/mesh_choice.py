@@ -56,7 +56,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
 
 
 def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
-    """A mesh that is at least as fine as `target` and finer than the present mesh `mesh`."""
+    """A mesh that is at least as fine as `target` and finer than the current mesh `mesh`."""
     order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
     intervals = max(target.interval_count, mesh.interval_count)
     stages = max(target.stage_count, mesh.stage_count)

@@ -86,16 +86,16 @@ def newton(
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
-            raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
+            raise Unsolvable("Newton's method for the cycle diverges: its step is not finite")
         # A long first step may come from a poor start; a long later step that is not shorter is divergence.
         if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.max_relative_step):
-            raise Unsolvable("Newton's method for the orbit diverges from its start")
+            raise Unsolvable("Newton's method for the cycle diverges: its steps grow")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         damping_factor = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
         orbit = orbit.plus_change(step, damping_factor)
         distance += damping_factor * change
         if not orbit.period > 0:
-            raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
+            raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
         is_matrix_new = distance == damping_factor * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
@@ -115,8 +115,8 @@ def newton(
             step = matrix.correction(orbit)
         last = change
     raise Unsolvable(
-        f"Newton's method for the orbit does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
-        f"iterations; its last step is {change:.0e}"
+        f"Newton's method for the cycle does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
+        f"iterations; its last relative step is {change:.0e}"
     )
 
 

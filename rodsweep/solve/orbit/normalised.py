@@ -103,16 +103,16 @@ def polynomial_weights(arguments: Array, orders: Array, step: float) -> Array:
 
 @compiled_for_vectors
 def predicted_normalised_values(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Predicted normalised values, (N + 1,): normalised values of the present orbit plus a weighted sum of
-    data. A datum is a slope, or the difference of another orbit's normalised values from the present values.
+    """Predicted normalised values, (N + 1,): normalised values of the current orbit plus a weighted sum of
+    data. A datum is a slope, or the difference of another orbit's normalised values from the current values.
 
-    values: normalised values of the present orbit, (N + 1,). data: slopes, or normalised values of other
+    values: normalised values of the current orbit, (N + 1,). data: slopes, or normalised values of other
     orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
     """
     out = np.zeros(len(values))
     weight_of_values = 1.0
     for k in range(len(weights)):
-        # The weights of all values, with the weight of the present values, add up to 1.
+        # The weights of all values, with the weight of the current values, add up to 1.
         weight_of_values -= weights[k] if orders[k] == 0 else 0.0
         for i in range(len(values)):
             out[i] += weights[k] * data[k, i]

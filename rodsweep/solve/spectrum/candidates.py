@@ -156,8 +156,8 @@ def line_for_proof(last: complex, error: float) -> float:
 
 
 def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """Returns (number, clear). number: number of eigenvalues w to the right of `line`. are_clear: whether the
-    distance of each w from the line is more than twice its error. errors: absolute errors of w."""
+    """Returns (number, are_clear). number: number of eigenvalues w to the right of `line`. are_clear: whether
+    the distance of each w from the line is more than twice its error. errors: absolute errors of w."""
     are_clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
     return sum(value.real > line for value in w), are_clear
 

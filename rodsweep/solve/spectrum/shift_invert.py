@@ -201,7 +201,7 @@ class ShiftInvertSolver(ABC):
         return (w + self.loaded_pencil.shift) / self.loaded_pencil.deflection_ratio**2
 
     def vectors(self, count: int) -> Complex:
-        """Eigenvectors of the first `count` eigenvalues of the last `solve`, (unknowns, found)."""
+        """Eigenvectors of the first `count` eigenvalues of the last `solve`, (unknowns, count)."""
         real, imag = self.A.createVecs()
         X = np.empty((len(self.row_starts) - 1, count), dtype=complex)
         for i in range(count):

@@ -27,4 +27,8 @@ class SpectrumStatus(PointStatus):
         "eigenvalues are missing: fewer are found than the winding number counts, or no mesh resolves all "
         "that may lead; no eigenvalue is stored; request more modes",
     )
-    failed = 5, "the solver failed, and results that it did not find are missing; the message says why"
+    failed = (
+        5,
+        "the solver failed, and results that it did not find are missing; the message says why; "
+        "change the accuracy, or move a parameter slightly",
+    )

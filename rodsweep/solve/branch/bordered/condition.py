@@ -59,7 +59,9 @@ class BorderCondition:
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-                raise Unsolvable("Newton's method finds no cycle of the branch near the prediction")
+                raise Unsolvable(
+                    "Newton's method for the cycle finds no cycle of the branch near the prediction"
+                )
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             distance = distance + change
             rate = change / last if distance > change else np.inf  # no rate at the first step with a matrix
@@ -82,7 +84,7 @@ class BorderCondition:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
         raise Unsolvable(
-            f"Newton's method on the branch does not converge: its last relative step is {change:.0e}"
+            f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
 
     def solve_on_mesh(
@@ -121,5 +123,5 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     require_equal_unknowns(form, orbit)
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     if not result.period > 0:
-        raise Unsolvable("Newton's method lost the cycle: its period is not positive")
+        raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
     return result

@@ -190,8 +190,8 @@ class SpecialCurveProblem:
     def located_zero(
         self, previous: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
-        this point is `behind[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
+        """The point between `previous[-1]` and `outer` at which the margin with index `margin` is 0; None if
+        this point is `previous[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
         inner = previous[-1]
         if END_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated

@@ -42,7 +42,7 @@ class _SecantIterate(NamedTuple):
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: present cycle. distance: its distance from
+    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: current cycle. distance: its distance from
     the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
 
     def __init__(
@@ -136,7 +136,7 @@ class SecantSearch:
         return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
     def _solve_at_distance(self) -> _SecantIterate:
-        """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
+        """The cycle at the current distance across the curve, with its test function; raises Unsolvable."""
         family = self.family
         rates = self.derivatives
         length = self.start_arc_length + self.distance * float(self.line.direction[0])

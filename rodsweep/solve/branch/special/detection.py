@@ -73,7 +73,7 @@ def special_points_between(
     accuracy: float,
     halvings: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """Returns (points, explained): special points between two cycles, in order, and whether these points
+    """Returns (points, are_complete): special points between two cycles, in order, and whether these points
     explain the change of the number of multipliers outside the unit circle.
 
     cycle_at: function that solves a cycle at an arc length between the two cycles. accuracy: relative

@@ -63,7 +63,7 @@ class CurveSecantSettings:
     order_increase: int = 2
     """Increase of the order of the elements on the next finer mesh."""
     interval_ratio: float = 1.2
-    """Ratio of the number of time intervals of the next finer mesh to the number of the present mesh."""
+    """Ratio of the number of time intervals of the next finer mesh to the number of the current mesh."""
     max_finer_meshes: int = 5
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 

@@ -62,10 +62,10 @@ class SpecialPointSettings:
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
     1, measured at a torus point."""
     min_interval_ratio: float = 1.2
-    """Smallest ratio of the number of time intervals of the next finer mesh to the number of the present
+    """Smallest ratio of the number of time intervals of the next finer mesh to the number of the current
     mesh."""
     max_interval_ratio: float = 2.0
-    """Largest ratio of the number of time intervals of the next finer mesh to the number of the present mesh.
+    """Largest ratio of the number of time intervals of the next finer mesh to the number of the current mesh.
     """
     time_order_per_stage: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders

@@ -113,7 +113,7 @@ class Calibration:
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
-        on this mesh: fractions of the present errors that decrease with the coefficient tails."""
+        on this mesh: fractions of the current errors that decrease with the coefficient tails."""
         shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
         space_ratio, time_ratio = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
         return space_ratio * self.space_errors, time_ratio * self.time_errors

@@ -30,7 +30,7 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
         CALIBRATION_SETTINGS.max_interval_ratio * calibrated.interval_count, allowed.max_intervals
     )
     intervals = np.arange(fewest, max_intervals + 1)
-    # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
+    # Rates are measured up to the current mesh. On finer meshes errors in space may decrease no faster
     # than the distance of the tip's paths, and errors in time with the smallest order.
     min_decay = np.minimum(calibration.space_decay, calibration.space_decay[PATH_INDEX])
     decay = np.where(orders < calibrated.order, calibration.space_decay[:, None], min_decay[:, None])

@@ -46,7 +46,7 @@ FINER_MESH_SETTINGS = FinerMeshSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
-    """Returns ((space, time), share): the mesh finer in space, the mesh finer in time, and the fraction of
+    """Returns ((space, time), fraction): the mesh finer in space, the mesh finer in time, and the fraction of
     the error in time that the mesh finer in time removes."""
     interval_count = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.

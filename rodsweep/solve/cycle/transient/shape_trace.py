@@ -48,7 +48,7 @@ class ShapeTrace:
 
     def needs_more_motion(self, z: Array) -> bool:
         """Whether the motion is integrated further even if its outcome is known: the arm is not at rest, and
-        the record is not full. z: present state, (unknowns,)."""
+        the record is not full. z: current state, (unknowns,)."""
         return (
             not self.is_full
             and abs(float(self.beam.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection

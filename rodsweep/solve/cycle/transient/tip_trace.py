@@ -113,8 +113,9 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
 
 
 def _second_derivatives(steps: Array, values: Array, rates: Array, step_indices: Array) -> Array:
-    """Second derivatives at the times steps[used], (m, used), of the quintic polynomials through values and
-    rates at each of these times and its two neighbours (at an end of the run, the two nearest times).
+    """Second derivatives at the times steps[step_indices], (m, used), of the quintic polynomials through
+    values and rates at each of these times and its two neighbours (at an end of the run, the two nearest
+    times).
 
     steps: (n,), n >= 3. values, rates: (m, n). step_indices: indices, (used,).
     """

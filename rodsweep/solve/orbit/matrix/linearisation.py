@@ -87,9 +87,9 @@ def eliminate_at_orbit(
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
-    Returns (steps, by_period). steps: Newton's step and, if count = 3, the derivative of the orbit values
-    along the parameter of `derivatives`, (count - 1, N). period_derivative: reduced derivative of the stage
-    residuals with respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
+    Returns (steps, period_derivative). steps: Newton's step and, if count = 3, the derivative of the orbit
+    values along the parameter of `derivatives`, (count - 1, N). period_derivative: reduced derivative of the
+    stage residuals with respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)

@@ -99,7 +99,7 @@ class ShootingIntervals:
         # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.
         triangular_map = triangle @ (start.T @ basis)
         if not np.isfinite(triangular_map).all():
-            raise np.linalg.LinAlgError("the derivative of the flow is not finite")
+            raise np.linalg.LinAlgError("the flow derivative of the cycle overflows")
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
         values = np.diag(schur(triangular_map, output="complex")[0])
@@ -109,7 +109,7 @@ class ShootingIntervals:
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
     """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
     norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
-    present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
+    current shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
     blocks = factors.eliminated_blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan

@@ -53,7 +53,7 @@ class CarriedCountChain(NamedTuple):
 
 
 def carry_counts(path: Path, interval: ArmInterval, modes: int) -> None:
-    """Fills `found.proved_modes` at points without a proof, wherever a count can be carried to them.
+    """Fills `interval.proved_modes` at points without a proof, wherever a count can be carried to them.
 
     modes: number of requested modes.
     """
@@ -139,7 +139,7 @@ def _is_line_free(path: Path, interval: ArmInterval, line: float, ends: tuple[in
 def _store_proved_modes(
     interval: ArmInterval, followed: FollowedEigenvalues, chain: CarriedCountChain
 ) -> None:
-    """Fills `found.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
+    """Fills `interval.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
     line."""
     for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):
         w = followed.w[first : last + 1]

@@ -161,8 +161,8 @@ def carry_count(
 def assess_points(
     track: Track, proved_counts: NDArray, modes: int, accuracy: float
 ) -> tuple[NDArray, NDArray]:
-    """Returns (good, unstable), (points,) each. is_good: whether the point is certified and its leading
-    `modes` are accurate. unstable_counts: number of unstable modes.
+    """Returns (is_good, unstable_counts), (points,) each. is_good: whether the point is certified and its
+    leading `modes` are accurate. unstable_counts: number of unstable modes.
 
     proved_counts: number of leading eigenvalues proved complete at each point, (points,). A point is not good
     if an eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.

@@ -187,8 +187,9 @@ def _proved_counts_along(
 
 
 def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, complete); None after a failure or without a proof. eigenvalues: eigenvalues to
-    follow, (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved complete.
+    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: eigenvalues
+    to follow, (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved
+    complete.
     """
     try:
         modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes

@@ -190,7 +190,7 @@ def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, partner:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
     (points,).
 
-    partner: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, decided[k] = j,
+    partner: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, partner[k] = j,
     and both guesses are half the sum.
     """
     w = track.w[i - 1]

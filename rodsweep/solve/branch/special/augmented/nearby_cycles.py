@@ -55,7 +55,7 @@ class NearbyCycleSolver:
 
     def _assemble_matrix(self, orbit: Orbit) -> None:
         """Assembles and factorises a new matrix at an orbit, with a new test function. Sets
-        `matrix_distance`, the relative distance of the present cycle from this orbit, to 0."""
+        `matrix_distance`, the relative distance of the current cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.matrix_distance = 0.0
         self.test_function = self._family.test_function(self.matrix)
@@ -98,14 +98,16 @@ class NearbyCycleSolver:
                 self._assemble_matrix(orbit)
                 change_after_step = 0.0
             last = change_after_step
-        raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
+        raise Unsolvable(
+            f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
+        )
 
     def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
-        """(orbit after one correction under `condition` with the present matrix, relative change of the
+        """(orbit after one correction under `condition` with the current matrix, relative change of the
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-            raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
+            raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near its start")
         self.matrix_distance += change
         return moved_orbit(orbit, self.scale.parameter_name, step), change
