@@ -124,7 +124,7 @@ def measure_continuation(
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """First cycle of AUTO's runs, by the order of the single element in space."""
-    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), along="F"))
+    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), parameter="F"))
     orders = {setting.order for setting in settings}
     moved = {
         order: near.on_mesh(uniform_mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders

@@ -79,7 +79,7 @@ class StateLayout:
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.unknown_velocities)], axis=-1)
 
     def interpolate(self, x: Array, E: Array) -> Array:
-        """States x interpolated to another mesh. E: interpolation matrix from all nodes of the present mesh
+        """States x interpolated to another mesh. E: interpolation matrix from all nodes of the current mesh
         to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1).
         """
         stress_count = self.components * self.node_count

@@ -79,7 +79,7 @@ def warm_up_uniform() -> None:
         NewtonWorkspace(), SAMPLE_TIME_INTERVALS, SAMPLE_COLLOCATION_STAGES, form.unknown_count
     )
     variations = np.zeros((1, len(orbit.values) + 1))
-    of_rod = orbit.semidiscrete_equations
+    equations = orbit.semidiscrete_equations
     reduced_variation_sides(
-        orbit.values, of_rod, parameter_derivatives(form, "F"), variations, of_rod, memory.factors
+        orbit.values, equations, parameter_derivatives(form, "F"), variations, equations, memory.factors
     )

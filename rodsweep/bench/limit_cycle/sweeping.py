@@ -109,7 +109,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
                 solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
             ).neighbour
         neighbours[axis] = neighbour
-    solved = solve_cycle(point, cycle_request(accuracy), along=SWEPT_PARAMETERS[0])
+    solved = solve_cycle(point, cycle_request(accuracy), parameter=SWEPT_PARAMETERS[0])
     return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
 
 

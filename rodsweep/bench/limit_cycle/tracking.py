@@ -88,7 +88,7 @@ def cycle_request(accuracy: float) -> CycleRequest:
 
 def solve_cycle_at_force(force: float) -> Cycle:
     """The cycle of FIG5_ROD at F = `force`, solved as in the task `limit_cycle`."""
-    return solve_cycle(FIG5_ROD.with_values(F=force), cycle_request(SETTLING_TOLERANCE), along="F")
+    return solve_cycle(FIG5_ROD.with_values(F=force), cycle_request(SETTLING_TOLERANCE), parameter="F")
 
 
 def orbit_of(cycle: Cycle) -> Orbit:

@@ -132,7 +132,7 @@ def _krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur on elements of the given order,
     without Newton's method for D."""
     eigenvalues = arm_solver(mesh_of_arm(rod, order)).solve(
-        rod, ArmProblem(rod).shift, MODE_COUNT, tight=True
+        rod, ArmProblem(rod).shift, MODE_COUNT, to_rounding=True
     )
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 

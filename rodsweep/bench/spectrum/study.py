@@ -193,7 +193,7 @@ def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
     order of the pencil."""
     eigenvalues = uniform_solver(pencil_mesh(size)).solve(
-        rod, transverse_problem(rod).shift, MODE_COUNT, tight=True
+        rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True
     )
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 

@@ -39,7 +39,7 @@ class ResolutionSettings:
     """Maximum number of unknowns of a mesh; a sparse factorisation then takes a few seconds. A rod that needs
     more unknowns fails."""
     refinement_ratio: float = 4 / 3
-    """Number of unknowns of the next finer mesh, divided by the number of unknowns of the present mesh."""
+    """Number of unknowns of the next finer mesh, divided by the number of unknowns of the current mesh."""
 
 
 RESOLUTION_SETTINGS = ResolutionSettings()

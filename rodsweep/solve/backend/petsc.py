@@ -70,19 +70,21 @@ def versions() -> dict[str, str]:
 def user_options_text(prefix: str = "") -> str:
     """One line with the user's PETSc options whose names begin with `prefix`, as set in PETSC_OPTIONS or a
     resource file."""
-    given = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
-    return " ".join(f"-{k} {v or ''}".strip() for k, v in given if k.startswith(prefix))
+    options = sorted((k, v) for k, v in PETSc.Options().getAll().items() if k != "no_signal_handler")
+    return " ".join(f"-{k} {v or ''}".strip() for k, v in options if k.startswith(prefix))
 
 
 def blas_description() -> str:
     """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's BLAS library if the two
     differ."""
-    found: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
+    descriptions: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":
-            words = (library["internal_api"], library["version"], library.get("architecture"))
-            found[_package_of_library(library["filepath"])].add(" ".join(str(word) for word in words if word))
-    petscs, numpys = (" and ".join(sorted(found[name])) for name in ("PETSc", "NumPy"))
+            parts = (library["internal_api"], library["version"], library.get("architecture"))
+            descriptions[_package_of_library(library["filepath"])].add(
+                " ".join(str(word) for word in parts if word)
+            )
+    petscs, numpys = (" and ".join(sorted(descriptions[name])) for name in ("PETSc", "NumPy"))
     if numpys in ("", petscs):
         return petscs or UNKNOWN_LIBRARY
     return f"PETSc {petscs or UNKNOWN_LIBRARY}, NumPy {numpys}"
@@ -92,5 +94,5 @@ def _package_of_library(path: str) -> str:
     """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a library of the
     system)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
-    wheels = (owner for owner in ("NumPy", "SciPy") if owner.lower() in names)
-    return next(wheels, "PETSc")
+    packages = (package for package in ("NumPy", "SciPy") if package.lower() in names)
+    return next(packages, "PETSc")

@@ -29,19 +29,19 @@ def matrix_product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None
     A (m, k), B (k, n) and C (m, n); lda, ldb, ldc: distances between the rows of A, B and C in memory, in
     entries.
     """
-    plain = np.full(1, 78, np.uint8)  # "N"
-    no = plain.ctypes.data
+    letter_N = np.full(1, 78, np.uint8)  # "N"
+    no_transpose = letter_N.ctypes.data
     e = extents.ctypes.data
     f = factors.ctypes.data
     # BLAS stores matrices by columns, so it is called for C^T = B^T A^T.
-    _dgemm(no, no, e + 4, e, e + 8, f, b, e + 16, a, e + 12, f + 8, c, e + 20)
+    _dgemm(no_transpose, no_transpose, e + 4, e, e + 8, f, b, e + 16, a, e + 12, f + 8, c, e + 20)
 
 
 @compiled
-def square_product(A: Array, B: Array, C: Array, factor: float, keep: float) -> None:
-    """Matrix product C = factor A B + keep C, written to C; A, B and C have shape (n, n) and are
+def square_product(A: Array, B: Array, C: Array, factor: float, factor_of_C: float) -> None:
+    """Matrix product C = factor A B + factor_of_C C, written to C; A, B and C have shape (n, n) and are
     contiguous."""
     n = len(A)
     extents = np.full(6, n, np.int32)
-    factors = np.array([factor, keep])
+    factors = np.array([factor, factor_of_C])
     matrix_product(A.ctypes.data, B.ctypes.data, C.ctypes.data, extents, factors)

@@ -42,13 +42,13 @@ def small_matrix_eigenvalues(A: Array) -> Complex:
     parts = np.empty((2, n))
     work = np.empty(SMALL_EIGENVALUE_SETTINGS.work_array_ratio * n)
     extents = np.array([n, len(work), 0], np.int32)
-    none = np.full(1, 78, np.uint8)  # "N"
-    no = none.ctypes.data
+    letter_N = np.full(1, 78, np.uint8)  # "N"
+    no_vectors = letter_N.ctypes.data
     e = extents.ctypes.data
     v = parts.ctypes.data
     w = work.ctypes.data
     # LAPACK stores matrices by columns and sees A^T, which has the same eigenvalues.
-    _dgeev(no, no, e, a.ctypes.data, e, v, v + 8 * n, w, e, w, e, w, e + 4, e + 8)
+    _dgeev(no_vectors, no_vectors, e, a.ctypes.data, e, v, v + 8 * n, w, e, w, e, w, e + 4, e + 8)
     values = np.empty(n, np.complex128)
     for i in range(n):
         values[i] = complex(parts[0, i], parts[1, i])

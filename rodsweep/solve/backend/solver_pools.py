@@ -28,7 +28,7 @@ class Destroyable(Protocol):
 
     @property
     def memory_bytes(self) -> int:
-        """Estimate of the object's present memory, in bytes."""
+        """Estimate of the object's current memory, in bytes."""
 
     def destroy(self) -> None: ...
 

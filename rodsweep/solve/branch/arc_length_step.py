@@ -127,38 +127,40 @@ class BranchCycle:
             change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
         return moved_orbit(self.orbit, self.scale.parameter_name, change)
 
-    def _cubic_coefficients(self, before: PreviousCycle) -> Array:
+    def _cubic_coefficients(self, previous: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
-        its cube; the last two are 0 if `before` is not behind this cycle. before: previous cycle, on the
+        its cube; the last two are 0 if `previous` is not behind this cycle. previous: previous cycle, on the
         cubic."""
         name = self.scale.parameter_name
         mesh = mesh_of(self.orbit)
-        last = mesh.interpolated_orbit(before.orbit)
+        last = mesh.interpolated_orbit(previous.orbit)
         coordinate = last.form.rod.coordinate(name)
         # Both tangents on one mesh: the cubic combines their values node by node.
-        slope = np.append(interpolated_change(before.orbit, before.tangent[:-1], mesh), before.tangent[-1])
+        slope = np.append(
+            interpolated_change(previous.orbit, previous.tangent[:-1], mesh), previous.tangent[-1]
+        )
         step = float(self.unit_tangent @ (self.scale.components(self.orbit) - self.scale.components(last)))
         rate = float(self.unit_tangent @ self.scale.directional_derivative(last, slope))
         # Without progress along the tangent the two cycles do not define a cubic: the tangent alone predicts.
         if not (step > 0 and rate > 0):
             return np.array([self.tangent, 0 * slope, 0 * slope])
-        apart = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
+        difference = np.append(last.values - self.orbit.values, coordinate - self.parameter_coordinate)
         # Hermite interpolation at the lengths -step and 0, with `slope` rescaled to the same length unit.
-        A = (apart + step * self.tangent) * step**-2
+        A = (difference + step * self.tangent) * step**-2
         B = (self.tangent - slope / rate) * (0.5 / step)
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def branch_derivatives(found: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
-    """Scale and unit tangent of a branch at the cycle `found`. scale: scale at another cycle of the branch.
+def branch_derivatives(solved: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
+    """Scale and unit tangent of a branch at the cycle `solved`. scale: scale at another cycle of the branch.
     tangent: tangent of any length, (N + 1,). In the result `parameter_curvature` and `multiplier_rate` are 0,
     to be set by the caller."""
-    own = ArcLengthScale.at_orbit(
-        found.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
+    own_scale = ArcLengthScale.at_orbit(
+        solved.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
     )
-    ahead = own.directional_derivative(found.orbit, tangent)
-    unit = float(np.linalg.norm(ahead))
-    return BranchDerivatives(own, tangent / unit, ahead / unit, 0.0, 0.0)
+    derivative = own_scale.directional_derivative(solved.orbit, tangent)
+    unit = float(np.linalg.norm(derivative))
+    return BranchDerivatives(own_scale, tangent / unit, derivative / unit, 0.0, 0.0)
 
 
 def tangent_at(orbit: Orbit, scale: ArcLengthScale, side: Array, matrix: BorderedMatrix) -> Array:
@@ -195,18 +197,20 @@ def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepR
     condition = start.arc_length_condition(length)
     predicted = start.predicted_orbit(length)
     tolerance = newton_tolerance(accuracy)
-    found = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
-    off = relative_change(predicted, found.orbit.values - predicted.values)
-    if start.previous is None and off <= ARC_STEP_CONTROL.max_error:
-        off = (
+    solved = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
+    prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
+    if start.previous is None and prediction_error <= ARC_STEP_CONTROL.max_error:
+        prediction_error = (
             ARC_STEP_CONTROL.target_error
         )  # the error of the tangent predictor does not predict the error of the cubic
-    tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
+    tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved))
     cosine = float(
-        start.scale.directional_derivative(found.orbit, tangent) @ start.unit_tangent
+        start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
     )  # both have unit length
     return StepResult(
-        branch_cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy), off, cosine
+        branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy),
+        prediction_error,
+        cosine,
     )
 
 
@@ -219,25 +223,25 @@ def arc_length_between(start: BranchCycle, end: BranchCycle) -> float:
 
 def branch_cycle_with_calibrated_errors(
     start: BranchCycle,
-    found: ConvergedOrbit,
+    solved: ConvergedOrbit,
     tangent: Array,
     length: float,
     next_arc_length: float,
     accuracy: float,
 ) -> BranchCycle:
-    """The solved orbit `found` as the cycle of the branch at the arc length `length` from `start`, with
+    """The solved orbit `solved` as the cycle of the branch at the arc length `length` from `start`, with
     errors estimated from the calibration of `start`.
 
     tangent: tangent of the branch at the new cycle, (N + 1,). next_arc_length: arc length of the step to the
-    next cycle. accuracy: relative accuracy of `found`.
+    next cycle. accuracy: relative accuracy of `solved`.
     """
-    cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, found, accuracy)
-    derivatives = branch_derivatives(found, start.scale, tangent)
+    cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, solved, accuracy)
+    derivatives = branch_derivatives(solved, start.scale, tangent)
     curvature = (derivatives.parameter_rate - start.parameter_rate) / length
-    changed = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
+    multiplier_rate = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
     return BranchCycle(
         cycle=cycle,
-        derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=changed),
+        derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=multiplier_rate),
         next_arc_length=next_arc_length,
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,

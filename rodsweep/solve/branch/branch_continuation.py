@@ -66,14 +66,16 @@ def _follow_to_end(
         return curve
     try:
         start, limits = first()
-    except Unsolvable as why:
-        curve.end(BranchEnd(_end_without_cycle(curve, reason_of_failure(why), str(why)), complete=False))
+    except Unsolvable as reason:
+        curve.end(
+            BranchEnd(_end_without_cycle(curve, reason_of_failure(reason), str(reason)), complete=False)
+        )
         return curve
-    outside = index_of_passed_range_end(start, limits.coordinate_range)
-    if outside >= 0:
-        there = RangePassage(start, outside, limits.accuracy)
-        special = _end_without_cycle(curve, limits.end_reasons[outside])
-        curve.end(BranchEnd(special, complete=True, range_passage=there))
+    passed_end = index_of_passed_range_end(start, limits.coordinate_range)
+    if passed_end >= 0:
+        passage = RangePassage(start, passed_end, limits.accuracy)
+        special = _end_without_cycle(curve, limits.end_reasons[passed_end])
+        curve.end(BranchEnd(special, complete=True, range_passage=passage))
         return curve
     return follow_from_cycle(curve, start, limits)
 
@@ -104,22 +106,23 @@ def follow_from_range_end(entry: RangePassage, limits: BranchLimits) -> BranchCu
 def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimits) -> SolvePosition:
     """Progress along a branch: text with the parameter at the last cycle `start`, and fraction of work."""
     name = start.scale.parameter_name
-    # The end of the range towards which the parameter moves at present.
-    aim = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
+    # The end of the range towards which the parameter currently moves.
+    end_coordinate = limits.coordinate_range[1 if start.unit_tangent[-1] > 0 else 0]
     value = PARAMETERS[name].value(start.parameter_coordinate)
-    aim_value = PARAMETERS[name].value(aim)
-    words = f"{name} = {value:.5g} on the way to {aim_value:.5g}, {counted(len(curve.points), 'cycle')}"
-    born = curve.special_points[0].at if curve.special_points else curve.points[0].at
+    end_value = PARAMETERS[name].value(end_coordinate)
+    text = f"{name} = {value:.5g} on the way to {end_value:.5g}, {counted(len(curve.points), 'cycle')}"
+    start_value = curve.special_points[0].at if curve.special_points else curve.points[0].at
     return SolvePosition(
-        words, fraction_done(PARAMETERS[name].coordinate(born), start.parameter_coordinate, aim)
+        text,
+        fraction_done(PARAMETERS[name].coordinate(start_value), start.parameter_coordinate, end_coordinate),
     )
 
 
 def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str = "") -> SpecialPoint:
     """The end of a branch without cycles, at its first special point. message: cause of a failure."""
-    born = curve.special_points[0]
+    special_point = curve.special_points[0]
     return replace(
-        born,
+        special_point,
         kind=SpecialKind.end,
         reason=reason,
         message=message,
@@ -147,28 +150,31 @@ def _append_next_cycle(
     if len(curve.points) >= limits.max_cycles:
         return BranchEnd(branch_end_point(start, BranchEndReason.list_full), complete=False, list_full=True)
     try:
-        at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
-        end = at_zero or next_cycle(start, limits.accuracy)
+        cycle_at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
+        end = cycle_at_zero or next_cycle(start, limits.accuracy)
         next_length = end.next_arc_length
         if reaches_mirror_image(start, end, limits):
             # Beyond this point the branch continues through the mirror images of its cycles.
             return end_at_mirror_image(start, end, limits)
-        end, outside = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
-        range_end = range_end_condition(start, limits.coordinate_range[outside]) if outside >= 0 else None
+        end, passed_end = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
+        range_end = (
+            range_end_condition(start, limits.coordinate_range[passed_end]) if passed_end >= 0 else None
+        )
         if range_end is not None and _step_has_unresolved_corner(start, end):
             range_end = None  # first a cycle at half the step
             end = cycle_at_length(start, arc_length_between(start, end) / 2, limits.accuracy)
-        if (within := _add_special_points(curve, start, end, limits)) is not None:
-            return within
+        if (last_cycle := _add_special_points(curve, start, end, limits)) is not None:
+            return last_cycle
         record.append(end)
         last = record.assign_errors(range_end) if range_end is not None or is_measurement_due(end) else end
-    except Unsolvable as why:
-        message = f"no further cycle of the branch is found: {why}"
-        return BranchEnd(branch_end_point(start, reason_of_failure(why), message), complete=False)
+    except Unsolvable as reason:
+        message = f"no further cycle of the branch is found: {reason}"
+        return BranchEnd(branch_end_point(start, reason_of_failure(reason), message), complete=False)
     if range_end is None:
         return last
-    there = RangePassage(replace(last, next_arc_length=next_length), outside, limits.accuracy)
-    return BranchEnd(range_end_point(last, limits.end_reasons[outside]), complete=True, range_passage=there)
+    passage = RangePassage(replace(last, next_arc_length=next_length), passed_end, limits.accuracy)
+    end_point = range_end_point(last, limits.end_reasons[passed_end])
+    return BranchEnd(end_point, complete=True, range_passage=passage)
 
 
 def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint:
@@ -191,19 +197,19 @@ def _add_special_points(
     if not limits.locates_special_points:
         return None
     cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
-    between, explained = special_points_between(start, end, cycle_at, limits.accuracy)
-    closing = curve.index_of_first_special_point(between)
-    if closing < 0:
-        curve.add_special_points(between, explained)
+    special_points, explained = special_points_between(start, end, cycle_at, limits.accuracy)
+    closing_index = curve.index_of_first_special_point(special_points)
+    if closing_index < 0:
+        curve.add_special_points(special_points, explained)
         return None
-    curve.add_special_points(between[:closing], explained)
-    return BranchEnd(between[closing], complete=True, closed=True)
+    curve.add_special_points(special_points[:closing_index], explained)
+    return BranchEnd(special_points[closing_index], complete=True, closed=True)
 
 
 def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
     """Whether the largest tip y has a corner on the last step (a different maximum of y(t) becomes the
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""
-    apart = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    other = min(apart, 1 - apart) > BRANCH_END_SETTINGS.max_peak_shift
-    return other and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner
+    time_difference = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
+    is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift
+    return is_other_peak and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner

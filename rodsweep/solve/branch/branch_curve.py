@@ -66,8 +66,8 @@ def _multiplier_modulus_error(point: BranchCycle) -> float:
     """Error of the modulus of a multiplier near the unit circle: relative error of the largest multiplier,
     plus a multiple of the error of the trivial multiplier, whose exact value is 1."""
     cycle = point.cycle
-    relative = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
-    return relative + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
+    relative_error = cycle.errors.multiplier_error / max(cycle.largest_multiplier, 1.0)
+    return relative_error + REFINEMENT_SETTINGS.multiplier_error_factor * cycle.trivial_multiplier_error
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,16 +141,17 @@ class BranchCurve:
     """Place where the branch leaves the range; None if it has another end."""
 
     def add_special_point(self, special: SpecialPoint) -> None:
-        """Appends a special point that lies beyond the present last cycle, and sets its
+        """Appends a special point that lies beyond the current last cycle, and sets its
         `index_of_cycle_before`."""
         self.special_points.append(replace(special, index_of_cycle_before=len(self.points) - 1))
 
-    def add_special_points(self, between: Sequence[SpecialPoint], explained: bool) -> None:
-        """Appends the special points `between`, which lie between the present last cycle and the next cycle.
-        explained: whether these points explain every multiplier that crosses the unit circle there."""
-        for special in between:
+    def add_special_points(self, special_points: Sequence[SpecialPoint], are_complete: bool) -> None:
+        """Appends the special points `special_points`, which lie between the current last cycle and the next
+        cycle. are_complete: whether these points explain every multiplier that crosses the unit circle
+        there."""
+        for special in special_points:
             self.add_special_point(special)
-        self.unit_circle_crossings_explained &= explained
+        self.unit_circle_crossings_explained &= are_complete
 
     def replace_last_cycles(self, points: Sequence[BranchPoint]) -> None:
         """Replaces the last len(points) cycles by `points`, the same cycles with measured or interpolated
@@ -175,36 +176,38 @@ class BranchCurve:
         self.end_breaking = end.end_breaking
         self.end_passage = end.range_passage
 
-    def index_of_first_special_point(self, between: Sequence[SpecialPoint]) -> int:
-        """Index in `between` of the first special point of this branch, -1 if `between` does not have it or
-        if this point is not located. The branch is closed if it returns to this point."""
-        first = [point for point in self.special_points[:1] if not point.message]
-        located = [(i, point) for i, point in enumerate(between) if not point.message]
-        return next((i for i, point in located for one in first if one.is_same_as(point)), -1)
+    def index_of_first_special_point(self, special_points: Sequence[SpecialPoint]) -> int:
+        """Index in `special_points` of the first special point of this branch, -1 if `special_points` does
+        not have it or if this point is not located. The branch is closed if it returns to this point."""
+        own_points = [point for point in self.special_points[:1] if not point.message]
+        located = [(i, point) for i, point in enumerate(special_points) if not point.message]
+        return next(
+            (i for i, point in located for own_point in own_points if own_point.is_same_as(point)), -1
+        )
 
-    def joined_with(self, ahead: "BranchCurve") -> "BranchCurve":
-        """The branch of this branch, reversed, and the branch `ahead`; both start at the same cycle, in
+    def joined_with(self, forward: "BranchCurve") -> "BranchCurve":
+        """The branch of this branch, reversed, and the branch `forward`; both start at the same cycle, in
         opposite directions."""
         count = len(self.points)
-        behind = [
+        backward_points = [
             replace(point, index_of_cycle_before=count - 2 - point.index_of_cycle_before)
             for point in reversed(self.special_points)
         ]
-        beyond = [
+        forward_points = [
             replace(point, index_of_cycle_before=point.index_of_cycle_before + count - 1)
-            for point in ahead.special_points
+            for point in forward.special_points
         ]
         return BranchCurve(
             start_hopf=self.end_hopf,
             start_breaking=self.end_breaking,
-            points=[*self.points[:0:-1], *ahead.points],
-            special_points=[*behind, *beyond],
-            end_hopf=ahead.end_hopf,
-            end_breaking=ahead.end_breaking,
+            points=[*self.points[:0:-1], *forward.points],
+            special_points=[*backward_points, *forward_points],
+            end_hopf=forward.end_hopf,
+            end_breaking=forward.end_breaking,
             start_passage=self.end_passage,
-            end_passage=ahead.end_passage,
-            complete=self.complete and ahead.complete,
-            list_full=self.list_full or ahead.list_full,
+            end_passage=forward.end_passage,
+            complete=self.complete and forward.complete,
+            list_full=self.list_full or forward.list_full,
             unit_circle_crossings_explained=self.unit_circle_crossings_explained
-            and ahead.unit_circle_crossings_explained,
+            and forward.unit_circle_crossings_explained,
         )

@@ -16,7 +16,8 @@ class BranchEndReason(IntEnum):
     list_full = 4
 
 
-def reason_of_failure(why: Unsolvable) -> BranchEndReason:
-    """Reason for the end of a branch at which no further cycle could be solved because of the error `why`."""
-    is_limit = isinstance(why, WorkLimitReached) or isinstance(why.__cause__, WorkLimitReached)
+def reason_of_failure(reason: Unsolvable) -> BranchEndReason:
+    """Reason for the end of a branch at which no further cycle could be solved because of the error
+    `reason`."""
+    is_limit = isinstance(reason, WorkLimitReached) or isinstance(reason.__cause__, WorkLimitReached)
     return BranchEndReason.list_full if is_limit else BranchEndReason.no_cycle_found

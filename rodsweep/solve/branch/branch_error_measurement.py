@@ -29,7 +29,7 @@ def measured_branch_calibration(
     before: calibration at a previous cycle, for the convergence rates; None if there is no such cycle."""
     mesh = mesh_of(found.orbit)
     orbit = found.orbit
-    finer, share = finer_meshes(mesh)
+    finer, fraction = finer_meshes(mesh)
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CyclePath(orbit)
@@ -44,7 +44,7 @@ def measured_branch_calibration(
         )
         part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
-    parts[1] /= share
+    parts[1] /= fraction
     known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
     return BranchCalibration(known, parts[:, -1], tip_y_sensitivity(rough, derivatives))
 
@@ -73,9 +73,11 @@ def _differences_between_meshes(
     deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
     length = derivatives.arc_length_for_parameter_change(off)
     target = mesh_of(fine.orbit)
-    along = np.append(interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1])
+    parameter_name = np.append(
+        interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1]
+    )
     # The fine cycle is moved along the branch to the parameter value of the rough cycle.
-    slid = moved_orbit(fine.orbit, scale.parameter_name, length * along)
+    slid = moved_orbit(fine.orbit, scale.parameter_name, length * parameter_name)
     change = largest_multiplier_difference(multipliers, multipliers_and_trivial_error(fine)[0]) + abs(
         length * derivatives.multiplier_rate
     )

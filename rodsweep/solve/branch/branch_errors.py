@@ -83,10 +83,10 @@ class BranchDerivatives:
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
         if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * change):
             return change / self.parameter_rate
-        way = np.copysign(1.0, change * self.parameter_rate)
+        direction = np.copysign(1.0, change * self.parameter_rate)
         # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = change.
         curvature = max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)
-        return float(way * 2 * (abs(change) / curvature) ** 0.5)
+        return float(direction * 2 * (abs(change) / curvature) ** 0.5)
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +134,13 @@ class BranchCalibration:
         """Errors from which the mesh is chosen: errors at equal parameter, reduced as in
         `largest_weighted_error`, and the parameter error."""
         # Errors at equal p are proportional to the slope dy/dp; a steep slope is no defect of the mesh.
-        steep = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
-        parts = [self.at_equal_parameter.space_errors / steep, self.at_equal_parameter.time_errors / steep]
-        for part, own in zip(parts, self.parameter_errors, strict=True):
-            part[PERIOD_INDEX] = max(part[PERIOD_INDEX], own)
+        reduction = max(1.0, self.sensitivity / BRANCH_ERROR_SETTINGS.max_sensitivity)
+        parts = [
+            self.at_equal_parameter.space_errors / reduction,
+            self.at_equal_parameter.time_errors / reduction,
+        ]
+        for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
+            part[PERIOD_INDEX] = max(part[PERIOD_INDEX], parameter_error)
         return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
 
     @cached_property
@@ -146,37 +149,37 @@ class BranchCalibration:
         at equal deflection, in space and in time; the error of the multiplier is unchanged."""
         numbers = [PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX]
         parts = [self.at_equal_parameter.space_errors.copy(), self.at_equal_parameter.time_errors.copy()]
-        for part, own in zip(parts, self.parameter_errors, strict=True):
-            part[numbers] = own
+        for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
+            part[numbers] = parameter_error
         return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
 
     def interpolate(
-        self, other: "BranchCalibration", share: float, sensitivity: float
+        self, other: "BranchCalibration", fraction: float, sensitivity: float
     ) -> "BranchCalibration":
         """Interpolated errors of a cycle on the branch between two measured cycles with the same mesh. other:
-        errors of the second measured cycle. share: fraction of the arc length from the first measured cycle
-        to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the interpolated
-        cycle."""
+        errors of the second measured cycle. fraction: fraction of the arc length from the first measured
+        cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
+        interpolated cycle."""
         mean = [
-            _interpolated_errors(one, another, share)
-            for one, another in (
+            _interpolated_errors(own_errors, other_errors, fraction)
+            for own_errors, other_errors in (
                 (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
                 (self.at_equal_parameter.time_errors, other.at_equal_parameter.time_errors),
                 (self.parameter_errors, other.parameter_errors),
             )
         ]
-        known = replace(
+        calibration = replace(
             self.at_equal_parameter, space_errors=mean[0], time_errors=mean[1], error_growth=np.ones(2)
         )
-        return BranchCalibration(known, mean[2], sensitivity)
+        return BranchCalibration(calibration, mean[2], sensitivity)
 
 
-def _interpolated_errors(one: Array, other: Array, share: float) -> Array:
-    """Geometric interpolation between the errors `one` and `other`, arrays of equal shape, at the fraction
-    `share` of the distance from `one`; times `interpolation_factor`, but at most the larger of the two
+def _interpolated_errors(first: Array, second: Array, fraction: float) -> Array:
+    """Geometric interpolation between the errors `first` and `second`, arrays of equal shape, at the fraction
+    `fraction` of the distance from `first`; times `interpolation_factor`, but at most the larger of the two
     errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([one, other], BRANCH_ERROR_SETTINGS.min_error))
-    means = np.exp(logarithms[0] + share * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(one, other))
+    logarithms = np.log(np.maximum([first, second], BRANCH_ERROR_SETTINGS.min_error))
+    means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
+    bounded: Array = np.minimum(BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first, second))
     return bounded

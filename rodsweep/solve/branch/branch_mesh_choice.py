@@ -31,7 +31,7 @@ class BranchMeshSettings:
     max_meshes: int = 8
     """Maximum number of meshes tried for one cycle."""
     max_cheaper_cost_ratio: float = 0.5
-    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the present cost
+    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the current cost
     is at most this number."""
     planned_error_ratio: float = 0.5
     """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
@@ -54,9 +54,9 @@ BRANCH_MESH_SETTINGS = BranchMeshSettings()
 
 
 def first_measured_cycle(
-    found: ConvergedOrbit, scale: ArcLengthScale, side: Array, arc_from_start: float, accuracy: float
+    solved: ConvergedOrbit, scale: ArcLengthScale, side: Array, arc_from_start: float, accuracy: float
 ) -> BranchCycle:
-    """The solved orbit `found` as the first cycle of a branch, with measured errors within the accuracy, on
+    """The solved orbit `solved` as the first cycle of a branch, with measured errors within the accuracy, on
     another mesh if necessary; raises Unsolvable.
 
     scale: units of arc length. side: direction of the branch in components (deflection, log period,
@@ -64,19 +64,19 @@ def first_measured_cycle(
     multipliers are quadratic in this arc length.
     """
     derivatives = branch_derivatives(
-        found, scale, tangent_at(found.orbit, scale, side, bordered_matrix_of(found))
+        solved, scale, tangent_at(solved.orbit, scale, side, bordered_matrix_of(solved))
     )
-    multipliers = multipliers_and_trivial_error(found)[0]
-    lost = abs(multipliers[0] - 1) if len(multipliers) else 0.0
+    multipliers = multipliers_and_trivial_error(solved)[0]
+    trivial_error = abs(multipliers[0] - 1) if len(multipliers) else 0.0
     # At the Hopf point the derivative of the parameter is 0 and a second multiplier is 1. Near the Hopf point
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
         derivatives,
         parameter_curvature=derivatives.parameter_rate / arc_from_start,
-        multiplier_rate=2 * lost / arc_from_start,
+        multiplier_rate=2 * trivial_error / arc_from_start,
     )
-    calibration = measured_branch_calibration(found, derivatives, accuracy, None)
-    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, found, accuracy)
+    calibration = measured_branch_calibration(solved, derivatives, accuracy, None)
+    cycle = cycle_with_calibrated_errors(calibration.at_equal_parameter, solved, accuracy)
     return solve_on_sufficient_mesh(
         BranchCycle(
             cycle=cycle,
@@ -101,10 +101,10 @@ def is_measurement_due(point: BranchCycle) -> bool:
 def with_measured_errors(point: BranchCycle, accuracy: float) -> BranchCycle:
     """The cycle `point` with its errors measured on two finer meshes; raises Unsolvable. accuracy: relative
     accuracy of the cycle."""
-    before = point.calibration.at_equal_parameter
+    previous = point.calibration.at_equal_parameter
     return with_calibration(
         point,
-        measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, before),
+        measured_branch_calibration(point.cycle.converged_orbit, point.derivatives, accuracy, previous),
         accuracy,
     )
 
@@ -133,20 +133,20 @@ def solve_on_sufficient_mesh(
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
         if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
-        known = point.calibration
-        enough = known.largest_weighted_error(accuracy) <= accuracy
-        planned = known.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+        calibration = point.calibration
+        is_accurate = calibration.largest_weighted_error(accuracy) <= accuracy
+        target = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if enough and (
-            finest or planned.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * known.mesh.cost
+        if is_accurate and (
+            finest or target.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * calibration.mesh.cost
         ):
             return point
-        if not enough:
+        if not is_accurate:
             finest = True
-            planned = finer_mesh(known.mesh, planned)
-        if not planned.is_allowed:
+            target = finer_mesh(calibration.mesh, target)
+        if not target.is_allowed:
             raise mesh_limit()
-        point = solved_on_mesh(point, planned, condition, accuracy)
+        point = solved_on_mesh(point, target, condition, accuracy)
     raise MeshLimitReached(
         f"none of {BRANCH_MESH_SETTINGS.max_meshes} finer and finer meshes reaches the requested accuracy"
     )
@@ -158,19 +158,19 @@ def solved_on_mesh(
     """The cycle `point` solved on the mesh `mesh` to a relative accuracy; its errors are estimated from the
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
-    found = condition.solve_on_mesh(
+    solved = condition.solve_on_mesh(
         mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
     )
-    tangent = tangent_at(found.orbit, point.scale, point.unit_tangent, bordered_matrix_of(found))
-    known = point.derivatives
+    tangent = tangent_at(solved.orbit, point.scale, point.unit_tangent, bordered_matrix_of(solved))
+    old_derivatives = point.derivatives
     derivatives = replace(
-        branch_derivatives(found, point.scale, tangent),
-        parameter_curvature=known.parameter_curvature,
-        multiplier_rate=known.multiplier_rate,
+        branch_derivatives(solved, point.scale, tangent),
+        parameter_curvature=old_derivatives.parameter_curvature,
+        multiplier_rate=old_derivatives.multiplier_rate,
     )
     return replace(
         point,
-        cycle=cycle_with_calibrated_errors(point.calibration.at_equal_parameter, found, accuracy),
+        cycle=cycle_with_calibrated_errors(point.calibration.at_equal_parameter, solved, accuracy),
         derivatives=derivatives,
         steps_since_measured=1,
     )
@@ -188,21 +188,21 @@ def with_errors_within_accuracy(
     unchanged.
     """
     *between, end = points
-    whole = end.arc_since_measured
+    total_length = end.arc_since_measured
     end = with_measured_errors(end, accuracy)
-    known = [
-        _with_interpolated_errors(measured, point, end, point.arc_since_measured / whole, accuracy)
+    cycles = [
+        _with_interpolated_errors(measured, point, end, point.arc_since_measured / total_length, accuracy)
         for point in between
     ]
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
-    again = [
+    solved_again = [
         point
         if point.calibration.largest_weighted_error(accuracy) <= accuracy
         else _cycle_on_mesh_of(end, point, accuracy)
-        for point in known
+        for point in cycles
     ]
-    return [*again, end]
+    return [*solved_again, end]
 
 
 def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> BranchCycle:
@@ -215,26 +215,27 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
 
 
 def _with_interpolated_errors(
-    last: BranchCycle, point: BranchCycle, end: BranchCycle, share: float, accuracy: float
+    last: BranchCycle, point: BranchCycle, end: BranchCycle, fraction: float, accuracy: float
 ) -> BranchCycle:
     """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
     same mesh; raises Unsolvable.
 
-    share: fraction of the arc length from `last` to `end` at which `point` lies. accuracy: relative accuracy
-    of the cycles. The errors of `point` are measured instead if its coefficient tails are much larger than at
-    `last` and `end`, or if the parameter changes more slowly than at `last` and `end`, as near a fold: the
-    errors at `last` and `end` are then no bound.
+    fraction: fraction of the arc length from `last` to `end` at which `point` lies. accuracy: relative
+    accuracy of the cycles. The errors of `point` are measured instead if its coefficient tails are much
+    larger than at `last` and `end`, or if the parameter changes more slowly than at `last` and `end`, as near
+    a fold: the errors at `last` and `end` are then no bound.
     """
     ends = (last, end)
-    slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
-        abs(one.parameter_rate) for one in ends
+    is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
+        abs(measured.parameter_rate) for measured in ends
     )
-    grown = min(
-        one.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max() for one in ends
+    error_growth = min(
+        measured.calibration.at_equal_parameter.scaled_on_branch(point.orbit).error_growth.max()
+        for measured in ends
     )
-    if slow or float(grown) > BRANCH_MESH_SETTINGS.max_tail_growth:
+    if is_slow or float(error_growth) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
-    known = last.calibration.interpolate(
-        end.calibration, share, tip_y_sensitivity(point.cycle.path, point.derivatives)
+    calibration = last.calibration.interpolate(
+        end.calibration, fraction, tip_y_sensitivity(point.cycle.path, point.derivatives)
     )
-    return with_calibration(point, known, accuracy)
+    return with_calibration(point, calibration, accuracy)

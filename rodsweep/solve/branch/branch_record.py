@@ -19,10 +19,10 @@ def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str =
     """The special point for the end of a branch at its last cycle `point`; the errors are NaN, to be set by
     the caller. message: cause of a failure."""
     measures = point.cycle.measures
-    at = getattr(point.orbit.form.rod, point.scale.parameter_name)
+    value = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
         kind=SpecialKind.end,
-        at=at,
+        at=value,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         error=nan,
@@ -72,10 +72,10 @@ class BranchRecord:
         curve = self.curve
         try:
             self.assign_errors()
-        except Unsolvable as why:
+        except Unsolvable as reason:
             curve.remove_last_cycles(len(self._unmeasured))
-            message = f"the errors of the next cycles cannot be measured: {why}"
-            special = branch_end_point(self._last_measured, reason_of_failure(why), message)
+            message = f"the errors of the next cycles cannot be measured: {reason}"
+            special = branch_end_point(self._last_measured, reason_of_failure(reason), message)
             end = replace(end, special_point=special, complete=False)
         special = end.special_point
         last = curve.points[-1]

@@ -60,20 +60,20 @@ class BranchSearch:
         self.follow_beyond()
 
     def _limits_left(self) -> BranchLimits:
-        left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
-        return replace(self.limits, max_cycles=left)
+        cycles_left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
+        return replace(self.limits, max_cycles=cycles_left)
 
     def follow_from_hopf_points(self) -> None:
         """Follows the branches from all Hopf points; a branch between two Hopf points only once."""
         count = len(self.limits.hopfs)
-        shares = fractions_before_branches(
+        fractions = fractions_before_branches(
             [hopf.parameter_coordinate for hopf in self.limits.hopfs], self.limits.coordinate_range
         )
         for number in range(count):
             if any(curve.end_hopf == number for curve in self.curves):
                 continue
             with solve_part(
-                f"branch from Hopf point {number + 1} of {count}", (shares[number], shares[number + 1])
+                f"branch from Hopf point {number + 1} of {count}", (fractions[number], fractions[number + 1])
             ):
                 self.curves.append(follow_branch(number, self._limits_left()))
 
@@ -81,12 +81,12 @@ class BranchSearch:
         """Follows the branches of asymmetric cycles from all symmetry breakings on the branches so far; a
         branch between two symmetry breakings only once."""
         breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
-        for which, breaking in enumerate(breakings):
+        for index, breaking in enumerate(breakings):
             if breaking in self.followed_breakings:
                 continue
             with solve_part(f"branch {len(self.curves) + 1}, of asymmetric cycles"):
                 limits = replace(self._limits_left(), breakings=breakings)
-                curve = follow_asymmetric_branch(which, self.name, limits)
+                curve = follow_asymmetric_branch(index, self.name, limits)
             self.followed_breakings += filter(None, [breaking, curve.end_breaking])
             self.curves.append(curve)
 
@@ -96,12 +96,12 @@ class BranchSearch:
         for start in starts:
             if lies_on_any(start, self.curves):
                 continue
-            where = f"{_WORDS[start.kind]} at {self.name} = {start.at:.9g}"
-            with solve_part(f"branch {len(self.curves) + 1}, through the {where}"):
+            place = f"{_WORDS[start.kind]} at {self.name} = {start.at:.9g}"
+            with solve_part(f"branch {len(self.curves) + 1}, through the {place}"):
                 try:
                     self._follow_detached(start)
                 except FAILURES as error:
-                    self.failures.append(f"no branch is followed through the {where}: {cause_of(error)}")
+                    self.failures.append(f"no branch is followed through the {place}: {cause_of(error)}")
             self.follow_beyond()
 
     def follow_beyond(self) -> None:

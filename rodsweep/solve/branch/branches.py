@@ -100,15 +100,15 @@ def _solve_branches_or_raise(
         BRANCH_SETTINGS.crushing_margin,
     )
     if not low < high:
-        why = f"the force crushes the rod everywhere in the range of {request.along}"
-        return BranchesOfRod(status=BranchStatus.ok, message=why, proved=True)
+        reason = f"the force crushes the rod everywhere in the range of {request.along}"
+        return BranchesOfRod(status=BranchStatus.ok, message=reason, proved=True)
     path = Path(rod.with_values(**{request.along: low}), request.along)
-    found = find_axis_crossings(path, low, high, request.certify)
+    crossings = find_axis_crossings(path, low, high, request.certify)
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
-    hopfs, failures = _hopf_branch_starts(path, found, keeps_omega, unit)
+    hopfs, failures = _hopf_branch_starts(path, crossings, keeps_omega, unit)
     reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
     if path.is_compliance_path:
         ends = ends[::-1]
@@ -119,13 +119,13 @@ def _solve_branches_or_raise(
     search.follow_within_range()
     search.follow_into_range(regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin))
     search.follow_through(starts)
-    status, message = _status_and_message(found, search.curves, failures + search.failures, request)
+    status, message = _status_and_message(crossings, search.curves, failures + search.failures, request)
     return BranchesOfRod(
         status=status,
         message=message,
-        crossings=found.thresholds,
-        unstable_at_start=found.unstable_at_start if found.searched_interval[0] == low else -1,
-        proved=found.proved_to_the_end,
+        crossings=crossings.thresholds,
+        unstable_at_start=crossings.unstable_at_start if crossings.searched_interval[0] == low else -1,
+        proved=crossings.proved_to_the_end,
         curves=tuple(search.curves),
         followed_range=search.followed_range,
     )
@@ -137,27 +137,27 @@ def _end_reason(is_crushed: bool) -> BranchEndReason:
 
 
 def _hopf_branch_starts(
-    path: Path, found: ThresholdSearchResult, keeps_omega: bool, unit: float
+    path: Path, crossings: ThresholdSearchResult, keeps_omega: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
     """(Hopf points with normal form, messages on Hopf points without). keeps_omega, unit: as in
     `hopf_branch_start`."""
     hopfs = []
     failures = []
-    for crossing in found.thresholds:
+    for crossing in crossings.thresholds:
         try:
             hopfs.append(hopf_branch_start(path, crossing, keeps_omega, unit))
         except FAILURES as error:
-            where = f"{path.name} = {crossing.value:.12g}"
-            failures.append(f"no branch is followed from the Hopf point at {where}: {cause_of(error)}")
+            place = f"{path.name} = {crossing.value:.12g}"
+            failures.append(f"no branch is followed from the Hopf point at {place}: {cause_of(error)}")
     return hopfs, failures
 
 
 def _status_and_message(
-    found: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
+    crossings: ThresholdSearchResult, curves: list[BranchCurve], failures: list[str], request: BranchRequest
 ) -> tuple[BranchStatus, str]:
     """(status, message) of all branches of a rod: status of the first problem in the order of `BranchStatus`,
-    and all messages. found: result of the search for Hopf points. curves: the branches. failures: messages on
-    Hopf points without a normal form, and on known special points without a branch."""
+    and all messages. crossings: result of the search for Hopf points. curves: the branches. failures:
+    messages on Hopf points without a normal form, and on known special points without a branch."""
     messages = [
         f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
         for number, curve in enumerate(curves, 1)
@@ -176,7 +176,7 @@ def _status_and_message(
         BranchStatus.list_full: any(curve.list_full for curve in curves) or count > request.special,
         BranchStatus.special_undecided: inaccurate
         or any(not curve.unit_circle_crossings_explained for curve in curves),
-        BranchStatus.search_open: found.ended_early or (request.certify and not found.proved),
+        BranchStatus.search_open: crossings.ended_early or (request.certify and not crossings.proved),
     }
-    status = next((status for status, holds in verdicts.items() if holds), BranchStatus.ok)
-    return status, "; ".join(filter(None, [*failures, *messages, found.doubt_text]))
+    status = next((status for status, applies in verdicts.items() if applies), BranchStatus.ok)
+    return status, "; ".join(filter(None, [*failures, *messages, crossings.doubt_text]))

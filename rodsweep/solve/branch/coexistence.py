@@ -110,8 +110,8 @@ def _first_searched_value(row: DiagramRow, request: RowRequest) -> float:
     """Value of the parameter from which a row was searched for thresholds: later than the first value if no
     a-priori bound or no mesh covers a strong pull."""
     first = row.thresholds.search_result.searched_interval[0]
-    begins_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
-    return float(first if begins_late else request.values[0])
+    is_late = row.thresholds.search_result.ended_early and request.values[0] < first < request.values[-1]
+    return float(first if is_late else request.values[0])
 
 
 def _branch_request(start: float, request: RowRequest, max_special_points: int) -> BranchRequest:
@@ -178,28 +178,28 @@ def stable_cycles_at(values: Array, branches: BranchesOfRod, certify: bool) -> N
     """Existence of a stable cycle at each parameter value, (values,): 1 if a stable cycle exists, 0 if no
     branch has a stable cycle, -1 if undecided. branches: all branches of the row. certify: whether 0 requires
     a proof that no Hopf point is missing."""
-    complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
-    known = complete and (branches.proved or not certify)
-    found = np.full(len(values), 0 if known else -1, dtype=np.int8)
+    is_complete = branches.status in (BranchStatus.ok, BranchStatus.special_undecided)
+    is_known = is_complete and (branches.proved or not certify)
+    existence = np.full(len(values), 0 if is_known else -1, dtype=np.int8)
     intervals = [interval for curve in branches.curves for interval in stability_intervals(curve)]
     # No stable cycle is claimed where the stability is undecided, or within the error of an interval's end.
     for interval in intervals:
         if interval.stability:
-            found[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
+            existence[(values >= interval.possible_range[0]) & (values <= interval.possible_range[1])] = -1
     for interval in intervals:
         if interval.stability > 0:
-            found[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
-    return found
+            existence[(values > interval.certain_range[0]) & (values < interval.certain_range[1])] = 1
+    return existence
 
 
 def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
     """Intervals of the parameter between successive special points of a branch, with the stability in each
     interval."""
     intervals = []
-    for one, other in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
+    for first, second in zip(curve.special_points[:-1], curve.special_points[1:], strict=True):
         signs = {
             point.min_unstable_multipliers
-            for point in curve.points[one.index_of_cycle_before + 1 : other.index_of_cycle_before + 1]
+            for point in curve.points[first.index_of_cycle_before + 1 : second.index_of_cycle_before + 1]
         } - {-1}
         # Stability changes at special points only. If cycles between two special points disagree, it is
         # undecided.
@@ -208,10 +208,13 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
             stable = 1
         elif signs and 0 not in signs:
             stable = 0
-        low, high = sorted((one, other), key=lambda point: point.at)
-        within = low.at + _end_error_sign(low) * low.error, high.at - _end_error_sign(high) * high.error
-        about = low.at - low.error, high.at + high.error
-        intervals.append(StabilityInterval(within, about, stable))
+        low, high = sorted((first, second), key=lambda point: point.at)
+        inner_interval = (
+            low.at + _end_error_sign(low) * low.error,
+            high.at - _end_error_sign(high) * high.error,
+        )
+        outer_interval = low.at - low.error, high.at + high.error
+        intervals.append(StabilityInterval(inner_interval, outer_interval, stable))
     return intervals
 
 

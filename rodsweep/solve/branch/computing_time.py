@@ -28,18 +28,20 @@ ParameterRange = tuple[float, float]
 """Smallest and largest coordinate of the continuation parameter."""
 
 
-def fraction_done(start: float, present: float, expected_end: float) -> float:
+def fraction_done(start: float, current: float, expected_end: float) -> float:
     """Estimated fraction of the computing time of a branch that has passed at the parameter coordinate
-    `present`. start, expected_end: parameter coordinates at the start of the branch and at its expected
+    `current`. start, expected_end: parameter coordinates at the start of the branch and at its expected
     end."""
-    way = (present - start) / (expected_end - start) if expected_end != start else 1.0
-    return min(max(way, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.distance_exponent
+    fraction = (current - start) / (expected_end - start) if expected_end != start else 1.0
+    return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.distance_exponent
 
 
 def fractions_before_branches(starts: Sequence[float], ends: ParameterRange) -> list[float]:
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
     branches start. ends: range of the parameter coordinate."""
-    works = [max(abs(end - at) for end in ends) ** COMPUTING_TIME_SETTINGS.length_exponent for at in starts]
-    done = [sum(works[:number]) for number in range(len(works) + 1)]
-    return [work / done[-1] if done[-1] else 1.0 for work in done]
+    work_of_branches = [
+        max(abs(end - start) for end in ends) ** COMPUTING_TIME_SETTINGS.length_exponent for start in starts
+    ]
+    work_before = [sum(work_of_branches[:number]) for number in range(len(work_of_branches) + 1)]
+    return [work / work_before[-1] if work_before[-1] else 1.0 for work in work_before]

@@ -78,15 +78,15 @@ def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
     """A cycle just before the special point with the orbit `orbit`, as the first cycle of a branch that leads
     through this point; raises Unsolvable."""
     tangent = _tangent_towards_larger_cycles(orbit, name, limits)
-    why: Unsolvable | None = None
+    reason: Unsolvable | None = None
     for distance in DETACHED_BRANCH_SETTINGS.first_distances:
         try:
             return _cycle_behind(tangent, distance, limits)
         except WorkLimitReached:
             raise
         except Unsolvable as error:
-            why = error
-    raise Unsolvable(f"no cycle is found beside this point: {why}") from why
+            reason = error
+    raise Unsolvable(f"no cycle is found near this point: {reason}") from reason
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -107,12 +107,12 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     mesh = mesh_from_tails(orbit, limits.accuracy, cheapest_stage_count(limits.accuracy))
     orbit = mesh.interpolated_orbit(orbit)
     height = abs(float(orbit.form.tip_coordinates(orbit.start_state)[1]))
-    least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / height
-    scale = ArcLengthScale.at_orbit(orbit, name, least, limits.min_coordinate_unit)
+    min_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / height
+    scale = ArcLengthScale.at_orbit(orbit, name, min_unit, limits.min_coordinate_unit)
     tangent = tangent_at(orbit, scale, ALONG_DEFLECTION, BorderedMatrix(orbit, scale, limits.workspace))
-    ahead = scale.directional_derivative(orbit, tangent)
-    unit = float(np.linalg.norm(ahead))
-    return _Tangent(orbit, scale, tangent / unit, ahead / unit)
+    derivative = scale.directional_derivative(orbit, tangent)
+    unit = float(np.linalg.norm(derivative))
+    return _Tangent(orbit, scale, tangent / unit, derivative / unit)
 
 
 def _cycle_behind(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
@@ -121,17 +121,17 @@ def _cycle_behind(tangent: _Tangent, distance: float, limits: BranchLimits) -> B
     accuracy = limits.accuracy
     condition = BorderCondition.at_arc_length(tangent.scale, tangent.side, tangent.orbit, -distance)
     predicted = moved_orbit(tangent.orbit, tangent.scale.parameter_name, -distance * tangent.change)
-    found = condition.solve_cycle(
+    solved = condition.solve_cycle(
         predicted, newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
     )
     step = relative_change(tangent.orbit, distance * tangent.change[:-1])
-    off = relative_change(predicted, found.orbit.values - predicted.values)
-    if off > DETACHED_BRANCH_SETTINGS.max_prediction_error * step:
+    prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
+    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error * step:
         raise Unsolvable("the cycle found is far from the prediction")
     low, high = limits.coordinate_range
-    if not low < found.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
+    if not low < solved.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
         raise Unsolvable("the cycle found lies outside the range")
-    return first_measured_cycle(found, tangent.scale, tangent.side, distance, accuracy)
+    return first_measured_cycle(solved, tangent.scale, tangent.side, distance, accuracy)
 
 
 def turned_back(cycle: BranchCycle) -> BranchCycle:

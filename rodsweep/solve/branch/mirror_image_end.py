@@ -47,17 +47,17 @@ def end_at_mirror_image(
 def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
     `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
-    shorter = arc_length_between(start, end) / 2
+    half_length = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
-        if shorter < ARC_STEP_CONTROL.min_length:
+        if half_length < ARC_STEP_CONTROL.min_length:
             raise Unsolvable("two cycles of opposite sign follow each other at the shortest allowed step")
-        return replace(start, next_arc_length=shorter)
+        return replace(start, next_arc_length=half_length)
     # Near a Hopf point parameter and period are quadratic in the deflection.
     tangent = start.tangent
     # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    share = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
-    at = start.parameter_coordinate - share * tangent[-1]
-    period = start.orbit.period - share * tangent[-2]
+    length = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
+    coordinate = start.parameter_coordinate - length * tangent[-1]
+    period = start.orbit.period - length * tangent[-2]
     rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
     for number, hopf in enumerate(limits.hopfs):
         tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
@@ -65,31 +65,34 @@ def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> 
         ) + rounding * abs(hopf.parameter_coordinate)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
         period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
-        if abs(at - hopf.parameter_coordinate) <= tolerance and abs(period - hopf.period) <= period_tolerance:
-            if _has_fold_ahead(start, hopf) and shorter >= ARC_STEP_CONTROL.min_length:
-                return replace(start, next_arc_length=shorter)
+        if (
+            abs(coordinate - hopf.parameter_coordinate) <= tolerance
+            and abs(period - hopf.period) <= period_tolerance
+        ):
+            if _has_fold_ahead(start, hopf) and half_length >= ARC_STEP_CONTROL.min_length:
+                return replace(start, next_arc_length=half_length)
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
-    why = "the cycles shrink to zero amplitude, but no Hopf point is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)
+    reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
 
 
 def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart) -> bool:
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
     parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
     for a cycle of the smallest amplitude, before which no fold is sought."""
-    small = start.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
-    return not small and start.parameter_rate * hopf.direction > 0
+    is_small = start.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
+    return not is_small and start.parameter_rate * hopf.direction > 0
 
 
 def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
     """The end of an asymmetric branch at a symmetry breaking (a failure if no known symmetry breaking is
     near), or `start` with half the step, if `start` is too asymmetric. Raises Unsolvable."""
-    which = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
-    if which is None:
+    index = symmetry_breaking_between(start, end, limits.breakings, limits.accuracy)
+    if index is None:
         return replace(start, next_arc_length=arc_length_between(start, end) / 2)
-    if which >= 0:
-        breaking = limits.breakings[which]
+    if index >= 0:
+        breaking = limits.breakings[index]
         special = replace(breaking.special_point, message="", orbit=None)
         return BranchEnd(special, complete=True, end_breaking=breaking)
-    why = "the cycles become symmetric, but no symmetry breaking is known there"
-    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, why), complete=False)
+    reason = "the cycles become symmetric, but no symmetry breaking is known there"
+    return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)

@@ -74,17 +74,17 @@ def cycle_within_range(
     leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
     another part of the branch.
     """
-    at = end.parameter_coordinate
-    for index, beyond in ((0, at <= ends[0]), (1, at >= ends[1])):
-        if beyond:
+    coordinate = end.parameter_coordinate
+    for index, is_beyond in ((0, coordinate <= ends[0]), (1, coordinate >= ends[1])):
+        if is_beyond:
             range_end = range_end_condition(start, ends[index])
             return cycle_at_range_end(start, end, range_end, accuracy), index
     index, length = _range_end_passed_before_fold(start, end, ends)
     if index >= 0:
         range_end = range_end_condition(start, ends[index])
         try:
-            near = cycle_at_length(start, length, accuracy).orbit
-            return _solved_at_range_end(start, near, length, range_end, accuracy), index
+            orbit = cycle_at_length(start, length, accuracy).orbit
+            return _solved_at_range_end(start, orbit, length, range_end, accuracy), index
         except WorkLimitReached:
             raise
         except Unsolvable:
@@ -104,18 +104,18 @@ def _range_end_passed_before_fold(
     length = arc_length_between(start, end)
     rate = float(start.scale.directional_derivative(end.orbit, end.tangent) @ start.unit_tangent)
     slopes = length * start.tangent[-1], length * end.tangent[-1] / rate
-    rise = end.parameter_coordinate - start.parameter_coordinate
+    increment = end.parameter_coordinate - start.parameter_coordinate
     # The cubic minus the range end, by powers of the fraction of the arc length.
-    beyond = Polynomial(
+    excess = Polynomial(
         (
             start.parameter_coordinate - ends[index],
             slopes[0],
-            3 * rise - 2 * slopes[0] - slopes[1],
-            slopes[0] + slopes[1] - 2 * rise,
+            3 * increment - 2 * slopes[0] - slopes[1],
+            slopes[0] + slopes[1] - 2 * increment,
         )
     )
-    passed = [float(root.real) for root in beyond.roots() if root.imag == 0 and 0 < root.real < 1]
-    return (index, length * min(passed)) if passed else (-1, 0.0)
+    passages = [float(root.real) for root in excess.roots() if root.imag == 0 and 0 < root.real < 1]
+    return (index, length * min(passages)) if passages else (-1, 0.0)
 
 
 def _solved_at_range_end(
@@ -123,8 +123,8 @@ def _solved_at_range_end(
 ) -> BranchCycle:
     """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
     condition `range_end`; raises Unsolvable."""
-    found = range_end.solve_cycle(
+    solved = range_end.solve_cycle(
         predicted, newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
     )
-    tangent = tangent_at(found.orbit, start.scale, start.unit_tangent, bordered_matrix_of(found))
-    return branch_cycle_with_calibrated_errors(start, found, tangent, length, length, accuracy)
+    tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved))
+    return branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy)

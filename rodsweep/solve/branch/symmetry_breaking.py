@@ -48,10 +48,10 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     twice as many time intervals."""
     intervals = 2 * orbit.interval_count
     times = 2 * node_times(intervals, orbit.stage_count)
-    later = times > 1
-    points = orbit.states_at(np.where(later, times - 1, times))
+    is_second_half = times > 1
+    points = orbit.states_at(np.where(is_second_half, times - 1, times))
     # The second half of the period is the mirror image of the first.
-    points[later] = orbit.symmetry.apply(points[later], orbit.form.layout)
+    points[is_second_half] = orbit.symmetry.apply(points[is_second_half], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
     return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values)
 
@@ -70,19 +70,19 @@ def _bending_moments(states: Array, orbit: Orbit) -> Array:
 
 
 def reaches_symmetric_cycle(
-    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> bool:
     """Whether an asymmetric branch reaches or passes a symmetric cycle between two cycles: the asymmetry
-    changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `known`, because
-    a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
+    changes sign or almost vanishes; or the parameter turns back near a symmetry breaking in `breakings`,
+    because a mesh without the symmetry of the cycle perturbs the crossing of the branches."""
     reference = asymmetry(start.orbit)
-    other = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
+    orbit_on_mesh = end.orbit.on_mesh(start.orbit.form.mesh, end.orbit.interval_count, end.orbit.stage_count)
     # The asymmetry changes sign where the branch passes a symmetric cycle, and is small near this cycle.
-    lost = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
-    if float(asymmetry(other) @ reference) < lost:
+    max_asymmetry = BRANCH_END_SETTINGS.lost_asymmetry_ratio * float(reference @ reference)
+    if float(asymmetry(orbit_on_mesh) @ reference) < max_asymmetry:
         return True
     turns_back = start.parameter_rate * end.parameter_rate < 0 and _is_nearly_symmetric(start)
-    return turns_back and _symmetry_breaking_ahead(start, known, accuracy) >= 0
+    return turns_back and _symmetry_breaking_ahead(start, breakings, accuracy) >= 0
 
 
 def _relative_asymmetry(start: BranchCycle) -> float:
@@ -96,14 +96,14 @@ def _is_nearly_symmetric(start: BranchCycle) -> bool:
 
 
 def symmetry_breaking_between(
-    start: BranchCycle, end: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float
+    start: BranchCycle, end: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
 ) -> int | None:
-    """Index of the symmetry breaking in `known` between two cycles of an asymmetric branch; -1 if `known`
-    does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter step is
-    needed. Raises Unsolvable if no shorter step is allowed."""
-    which = _symmetry_breaking_ahead(start, known, accuracy) if _is_nearly_symmetric(start) else -1
-    if which >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
-        return which
+    """Index of the symmetry breaking in `breakings` between two cycles of an asymmetric branch; -1 if
+    `breakings` does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter
+    step is needed. Raises Unsolvable if no shorter step is allowed."""
+    index = _symmetry_breaking_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
+    if index >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
+        return index
     if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
         raise Unsolvable(
             "the cycles pass a symmetric cycle within the shortest step along the branch, far from symmetry"
@@ -111,21 +111,23 @@ def symmetry_breaking_between(
     return None
 
 
-def _symmetry_breaking_ahead(start: BranchCycle, known: Sequence[SymmetryBreaking], accuracy: float) -> int:
-    """Index of the first symmetry breaking in `known` with the parameter and period, within tolerances, at
-    which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
+def _symmetry_breaking_ahead(
+    start: BranchCycle, breakings: Sequence[SymmetryBreaking], accuracy: float
+) -> int:
+    """Index of the first symmetry breaking in `breakings` with the parameter and period, within tolerances,
+    at which the extrapolated asymmetry vanishes; -1 if no entry fits or the asymmetry does not decrease."""
     orbit = start.orbit
-    present = asymmetry(orbit)
+    current_asymmetry = asymmetry(orbit)
     change = asymmetry(replace(orbit, values=start.tangent[:-1]))
     # Minus half the derivative of the squared asymmetry: positive if a symmetric cycle lies ahead.
-    falls = -float(present @ change)
-    if falls <= 0:
+    decrease = -float(current_asymmetry @ change)
+    if decrease <= 0:
         return -1
     # Parameter and period are quadratic in the asymmetry.
-    period, at = (orbit.period, start.parameter_coordinate) + float(
-        present @ present
-    ) / falls / 2 * start.tangent[-2:]
-    for which, breaking in enumerate(known):
+    period, coordinate = (orbit.period, start.parameter_coordinate) + float(
+        current_asymmetry @ current_asymmetry
+    ) / decrease / 2 * start.tangent[-2:]
+    for index, breaking in enumerate(breakings):
         symmetric = breaking.special_point.orbit
         if symmetric is None:
             continue
@@ -136,6 +138,6 @@ def _symmetry_breaking_ahead(start: BranchCycle, known: Sequence[SymmetryBreakin
         tolerance += max(BRANCH_END_SETTINGS.parameter_tolerance, accuracy) * abs(symmetric_at)
         period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(orbit.period - symmetric.period)
         period_tolerance += max(BRANCH_END_SETTINGS.period_tolerance, accuracy) * symmetric.period
-        if abs(at - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
-            return which
+        if abs(coordinate - symmetric_at) <= tolerance and abs(period - symmetric.period) <= period_tolerance:
+            return index
     return -1

@@ -78,13 +78,13 @@ class AxisCrossings:
     search_end: SearchEnd
     evaluation_count: int = 0
 
-    def restricted_to(self, reach: SearchEnd) -> "AxisCrossings":
-        """The crossings and gaps up to `reach`, an earlier end of the search or the present end."""
-        if reach.p == self.search_end.p:
+    def restricted_to(self, search_end: SearchEnd) -> "AxisCrossings":
+        """The crossings and gaps up to `search_end`, an earlier end of the search or the current end."""
+        if search_end.p == self.search_end.p:
             return self
-        crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= reach.p]
-        gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= reach.p]
-        return replace(self, crossings=crossings, gaps=gaps, search_end=reach)
+        crossings = [c for c in self.crossings if self.path.coordinate(c.value) <= search_end.p]
+        gaps = [gap for gap in self.gaps if min(map(self.path.coordinate, gap)) <= search_end.p]
+        return replace(self, crossings=crossings, gaps=gaps, search_end=search_end)
 
     def searched_interval(self, start: float, stop: float) -> tuple[float, float]:
         """The searched part (low, high) of the requested parameter interval from `start` to `stop`."""
@@ -109,27 +109,27 @@ def find_thresholds(
     edges = problem.interval_edges(low, high)
     # A second round only if a pair on the axis was not found to lead, with samples close to it.
     for _ in range(2):
-        changes, reach = tracer.exchanges([*(p for p in edges if p < found.search_end.p), found.search_end.p])
-        found = found.restricted_to(reach) if reach.reason else found
+        exchanges, end = tracer.exchanges([*(p for p in edges if p < found.search_end.p), found.search_end.p])
+        found = found.restricted_to(end) if end.reason else found
         ends = found.searched_interval(start, stop)
         counts = ModeCounter(problem, found.gaps, certify)
         # Without load the operator is self-adjoint and negative: no mode is unstable, no count is needed.
-        unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
+        count = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, found.crossings)
         oscillates = tracer.sample_at(path.coordinate(ends[0])).oscillates
-        ordered = sorted(changes + found.crossings, key=lambda c: c.value)
-        crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-        missed = _crossings_without_leading_pair(path, crossings, oscillates, unstable)
-        if not missed:
+        ordered = sorted(exchanges + found.crossings, key=lambda c: c.value)
+        crossings, end_count = counts.crossings_with_counts(ordered, ends, count)
+        missed_p = _crossings_without_leading_pair(path, crossings, oscillates, count)
+        if not missed_p:
             break
-        near = [p + side * THRESHOLD_SETTINGS.sample_shift * (high - low) for p in missed for side in (-1, 1)]
-        edges = sorted({*edges, *(p for p in near if low < p < high)})
+        p_near = [p + s * THRESHOLD_SETTINGS.sample_shift * (high - low) for p in missed_p for s in (-1, 1)]
+        edges = sorted({*edges, *(p for p in p_near if low < p < high)})
     else:
         counts.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
     if certify and not tracer.leading_eigenvalues_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    counted = _with_counts(counts, unstable, crossings, at_end)
-    counted = _with_interval(counted, found, (start, stop))
-    return replace(counted, oscillates_at_start=oscillates, solve_count=problem.solve_count)
+    result = _with_counts(counts, count, crossings, end_count)
+    result = _with_interval(result, found, (start, stop))
+    return replace(result, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
 def find_axis_crossings(
@@ -145,41 +145,41 @@ def find_axis_crossings(
     counts = ModeCounter(problem, found.gaps, certify)
     ends = found.searched_interval(start, stop)
     ordered = sorted(found.crossings, key=lambda c: c.value)
-    unstable = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
-    crossings, at_end = counts.crossings_with_counts(ordered, ends, unstable)
-    return _with_interval(_with_counts(counts, unstable, crossings, at_end), found, (start, stop))
+    count = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
+    crossings, end_count = counts.crossings_with_counts(ordered, ends, count)
+    return _with_interval(_with_counts(counts, count, crossings, end_count), found, (start, stop))
 
 
 def _with_counts(
-    counts: ModeCounter, unstable: int, crossings: tuple[Threshold, ...], at_end: int
+    counts: ModeCounter, start_count: int, crossings: tuple[Threshold, ...], end_count: int
 ) -> ThresholdSearchResult:
-    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search. unstable,
-    at_end: numbers of unstable modes at the two ends."""
-    known = all(number >= 0 for number in (unstable, at_end, *(c.unstable_after for c in crossings)))
+    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search.
+    start_count, end_count: numbers of unstable modes at the two ends."""
+    known = all(number >= 0 for number in (start_count, end_count, *(c.unstable_after for c in crossings)))
     return ThresholdSearchResult(
         thresholds=crossings,
         open_range=_hull_of_gaps(counts.gaps),
-        unstable_at_start=unstable,
-        unstable_at_end=at_end,
+        unstable_at_start=start_count,
+        unstable_at_end=end_count,
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
         doubt_text="; ".join(counts.doubts),
     )
 
 
 def _with_interval(
-    counted: ThresholdSearchResult, found: AxisCrossings, asked: tuple[float, float]
+    result: ThresholdSearchResult, crossings: AxisCrossings, interval: tuple[float, float]
 ) -> ThresholdSearchResult:
-    """`counted` with the searched part of the requested interval `asked`, and why the search ended early."""
-    searched = found.searched_interval(*asked)
-    reason = found.search_end.reason
-    end = found.path.parameter.value(found.search_end.p)
-    early = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
+    """`result` with the searched part of the requested `interval`, and why the search ended early."""
+    searched = crossings.searched_interval(*interval)
+    reason = crossings.search_end.reason
+    end = crossings.path.parameter.value(crossings.search_end.p)
+    message = f"the search ends at {crossings.path.name} = {end:.12g}: {reason}" if reason else ""
     return replace(
-        counted,
+        result,
         searched_interval=searched,
         ended_early=bool(reason),
-        evaluation_count=found.evaluation_count,
-        doubt_text="; ".join(filter(None, (early, counted.doubt_text))),
+        evaluation_count=crossings.evaluation_count,
+        doubt_text="; ".join(filter(None, (message, result.doubt_text))),
     )
 
 
@@ -191,10 +191,10 @@ def _crossings(
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
-    found, reach = search.crossings(problem.interval_edges(*ends), max_crossings)
+    crossings, search_end = search.crossings(problem.interval_edges(*ends), max_crossings)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
-    return AxisCrossings(problem.path, found, gaps, reach)
+    return AxisCrossings(problem.path, crossings, gaps, search_end)
 
 
 def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings:
@@ -203,10 +203,10 @@ def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"
         raise Unsolvable(f"no a-priori bound on the eigenvalues applies to all rods {ends}")
-    zeros, undecided, examined = cover_with_boxes(boxes, path.origin, path.direction)
-    within = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
-    hopfs = [_hopf_crossing(path, zero) for zero in within]
-    return AxisCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), examined)
+    zeros, undecided, box_count = cover_with_boxes(boxes, path.origin, path.direction)
+    inside = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
+    hopfs = [_hopf_crossing(path, zero) for zero in inside]
+    return AxisCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
 
 
 def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
@@ -215,28 +215,28 @@ def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _crossings_without_leading_pair(
-    path: Path, crossings: tuple[Threshold, ...], oscillates: bool, unstable: int
+    path: Path, crossings: tuple[Threshold, ...], oscillates: bool, count: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
-    oscillates: whether a pair leads at the start. unstable: number of unstable modes at the start."""
+    oscillates: whether a pair leads at the start. count: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:
         if crossing.kind.changes_leading_eigenvalue:
             oscillates = crossing.kind.pair_leads_after
         else:
-            if min(unstable, crossing.unstable_after) == 0 and not oscillates:
+            if min(count, crossing.unstable_after) == 0 and not oscillates:
                 missed.append(path.coordinate(crossing.value))
-            unstable = crossing.unstable_after
+            count = crossing.unstable_after
     return missed
 
 
 def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     """Crossing at a zero of D on the axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
-    there = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
-    kind = crossing_kind(path, (-there.D_p / there.D_w).real > 0)  # dw/dp = -D_p/D_w
-    at, error = path.value(zero.p, zero.error_of_p)
-    return Threshold(at, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
+    value = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
+    kind = crossing_kind(path, (-value.D_p / value.D_w).real > 0)  # dw/dp = -D_p/D_w
+    parameter_value, error = path.value(zero.p, zero.error_of_p)
+    return Threshold(parameter_value, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
 def _undecided_intervals(path: Path, undecided: list[Box]) -> list[tuple[float, float]]:

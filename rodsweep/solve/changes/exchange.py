@@ -46,15 +46,15 @@ def double_eigenvalue_between(
 ) -> LeaderExchange | None:
     """The double eigenvalue between a sample `pair` with a leading pair and a sample `real` with two
     real leading eigenvalues; None if Newton's method does not find it."""
-    below = pair.squared_pair_difference()
-    above = real.squared_pair_difference()
+    pair_difference = pair.squared_pair_difference()
+    real_difference = real.squared_pair_difference()
     width = abs(pair.p - real.p)
-    if below is None or above is None:
+    if pair_difference is None or real_difference is None:
         return None
     # (w1 - w2)^2 is smooth through the double root, where w itself has a square root: it is interpolated.
-    share = above[0] / (above[0] - below[0])
-    p = real.p + share * (pair.p - real.p)
-    x = (1 - share) * float((real.w[0] + real.w[1]).real) / 2 + share * float(pair.w[0].real)
+    fraction = real_difference[0] / (real_difference[0] - pair_difference[0])
+    p = real.p + fraction * (pair.p - real.p)
+    x = (1 - fraction) * float((real.w[0] + real.w[1]).real) / 2 + fraction * float(pair.w[0].real)
     x, p, _, error = problem.double_eigenvalue(x, p, width)
     return None if math.isnan(p) else LeaderExchange(p, error, x, 0.0)
 
@@ -102,8 +102,8 @@ def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: flo
     p = start
     for i in range(1, EXCHANGE_SETTINGS.following_steps + 1):
         w, slope, _ = problem.eigenvalue(w, p)
-        following = start + (stop - start) * i / EXCHANGE_SETTINGS.following_steps
-        ahead = w + slope * (following - p)
-        w = complex(ahead.real, 0.0) if w.imag == 0 else ahead
-        p = following
+        next_p = start + (stop - start) * i / EXCHANGE_SETTINGS.following_steps
+        predicted_w = w + slope * (next_p - p)
+        w = complex(predicted_w.real, 0.0) if w.imag == 0 else predicted_w
+        p = next_p
     return w

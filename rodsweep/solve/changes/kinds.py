@@ -65,5 +65,5 @@ def crossing_kind(path: "Path", grows_with_path_variable: bool) -> ChangeKind:
     """Kind of a crossing of the imaginary axis by a pair: hopf if the growth rate Re w increases with the
     parameter of `path`, otherwise hopf_reverse. grows_with_path_variable: whether Re w increases with the
     path variable p, which decreases as the parameter increases along a stiffness, p = 1/k."""
-    grows = grows_with_path_variable != path.is_compliance_path
-    return ChangeKind.hopf if grows else ChangeKind.hopf_reverse
+    grows_with_parameter = grows_with_path_variable != path.is_compliance_path
+    return ChangeKind.hopf if grows_with_parameter else ChangeKind.hopf_reverse

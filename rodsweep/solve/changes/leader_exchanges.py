@@ -96,69 +96,69 @@ class LeaderExchangeSearch:
 
     def _solve_sample(self, p: float) -> SpectrumSample:
         request = SpectrumRequest(SAMPLED_MODE_COUNT, LEADING_EIGENVALUE_SETTINGS.accuracy, self.certify)
-        found = self.problem.spectrum(p, request)
+        spectrum = self.problem.spectrum(p, request)
         # With a mode on the imaginary axis the status is undecided, but no mode is missing.
-        self.leading_eigenvalues_proved &= found.certified or found.status == SpectrumStatus.undecided
-        if not np.isfinite(found.eigenvalues).all():
-            raise Unsolvable(f"{self.path.text_at(p)}: {found.status.name} {found.message}".rstrip())
-        w = found.eigenvalues.copy()
+        self.leading_eigenvalues_proved &= spectrum.certified or spectrum.status == SpectrumStatus.undecided
+        if not np.isfinite(spectrum.eigenvalues).all():
+            raise Unsolvable(f"{self.path.text_at(p)}: {spectrum.status.name} {spectrum.message}".rstrip())
+        w = spectrum.eigenvalues.copy()
         slope = np.empty(SAMPLED_MODE_COUNT, dtype=complex)
-        for i, guess in enumerate(found.eigenvalues):
+        for i, guess in enumerate(spectrum.eigenvalues):
             # Newton's method may jump to another eigenvalue, as in a cluster; the first value then stays.
-            polished, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
-            error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * found.error_estimate[i]
-            near = max(error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess))
-            distances = np.abs(found.eigenvalues - polished)
-            if distances[i] <= min(near, distances.min()):
-                w[i] = polished
+            refined_w, slope[i], _ = self.problem.eigenvalue(complex(guess), p)
+            error = LEADING_EIGENVALUE_SETTINGS.max_distance_in_errors * spectrum.error_estimate[i]
+            max_distance = max(error, LEADING_EIGENVALUE_SETTINGS.max_relative_distance * abs(guess))
+            distances = np.abs(spectrum.eigenvalues - refined_w)
+            if distances[i] <= min(max_distance, distances.min()):
+                w[i] = refined_w
         return SpectrumSample(p, w, slope, *self.problem.relaxation_time_and_slope(p))
 
     def exchanges(self, edges: list[float]) -> tuple[list[Threshold], SearchEnd]:
         """Returns (exchanges, end of the search). exchanges: all exchanges by increasing p, for p from the
         first of `edges` to the end of the search. Raises Unsolvable if the search ends at the first edge."""
-        found: list[Threshold] = []
+        exchanges: list[Threshold] = []
         intervals = IntervalQueue(edges)
         self.sample_at(edges[0])
         for a, b in intervals:
             try:
-                found += self._search_interval(a, b, intervals)
-            except Unsolvable as why:
-                intervals.end_within((a, b), str(why))
-        return found, intervals.end
+                exchanges += self._search_interval(a, b, intervals)
+            except Unsolvable as reason:
+                intervals.end_within((a, b), str(reason))
+        return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
         """The exchange between the samples at a and b, in a list; an empty list without an exchange, or if
         the test is undecided. An undecided interval is divided into two entries of `intervals`, or ends the
         proof if it is too short; raises Unsolvable."""
-        left = self.sample_at(a)
-        right = self.sample_at(b)
-        share = 0.5
-        if left.oscillates == right.oscillates:
-            share, may_hold_two = next_sample_position(left, right)
+        left_sample = self.sample_at(a)
+        right_sample = self.sample_at(b)
+        fraction = 0.5
+        if left_sample.oscillates == right_sample.oscillates:
+            fraction, may_hold_two = next_sample_position(left_sample, right_sample)
             settings = LEADING_EIGENVALUE_SETTINGS
             smallest = (
                 settings.smallest_interval_with_two_exchanges if may_hold_two else settings.smallest_interval
             )
             if len(self.samples) > settings.max_samples:
                 smallest = settings.close_sample_distance
-            close = b - a <= settings.close_sample_distance * intervals.length
-            if share == 0.0 or (close and excludes_exchange(left, right, may_hold_two)):
+            is_close = b - a <= settings.close_sample_distance * intervals.length
+            if fraction == 0.0 or (is_close and excludes_exchange(left_sample, right_sample, may_hold_two)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
             if b - a <= smallest * intervals.length:
                 self.leading_eigenvalues_proved = False
                 return []
         else:
-            change = self._exchange_between(left, right)
+            change = self._exchange_between(left_sample, right_sample)
             if change is not None:
-                return self._exchange_if_alone(change, left, right, intervals)
+                return self._exchange_if_alone(change, left_sample, right_sample, intervals)
             if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
                 )
         min_part_ratio = LEADING_EIGENVALUE_SETTINGS.min_part_ratio
-        middle = a + min(max(share, min_part_ratio), 1 - min_part_ratio) * (b - a)
+        middle = a + min(max(fraction, min_part_ratio), 1 - min_part_ratio) * (b - a)
         intervals.add_subintervals((a, middle), (middle, b))
         return []
 
@@ -168,17 +168,17 @@ class LeaderExchangeSearch:
         """The exchange `change` between two samples, in a list, if no further exchange lies between them;
         else an empty list, after the division of the interval next to the exchange. An interval too short to
         be divided ends the proof."""
-        alone = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
-        if alone(left, right):
+        excludes_others = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
+        if excludes_others(left, right):
             return [change]
         length = right.p - left.p
         if length <= LEADING_EIGENVALUE_SETTINGS.smallest_interval_with_two_exchanges * intervals.length:
             self.leading_eigenvalues_proved = False
             return [change]
         p = self.path.coordinate(change.value)
-        beside = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
-        places = sorted({left.p, max(left.p, p - beside), min(right.p, p + beside), right.p})
-        intervals.add_subintervals(*pairwise(places))
+        distance = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
+        sample_p = sorted({left.p, max(left.p, p - distance), min(right.p, p + distance), right.p})
+        intervals.add_subintervals(*pairwise(sample_p))
         return []
 
     def _exchange_between(self, left: SpectrumSample, right: SpectrumSample) -> Threshold | None:
@@ -187,24 +187,29 @@ class LeaderExchangeSearch:
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance_path:
-            double = ChangeKind.onset
-            single = ChangeKind.pair_leads
+            double_kind = ChangeKind.onset
+            crossing_kind = ChangeKind.pair_leads
         else:
-            double = ChangeKind.real_again
-            single = ChangeKind.real_leads
-        for find, kind, meeting in ((double_eigenvalue_between, double, 2), (overtaking_between, single, 3)):
-            found = find(self.problem, pair, real)
-            if found is None or not left.p <= found.p <= right.p:
+            double_kind = ChangeKind.real_again
+            crossing_kind = ChangeKind.real_leads
+        for find, kind, next_index in (
+            (double_eigenvalue_between, double_kind, 2),
+            (overtaking_between, crossing_kind, 3),
+        ):
+            exchange = find(self.problem, pair, real)
+            if exchange is None or not left.p <= exchange.p <= right.p:
                 continue
             # Counted halfway to the next eigenvalue: only the exchanged eigenvalues may lie to the right.
-            behind = max(left.w[meeting].real, right.w[meeting].real)
-            if behind >= found.growth_rate:
+            next_growth = max(left.w[next_index].real, right.w[next_index].real)
+            if next_growth >= exchange.growth_rate:
                 continue
-            count = self.problem.count_right_of((found.growth_rate + behind) / 2, found.p)
+            count = self.problem.count_right_of((exchange.growth_rate + next_growth) / 2, exchange.p)
             # A different count means that other eigenvalues lead; an undecided count leaves the exchange
             # unproved.
-            if count.number in (meeting, None):
-                self.leading_eigenvalues_proved = self.leading_eigenvalues_proved and count.number == meeting
-                at, error = self.path.value(found.p, found.error_of_p)
-                return Threshold(at, kind, found.frequency, found.growth_rate, error)
+            if count.number in (next_index, None):
+                self.leading_eigenvalues_proved = (
+                    self.leading_eigenvalues_proved and count.number == next_index
+                )
+                value, error = self.path.value(exchange.p, exchange.error_of_p)
+                return Threshold(value, kind, exchange.frequency, exchange.growth_rate, error)
         return None

@@ -37,9 +37,9 @@ class PathProblem(ABC):
         """Returns (eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
-    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        """The double real eigenvalue near w = x at a path variable within `reach` of p; its path variable is
-        nan if no double eigenvalue is found."""
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+        """The double real eigenvalue near w = x at a path variable within `expected_distance` of p; its path
+        variable is nan if no double eigenvalue is found."""
 
     @abstractmethod
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
@@ -68,15 +68,15 @@ class UniformPath(PathProblem):
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_newton(guess, coefficients, self.path.direction)
 
-    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        return double_eigenvalue_newton(x, p, self.path.origin, self.path.direction, reach)
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+        return double_eigenvalue_newton(x, p, self.path.origin, self.path.direction, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
         return count_right_of(line, self.path.rod_at(p))
 
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
-        here = coefficients_at(p, self.path.origin, self.path.direction)
+        coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         rate = self.path.direction
         # Along a path the eigenvalues may grow without bound; divided by 1/time they stay moderate.
-        time = here.nu * here.nu + here.c2 + here.gamma3  # never zero
-        return time, 2 * here.nu * rate.nu + rate.c2 + rate.gamma3
+        time = coefficients.nu * coefficients.nu + coefficients.c2 + coefficients.gamma3  # never zero
+        return time, 2 * coefficients.nu * rate.nu + rate.c2 + rate.gamma3

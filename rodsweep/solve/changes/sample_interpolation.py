@@ -11,29 +11,29 @@ def minimum_of_cubic(a: float, b: float, slope_a: float, slope_b: float) -> tupl
     `slope_a`, `slope_b` at 0 and 1; the argument is 0.5 if the minimum is at an end."""
     # The cubic a + slope_a t + square t^2 + cube t^3 of Hermite interpolation.
     square = 3 * (b - a) - 2 * slope_a - slope_b
-    cube = slope_a + slope_b - 2 * (b - a)
-    lowest = min(a, b)
-    at = 0.5
-    spread = square * square - 3 * cube * slope_a
-    if spread >= 0 and (square or cube):
+    cubic_term = slope_a + slope_b - 2 * (b - a)
+    minimum = min(a, b)
+    argument = 0.5
+    discriminant = square * square - 3 * cubic_term * slope_a
+    if discriminant >= 0 and (square or cubic_term):
         # The root of slope_a + 2 square t + 3 cube t^2 at the minimum, computed without cancellation.
-        root = math.sqrt(spread)
+        root = math.sqrt(discriminant)
         t = 0.5
         if square + root > 0:
             t = -slope_a / (square + root)
-        elif cube:
-            t = (root - square) / (3 * cube)
-        value = a + t * (slope_a + t * (square + t * cube))
-        if 0 < t < 1 and value < lowest:
-            lowest = value
-            at = t
-    return lowest, at
+        elif cubic_term:
+            t = (root - square) / (3 * cubic_term)
+        value = a + t * (slope_a + t * (square + t * cubic_term))
+        if 0 < t < 1 and value < minimum:
+            minimum = value
+            argument = t
+    return minimum, argument
 
 
 def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[float, bool]:
-    """Returns (share, may_hold_two). share: position of an additional sample as a fraction of the interval
-    from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the leading
-    eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
+    """Returns (fraction, may_hold_two). fraction: position of an additional sample as a fraction of the
+    interval from `left` to `right`; 0 if the slopes explain the end values and exclude exchanges of the
+    leading eigenvalue. may_hold_two: whether two exchanges may lie between the samples.
 
     The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
@@ -51,12 +51,14 @@ def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[f
             continue
         smallest = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
-        missed = _unexplained_change(a, b, h)
+        unexplained_change = _unexplained_change(a, b, h)
         sign = math.copysign(h, a[0])
-        lowest, share = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or lowest < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest:
-            return share, True
-        if missed > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b[0] - a[0])):
+        minimum, fraction = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
+        if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest:
+            return fraction, True
+        if unexplained_change > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
+            smallest, abs(b[0] - a[0])
+        ):
             return 0.5, False
     return 0.0, False
 
@@ -76,12 +78,12 @@ def next_two_stay_behind(left: SpectrumSample, right: SpectrumSample) -> bool:
 
     The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
-    at_left = left.gaps_to_next_two()
-    at_right = right.gaps_to_next_two()
-    if at_left is None or at_right is None:
+    left_gaps = left.gaps_to_next_two()
+    right_gaps = right.gaps_to_next_two()
+    if left_gaps is None or right_gaps is None:
         return False
     h = right.p - left.p
-    return all(_stays_positive(a, b, h) for a, b in zip(at_left, at_right, strict=True))
+    return all(_stays_positive(a, b, h) for a, b in zip(left_gaps, right_gaps, strict=True))
 
 
 def two_pairs_exchange_lead(left: SpectrumSample, right: SpectrumSample) -> bool:
@@ -113,14 +115,14 @@ def has_only_overtaking(left: SpectrumSample, right: SpectrumSample) -> bool:
     and no other eigenvalue takes the lead. False if the first eigenvalues at a sample are not one real
     eigenvalue and one pair."""
     # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
-    places = [(2, 0) if sample.oscillates else (0, 1) for sample in (left, right)]
-    ((real_left, pair_left), (real_right, pair_right)) = places
+    indices = [(2, 0) if sample.oscillates else (0, 1) for sample in (left, right)]
+    ((real_left, pair_left), (real_right, pair_right)) = indices
     samples = ((left, real_left, pair_left), (right, real_right, pair_right))
     if any(sample.w[real].imag != 0 or sample.w[pair].imag == 0 for sample, real, pair in samples):
         return False
     h = right.p - left.p
     return (
-        _changes_sign_once(left.growth_gap(*places[0]), right.growth_gap(*places[1]), h)
+        _changes_sign_once(left.growth_gap(*indices[0]), right.growth_gap(*indices[1]), h)
         and _stays_positive(left.growth_gap(real_left, 3), right.growth_gap(real_right, 3), h)
         and _stays_positive(left.growth_gap(pair_left, 3), right.growth_gap(pair_right, 3), h)
         and _stays_positive(left.squared_frequency(pair_left), right.squared_frequency(pair_right), h)
@@ -132,11 +134,11 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: fl
     left, right: (value, slope) at the samples. h: distance of the samples."""
     (a, slope_a), (b, slope_b) = left, right
     smallest = min(a, b)
-    lowest, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
-    missed = _unexplained_change(left, right, h)
+    minimum, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
+    unexplained_change = _unexplained_change(left, right, h)
     return (
-        lowest >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest > 0
-        and missed <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
+        minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest > 0
+        and unexplained_change <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
     )
 
 

@@ -87,7 +87,7 @@ class IntervalQueue:
             raise Unsolvable(self.end.reason)
 
     def add_subintervals(self, *intervals: tuple[float, float]) -> None:
-        """Adds parts of the present interval to the queue; `intervals` is in increasing order."""
+        """Adds parts of the current interval to the queue; `intervals` is in increasing order."""
         self._queue += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:

@@ -83,12 +83,16 @@ class SpectrumSample:
         if not (a.imag == b.imag == 0 or a.imag * b.imag < 0):
             return None
         slope_a, slope_b = self.slope[first : first + 2].tolist()
-        lead, slope = float(self.w[0].real), float(self.slope[0].real)
-        product = ((lead - a) * (lead - b)).real
-        product_slope = ((slope - slope_a) * (lead - b) + (lead - a) * (slope - slope_b)).real
+        leading_growth, slope = float(self.w[0].real), float(self.slope[0].real)
+        product = ((leading_growth - a) * (leading_growth - b)).real
+        product_slope = (
+            (slope - slope_a) * (leading_growth - b) + (leading_growth - a) * (slope - slope_b)
+        ).real
         squared_time = self.relaxation_time**2, 2 * self.relaxation_time * self.relaxation_time_slope
         return (
-            self._times_relaxation_time(lead - (a + b).real / 2, slope - (slope_a + slope_b).real / 2),
+            self._times_relaxation_time(
+                leading_growth - (a + b).real / 2, slope - (slope_a + slope_b).real / 2
+            ),
             (product * squared_time[0], product_slope * squared_time[0] + product * squared_time[1]),
         )
 
@@ -100,8 +104,8 @@ class SpectrumSample:
     def growth_gap_of_leading_pair(self) -> tuple[float, float]:
         """Returns (tau Re((w1 + w2)/2 - w3), derivative of this product with respect to p), tau:
         `relaxation_time`, for the first three eigenvalues w1, w2, w3."""
-        (first, first_slope), (second, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)
-        return (first + second) / 2, (first_slope + second_slope) / 2
+        (first_gap, first_slope), (second_gap, second_slope) = self.growth_gap(0, 2), self.growth_gap(1, 2)
+        return (first_gap + second_gap) / 2, (first_slope + second_slope) / 2
 
     def squared_frequency(self, i: int) -> tuple[float, float]:
         """Returns (tau^2 (Im w)^2, derivative of this product with respect to p), tau: `relaxation_time`, for

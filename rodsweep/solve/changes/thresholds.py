@@ -47,8 +47,8 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
-        found = find_thresholds(Path(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
-        return thresholds_with_status(found, request.accuracy, request.certify, request.max_thresholds)
+        result = find_thresholds(Path(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
+        return thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
 
     return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, math.nan, cause))
 
@@ -56,28 +56,28 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
 def empty_thresholds(status: ThresholdStatus, end: float, message: str = "") -> Thresholds:
     """A result without thresholds, for a rod that needs no search or whose search failed. end: parameter
     value at the end of the search, NaN after a failure. message: reason for a failure."""
-    found = ThresholdSearchResult(proved=status == ThresholdStatus.ok)
-    return Thresholds(status=status, search_result=found, end=end, message=message)
+    result = ThresholdSearchResult(proved=status == ThresholdStatus.ok)
+    return Thresholds(status=status, search_result=result, end=end, message=message)
 
 
 def thresholds_with_status(
-    found: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
+    result: ThresholdSearchResult, accuracy: float, certify: bool, max_thresholds: int
 ) -> Thresholds:
     """The result of a search with its status: the most serious problem, or ok. accuracy, certify: as
     requested. max_thresholds: maximum number of thresholds in the list."""
     status = ThresholdStatus.ok
-    if found.ended_early:
+    if result.ended_early:
         status = ThresholdStatus.ended_early
-    elif not math.isnan(found.open_range[0]):
+    elif not math.isnan(result.open_range[0]):
         status = ThresholdStatus.window_open
-    elif len(found.thresholds) > max_thresholds:
+    elif len(result.thresholds) > max_thresholds:
         status = ThresholdStatus.list_full
-    elif any(c.error > accuracy * abs(c.value) for c in found.thresholds):
+    elif any(c.error > accuracy * abs(c.value) for c in result.thresholds):
         status = ThresholdStatus.accuracy_not_reached
-    elif certify and not found.proved:
+    elif certify and not result.proved:
         status = ThresholdStatus.not_certified
     return Thresholds(
-        status=status, search_result=found, end=found.searched_interval[1], message=found.doubt_text
+        status=status, search_result=result, end=result.searched_interval[1], message=result.doubt_text
     )
 
 
@@ -90,5 +90,5 @@ def warm_up() -> None:
 def filament_flutter_force() -> float:
     """Critical force Fc, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De
     Canio et al. 2017)."""
-    found = find_thresholds(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
-    return next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
+    result = find_thresholds(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
+    return next(c.value for c in result.thresholds if c.kind == ChangeKind.hopf)

@@ -50,13 +50,13 @@ class ModeCounter:
     def count_between(self, a: float, b: float) -> int:
         """Number of unstable modes at a position between the parameter values a and b, known already or by
         the winding number; -1 if the count is undecided at all positions tried."""
-        known = self.problem.known_count_near_middle(
+        known_count = self.problem.known_count_near_middle(
             *sorted((self.path.coordinate(a), self.path.coordinate(b)))
         )
-        if known is not None:
-            return known
-        for share in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
-            number = self.count_at(a + share * (b - a))
+        if known_count is not None:
+            return known_count
+        for fraction in UNSTABLE_MODE_COUNT_SETTINGS.count_positions:
+            number = self.count_at(a + fraction * (b - a))
             if number >= 0:
                 return number
         return -1
@@ -65,52 +65,52 @@ class ModeCounter:
         """Number of unstable modes at `start`, or, if that count is undecided, at a position before all
         crossings `hopfs`, all gaps and `stop`; -1 if undecided."""
         number = self.count_at(start)
-        until = min([stop, *(c.value for c in hopfs), *(a for a, _ in self.gaps)])
-        return number if number >= 0 else self.count_between(start, until)
+        first_position = min([stop, *(c.value for c in hopfs), *(a for a, _ in self.gaps)])
+        return number if number >= 0 else self.count_between(start, first_position)
 
     def crossings_with_counts(
-        self, ordered: list[Threshold], ends: tuple[float, float], unstable: int
+        self, ordered: list[Threshold], ends: tuple[float, float], unstable_count: int
     ) -> tuple[tuple[Threshold, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
         the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
-        unstable: number of unstable modes at the start. Unknown numbers are -1. `doubts` afterwards holds the
-        doubts of this call only."""
+        unstable_count: number of unstable modes at the start. Unknown numbers are -1. `doubts` afterwards
+        holds the doubts of this call only."""
         self.doubts = []
         out: list[Threshold] = []
         start = ends[0]
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
-                unstable = self._count_before(start, crossing.value, unstable)
+                unstable_count = self._count_before(start, crossing.value, unstable_count)
                 start = crossing.value
-                if unstable >= 0:
-                    unstable += 2 if kind == ChangeKind.hopf else -2
-                if kind == ChangeKind.hopf_reverse and unstable == 0:
+                if unstable_count >= 0:
+                    unstable_count += 2 if kind == ChangeKind.hopf else -2
+                if kind == ChangeKind.hopf_reverse and unstable_count == 0:
                     kind = ChangeKind.restabilization
-            out.append(replace(crossing, kind=kind, unstable_after=unstable))
-        return tuple(out), self._count_before(start, ends[1], unstable)
+            out.append(replace(crossing, kind=kind, unstable_after=unstable_count))
+        return tuple(out), self._count_before(start, ends[1], unstable_count)
 
-    def _count_before(self, a: float, b: float, unstable: int) -> int:
-        """Number of unstable modes just before b: `unstable`, the number just after a, compared with a count
-        between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a
-        and b, the result is the number counted behind the gap, or -1 if undecided."""
-        inside = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
-        if inside:
+    def _count_before(self, a: float, b: float, unstable_count: int) -> int:
+        """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a
+        count between a and b if `certify`; a contradiction is added to `doubts`. If a gap lies between a and
+        b, the result is the number counted behind the gap, or -1 if undecided."""
+        gaps_between = [gap for gap in self.gaps if gap[1] > a and gap[0] < b]
+        if gaps_between:
             # A gap may hide crossings, so the modes are counted again after the gap.
-            a = max(gap[1] for gap in inside)
+            a = max(gap[1] for gap in gaps_between)
         elif not self.certify:
-            return unstable
+            return unstable_count
         if b - a <= UNSTABLE_MODE_COUNT_SETTINGS.min_crossing_distance * abs(b):
-            return -1 if inside else unstable
-        counted = self.count_between(a, b)
-        if inside or unstable < 0:
-            return counted
-        if counted != unstable:
-            undecided = "the count of unstable modes is undecided"
-            found = f"{counted} modes are unstable" if counted >= 0 else undecided
+            return -1 if gaps_between else unstable_count
+        count = self.count_between(a, b)
+        if gaps_between or unstable_count < 0:
+            return count
+        if count != unstable_count:
+            undecided_text = "the count of unstable modes is undecided"
+            count_text = f"{count} modes are unstable" if count >= 0 else undecided_text
             self.doubts.append(
-                f"{found} between {self.path.name} = {a:.12g} and {b:.12g}"
-                + (f", but the crossings found imply {unstable}" if counted >= 0 else "")
+                f"{count_text} between {self.path.name} = {a:.12g} and {b:.12g}"
+                + (f", but the crossings found imply {unstable_count}" if count >= 0 else "")
             )
-        return unstable
+        return unstable_count

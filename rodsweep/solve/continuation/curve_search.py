@@ -32,8 +32,8 @@ class CurveSearchProblem(Protocol[AnyCurve]):
         """Distance of the seed point `seed` from a curve along its row, divided by the length of a row; inf
         if no point of the curve is near."""
 
-    def are_identical(self, one: AnyCurve, other: AnyCurve) -> bool:
-        """Whether the curves `one` and `other` are identical."""
+    def are_identical(self, first: AnyCurve, second: AnyCurve) -> bool:
+        """Whether the curves `first` and `second` are identical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,10 @@ class CurveSearch(Generic[AnyCurve]):
     def traced_curves(self) -> TracedCurves[AnyCurve]:
         """All curves, with the largest distance of a seed point from its curve and the number of untraced
         seed points; valid if `missing_items` is empty."""
-        found = [distance for distance in self.distances.values() if distance <= self.tolerance]
-        return TracedCurves(tuple(self.curves), max(found, default=0.0), len(self.distances) - len(found))
+        seed_distances = [distance for distance in self.distances.values() if distance <= self.tolerance]
+        return TracedCurves(
+            tuple(self.curves), max(seed_distances, default=0.0), len(self.distances) - len(seed_distances)
+        )
 
 
 def trace_all_curves(
@@ -79,8 +81,10 @@ def trace_all_curves(
     until the result of a work item is missing. seeds: indices of the seed points. tolerance: a seed point
     lies on a curve if its distance, divided by the length of a row, is at most this number."""
     search: CurveSearch[AnyCurve] = CurveSearch(tolerance, dict.fromkeys(seeds, math.inf))
-    tried: set[int] = set()
-    while untraced := [i for i, off in search.distances.items() if off > tolerance and i not in tried]:
+    tried_seeds: set[int] = set()
+    while untraced := [
+        i for i, distance in search.distances.items() if distance > tolerance and i not in tried_seeds
+    ]:
         seed = problem.next_seed(untraced)
         search.missing_items = problem.missing_items(seed)
         if search.missing_items:
@@ -88,13 +92,13 @@ def trace_all_curves(
             # curve.
             search.untried_seeds = [i for i in untraced if i != seed]
             break
-        tried.add(seed)
+        tried_seeds.add(seed)
         curve = problem.curve(seed)
         if curve is None:
             continue
-        for i, off in search.distances.items():
-            if off > tolerance:
-                search.distances[i] = min(off, problem.distance(curve, i))
+        for i, distance in search.distances.items():
+            if distance > tolerance:
+                search.distances[i] = min(distance, problem.distance(curve, i))
         if not any(problem.are_identical(curve, other) for other in search.curves):
             search.curves.append(curve)
     return search

@@ -38,22 +38,22 @@ class CurveProblem(Protocol[Solution]):
     """Interface of `follow_curve` to a curve of solutions. behind: solutions so far, in order along the
     curve."""
 
-    def step(self, behind: Sequence[Solution], length: float) -> StepResult[Solution]:
-        """The solution one step of the length `length` beyond `behind[-1]`; raises Unsolvable if Newton's
+    def step(self, previous: Sequence[Solution], length: float) -> StepResult[Solution]:
+        """The solution one step of the length `length` beyond `previous[-1]`; raises Unsolvable if Newton's
         method fails."""
 
     def margins(self, solution: Solution) -> Array:
         """Signed distances, (margins,), of a solution from the limits of the curve; a negative distance means
         that the solution is beyond this limit."""
 
-    def located_zero(self, behind: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
-        """The solution between `behind[-1]` and `outer` at which the margin with the index `margin` is 0;
-        None if `behind[-1]` is to be the last solution. Raises an error of FAILURES if no solution is found:
-        the step is then repeated with half its length."""
+    def located_zero(self, previous: Sequence[Solution], outer: Solution, margin: int) -> Solution | None:
+        """The solution between `previous[-1]` and `outer` at which the margin with the index `margin` is 0;
+        None if `previous[-1]` is to be the last solution. Raises an error of FAILURES if no solution is
+        found: the step is then repeated with half its length."""
 
-    def is_closed_by(self, behind: Sequence[Solution], there: Solution) -> bool:
-        """Whether the first solution of the curve lies on the step from `behind[-1]` to the next solution
-        `there`."""
+    def is_closed_by(self, previous: Sequence[Solution], solution: Solution) -> bool:
+        """Whether the first solution of the curve lies on the step from `previous[-1]` to the next solution
+        `solution`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -95,25 +95,25 @@ class StepControl:
                 f"max_length_ratio = {self.max_length_ratio} must be above 1, so that steps can grow"
             )
 
-    def require_small_errors(self, there: StepResult[Solution]) -> StepResult[Solution]:
-        """The result `there` itself; raises Unsolvable if its prediction error or angle is so large that the
+    def require_small_errors(self, result: StepResult[Solution]) -> StepResult[Solution]:
+        """The result `result` itself; raises Unsolvable if its prediction error or angle is so large that the
         solution may lie on another curve."""
-        if not there.prediction_error <= self.max_error:
+        if not result.prediction_error <= self.max_error:
             raise Unsolvable("the corrected solution is too far from its prediction")
-        if not _angle(there.turn_cosine) <= self.max_angle:
+        if not _angle(result.turn_cosine) <= self.max_angle:
             raise Unsolvable("the tangent of the curve turns by too large an angle in one step")
-        return there
+        return result
 
-    def next_length(self, length: float, there: StepResult[Solution], solutions: int) -> float:
+    def next_length(self, length: float, result: StepResult[Solution], solutions: int) -> float:
         """Length of the next step, from the prediction error and the angle of the last step, within the
         limits of the ratio to the last length and at most `max_length`. length: length of the last, accepted
-        step. there: result of the last step. solutions: number of solutions so far."""
+        step. result: result of the last step. solutions: number of solutions so far."""
         # The error of a prediction from m solutions is proportional to the m-th power of the step.
-        by_distance = (self.target_error / max(there.prediction_error, self.min_error_or_angle)) ** (
+        error_ratio = (self.target_error / max(result.prediction_error, self.min_error_or_angle)) ** (
             1 / min(self.prediction_order, solutions)
         )
-        by_turn = self.target_angle / max(_angle(there.turn_cosine), self.min_error_or_angle)
-        factor = min(max(min(by_distance, by_turn), self.min_length_ratio), self.max_length_ratio)
+        angle_ratio = self.target_angle / max(_angle(result.turn_cosine), self.min_error_or_angle)
+        factor = min(max(min(error_ratio, angle_ratio), self.min_length_ratio), self.max_length_ratio)
         return min(self.max_length, length * factor)
 
 
@@ -176,26 +176,28 @@ def follow_curve(
     while len(solutions) < control.max_solutions:
         report(solutions)
         try:
-            there, length = advance(partial(problem.step, solutions), length, control)
+            result, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
             return Curve(solutions, CurveStop.no_further_solution)
-        ahead = problem.margins(there.solution)
-        outside = first_crossed_margin(margins, ahead)
-        if outside >= 0:
+        new_margins = problem.margins(result.solution)
+        crossed_margin = first_crossed_margin(margins, new_margins)
+        if crossed_margin >= 0:
             try:
-                last = problem.located_zero(solutions, there.solution, outside)
+                last = problem.located_zero(solutions, result.solution, crossed_margin)
             except FAILURES:
                 if length / 2 < control.min_length:
                     return Curve(solutions, CurveStop.no_further_solution)
                 length /= 2
                 continue
-            return Curve(solutions if last is None else [*solutions, last], CurveStop.zero_margin, outside)
-        if problem.is_closed_by(solutions, there.solution):
+            return Curve(
+                solutions if last is None else [*solutions, last], CurveStop.zero_margin, crossed_margin
+            )
+        if problem.is_closed_by(solutions, result.solution):
             # `start` is appended again, so that the curve is closed exactly.
             return Curve([*solutions, start], CurveStop.closed)
-        solutions.append(there.solution)
-        margins = ahead
-        length = control.next_length(length, there, len(solutions))
+        solutions.append(result.solution)
+        margins = new_margins
+        length = control.next_length(length, result, len(solutions))
     return Curve(solutions, CurveStop.max_solutions)
 
 
@@ -205,11 +207,11 @@ def first_crossed_margin(before: Array, after: Array) -> int:
     further. before, after: margins at the two ends of the step, (margins,), between which each margin is
     interpolated linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
-    falls = (after < 0) & (after < before)
+    decreases = (after < 0) & (after < before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.
-    share = np.where(falls, before / np.where(falls, before - after, 1.0), inf)
-    first = int(np.argmin(share))
-    return first if share[first] < inf else -1
+    fraction = np.where(decreases, before / np.where(decreases, before - after, 1.0), inf)
+    first = int(np.argmin(fraction))
+    return first if fraction[first] < inf else -1
 
 
 def zero_along_step(
@@ -227,13 +229,13 @@ def zero_along_step(
     `length`."""
     from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-    known = {0.0: ends[0], length: ends[1]}
+    end_values = {0.0: ends[0], length: ends[1]}
     if not ends[0] * ends[1] <= 0:
-        raise Unsolvable("the function whose zero is sought has the same sign at both ends of the step")
+        raise Unsolvable("the function has the same sign at both ends of the step, so no zero lies between")
 
-    def settled(at: float) -> float:
-        here = known[at] if at in known else value(at)
+    def settled(position: float) -> float:
+        value_here = end_values[position] if position in end_values else value(position)
         # The value 0 ends Brent's method, which would otherwise bisect within rounding errors.
-        return 0.0 if abs(here) <= zero_tolerance else here
+        return 0.0 if abs(value_here) <= zero_tolerance else value_here
 
     return float(brentq(settled, 0.0, length, xtol=relative_tolerance * length))

@@ -135,8 +135,8 @@ def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array
     return orbit.change_on_mesh(change, target.space_mesh, target.interval_count, target.stage_count)
 
 
-def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: str) -> CyclePredictor:
-    """The predictor at the orbit `found`, which was solved with its tangent. before: predictor at the
+def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name: str) -> CyclePredictor:
+    """The predictor at the orbit `solved`, which was solved with its tangent. previous: predictor at the
     previous orbit, or None; unused if its orbit has the same parameter value. name: the varied parameter.
     Raises ValueError if the orbit has no tangent.
 
@@ -144,35 +144,37 @@ def predictor_from(found: ConvergedOrbit, before: CyclePredictor | None, name: s
     With CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent or more earlier orbits, a second tangent
     makes the prediction worse. Between two meshes, the values of an orbit differ more than the tangent, so
     only tangents are used after a change of mesh."""
-    orbit = found.orbit
-    if found.matrix.tangent is None:
+    orbit = solved.orbit
+    if solved.matrix.tangent is None:
         raise ValueError("the orbit was solved without its tangent")
-    tangent = normalised_tangent(orbit, found.matrix.tangent)
-    step = orbit.form.rod.coordinate(name) - before.orbit.form.rod.coordinate(name) if before else 0.0
-    if before is None or step == 0:
+    tangent = normalised_tangent(orbit, solved.matrix.tangent)
+    step = orbit.form.rod.coordinate(name) - previous.orbit.form.rod.coordinate(name) if previous else 0.0
+    if previous is None or step == 0:
         return CyclePredictor(orbit, np.zeros(1), np.ones(1), tangent[None])
-    last = before.on_mesh(mesh_of(orbit))
+    last = previous.on_mesh(mesh_of(orbit))
     # Earlier orbits have other meshes; only their tangents are interpolated to a new mesh.
-    if last is not before:
+    if last is not previous:
         return CyclePredictor(
             orbit, np.array([0.0, -step]), np.ones(2), np.array([tangent, last.normalised_tangent])
         )
-    older = np.flatnonzero(before.derivative_orders == 0)[: CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1]
-    places = [0.0, -step, *(before.parameter_offsets[older] - step)]
+    older_indices = np.flatnonzero(previous.derivative_orders == 0)[
+        : CYCLE_PREDICTION_SETTINGS.max_earlier_orbits - 1
+    ]
+    offsets = [0.0, -step, *(previous.parameter_offsets[older_indices] - step)]
     # All offsets shift by the step, because the newest orbit has the offset 0.
-    data = [tangent, before.normalised_values, *before.values_and_derivatives[older]]
-    orders = [1.0] + [0.0] * (1 + len(older))
-    if 1 + len(older) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
-        places.append(-step)
-        data.append(before.normalised_tangent)
+    data = [tangent, previous.normalised_values, *previous.values_and_derivatives[older_indices]]
+    orders = [1.0] + [0.0] * (1 + len(older_indices))
+    if 1 + len(older_indices) < CYCLE_PREDICTION_SETTINGS.orbits_without_second_tangent:
+        offsets.append(-step)
+        data.append(previous.normalised_tangent)
         orders.append(1.0)
-    return CyclePredictor(orbit, np.array(places), np.array(orders), np.array(data))
+    return CyclePredictor(orbit, np.array(offsets), np.array(orders), np.array(data))
 
 
-def relative_parameter_difference(one: StressForm, other: StressForm, name: str) -> float:
+def relative_parameter_difference(first: StressForm, second: StressForm, name: str) -> float:
     """|a - b|/max(|a|, |b|) for the coordinates a, b of the parameter `name` in two rods; 0 if a = b."""
-    a = one.rod.coordinate(name)
-    b = other.rod.coordinate(name)
+    a = first.rod.coordinate(name)
+    b = second.rod.coordinate(name)
     return abs(a - b) / max(abs(a), abs(b)) if a != b else 0.0
 
 
@@ -182,15 +184,15 @@ def orbit_near_prediction(
     """The orbit near `predicted` with its tangent along the parameter `name`, by Newton's method to a
     relative tolerance; raises Unsolvable if the method does not converge, or if the orbit is farther from
     `predicted` than CYCLE_PREDICTION_SETTINGS.max_prediction_distance."""
-    found = newton(predicted, tolerance, workspace, name)
-    if _prediction_error(predicted, found) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
+    solved = newton(predicted, tolerance, workspace, name)
+    if _prediction_error(predicted, solved) > CYCLE_PREDICTION_SETTINGS.max_prediction_distance:
         raise Unsolvable("the cycle is too far from its prediction")
-    return found
+    return solved
 
 
-def _prediction_error(predicted: Orbit, found: ConvergedOrbit) -> float:
+def _prediction_error(predicted: Orbit, solved: ConvergedOrbit) -> float:
     """Relative distance of a solved orbit from its prediction."""
-    return relative_change(predicted, found.orbit.values - predicted.values)
+    return relative_change(predicted, solved.orbit.values - predicted.values)
 
 
 def orbit_in_steps(
@@ -203,33 +205,39 @@ def orbit_in_steps(
     """
     first = start.orbit.form.rod.coordinate(name)
     last = form.rod.coordinate(name)
-    share = 0.0
+    fraction = 0.0
     length = PARAMETER_STEP_CONTROL.first_length
     predictor = start
 
     def step(length: float) -> StepResult[ConvergedOrbit]:
-        at = share + length
-        between = form if at >= 1.0 else form.with_coordinate(name, first + at * (last - first))
-        predicted = predictor.predicted_orbit(between, name)
-        found = orbit_near_prediction(predicted, tolerance, workspace, name)
-        return StepResult(found, _prediction_error(predicted, found), 1.0)
+        end_fraction = fraction + length
+        form_at_end = (
+            form if end_fraction >= 1.0 else form.with_coordinate(name, first + end_fraction * (last - first))
+        )
+        predicted = predictor.predicted_orbit(form_at_end, name)
+        solved = orbit_near_prediction(predicted, tolerance, workspace, name)
+        return StepResult(solved, _prediction_error(predicted, solved), 1.0)
 
     for _ in range(PARAMETER_STEP_CONTROL.max_solutions):
         try:
-            ahead, length = advance(step, min(length, 1.0 - share), PARAMETER_STEP_CONTROL)
-        except Unsolvable as why:
+            solved_orbit, length = advance(step, min(length, 1.0 - fraction), PARAMETER_STEP_CONTROL)
+        except Unsolvable as reason:
             raise Unsolvable(
                 "the branch of cycles cannot be followed: the branch ends or has a fold"
-            ) from why
-        share += length
-        if share >= 1.0:
-            return ahead.solution
+            ) from reason
+        fraction += length
+        if fraction >= 1.0:
+            return solved_orbit.solution
         predictor = predictor_from(
-            with_matrix_within_distance(ahead.solution, CYCLE_PREDICTION_SETTINGS.max_matrix_distance, name),
+            with_matrix_within_distance(
+                solved_orbit.solution, CYCLE_PREDICTION_SETTINGS.max_matrix_distance, name
+            ),
             predictor,
             name,
         )
-        length = PARAMETER_STEP_CONTROL.next_length(length, ahead, PARAMETER_STEP_CONTROL.prediction_order)
+        length = PARAMETER_STEP_CONTROL.next_length(
+            length, solved_orbit, PARAMETER_STEP_CONTROL.prediction_order
+        )
     raise Unsolvable(
         f"the branch of cycles was not followed to its end in {PARAMETER_STEP_CONTROL.max_solutions} steps"
     )

@@ -85,18 +85,18 @@ class _IntegrationUntilSettled:
             )
             settled = self._integrate_until_settled(z)
             path = self._measured_path(settled)
-            in_limit = self.rod != self.limiting_rod
-            share = MARCHING_SETTINGS.max_error_ratio_for_limiting_rod if in_limit else 1.0
-            enough = self.request.accuracy * share
+            is_nearby_rod = self.rod != self.limiting_rod
+            fraction = MARCHING_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
+            tolerance = self.request.accuracy * fraction
             for _ in range(MARCHING_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
-                before = path
+                coarser_path = path
                 path = self._measured_path(settled)
-                left = max_settled_distance(self.request.accuracy)
-                errors = errors_of_two_integrations(before, path, left)
-                if errors.largest_weighted_error <= enough:
+                settled_distance = max_settled_distance(self.request.accuracy)
+                errors = errors_of_two_integrations(coarser_path, path, settled_distance)
+                if errors.largest_weighted_error <= tolerance:
                     break
-            if in_limit:
+            if is_nearby_rod:
                 errors = self._errors_in_limit(settled, path, errors)
         except NoCycleFound as end:
             return replace(straight, status=end.status, message=end.message, periods=self.return_count)
@@ -105,25 +105,25 @@ class _IntegrationUntilSettled:
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again, to
         be measured at more times."""
-        before = self.beam
+        coarser_beam = self.beam
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
         self.scheme = replace(
             self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
         self.intervals_per_return *= MARCHING_SETTINGS.measurement_interval_ratio
         self.beam = Beam(self.rod, self.mesh)
-        z = self.beam.state_of_stresses(before.stresses_on_mesh(self.beam.mesh, settled.state))
+        z = self.beam.state_of_stresses(coarser_beam.stresses_on_mesh(self.beam.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
 
     def _integrate_until_settled(self, z: Array) -> SettledMotion:
         """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
-        past: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
+        past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
         distances = ReturnDistances(MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance)
-        most = self.request.most_periods
-        while self.return_count < most:
-            report(lambda: SolvePosition(f"{self.return_count} of at most {most} returns of the tip"))
+        max_periods = self.request.most_periods
+        while self.return_count < max_periods:
+            report(lambda: SolvePosition(f"{self.return_count} of at most {max_periods} returns of the tip"))
             run = self._integrate(
                 z,
                 TRANSIENT_SETTINGS.max_run_duration_ratio
@@ -137,20 +137,20 @@ class _IntegrationUntilSettled:
             step = float(run.times[-1] - run.times[-2])
             times, states = self._crossings(run)
             self.clock.record_run(times, float(run.times[-1]))
-            past.extend(self.beam.layout.stress_field(states, "m3"))
+            past_moments.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
-            if len(past) <= TRANSIENT_SETTINGS.returns_per_run:
+            if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
-            turns, distance = repetition(list(past))
-            distances.record_test(distance, turns / TRANSIENT_SETTINGS.returns_per_run)
+            return_count, distance = repetition(list(past_moments))
+            distances.record_test(distance, return_count / TRANSIENT_SETTINGS.returns_per_run)
             # For distances in a geometric sequence, the distance from the cycle is distance/(1 - rate).
-            enough = max_settled_distance(self.request.accuracy)
-            if distance <= enough * (1 - distances.contraction_rate):
-                return SettledMotion(z, turns, step)
-        why = not_settled_text(self.return_count, len(past), distances.last)
-        raise NoCycleFound(MarchedStatus.not_settled, why)
+            tolerance = max_settled_distance(self.request.accuracy)
+            if distance <= tolerance * (1 - distances.contraction_rate):
+                return SettledMotion(z, return_count, step)
+        reason = not_settled_text(self.return_count, len(past_moments), distances.last)
+        raise NoCycleFound(MarchedStatus.not_settled, reason)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -169,17 +169,17 @@ class _IntegrationUntilSettled:
         times = section_crossings(self.beam, run)[0]
         row = tip_angle_row(self.beam)
         states = np.empty((len(times), self.beam.unknown_count))
-        for i, rough in enumerate(times):
-            before = int(np.searchsorted(run.times, rough, side="right")) - 1
-            left = float(rough - run.times[before])
-            z = run.states[before]
-            if left > 0:
-                z = self._integrate(z, left, left, RunLimit()).states[-1]
+        for i, time in enumerate(times):
+            step_index = int(np.searchsorted(run.times, time, side="right")) - 1
+            interval = float(time - run.times[step_index])
+            z = run.states[step_index]
+            if interval > 0:
+                z = self._integrate(z, interval, interval, RunLimit()).states[-1]
             rates = self.beam.state_derivative(z[None])[0]
             # A Newton step in time from the interpolated crossing: theta is smooth there.
-            late = float(row @ z) / float(row @ rates)
-            times[i] = rough - late
-            states[i] = z - late * rates
+            delay = float(row @ z) / float(row @ rates)
+            times[i] = time - delay
+            states[i] = z - delay * rates
         return times, states
 
     def _measured_path(self, settled: SettledMotion) -> CyclePath:
@@ -209,32 +209,35 @@ class _IntegrationUntilSettled:
     def _errors_in_limit(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
-        known = path.orbit.form.rod
+        integrated_rod = path.orbit.form.rod
         limit = self.limiting_rod
-        in_limits = [name for name in PARAMETERS if known.values[name] != limit.values[name]]
+        limit_names = [name for name in PARAMETERS if integrated_rod.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
         coordinates = {
-            name: MARCHING_SETTINGS.second_rod_distance_ratio * known.coordinate(name) for name in in_limits
+            name: MARCHING_SETTINGS.second_rod_distance_ratio * integrated_rod.coordinate(name)
+            for name in limit_names
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
         self.beam = Beam(self.rod, self.mesh)
         z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
-        more = errors_of_two_integrations(path, self._measured_path(self._integrate_until_settled(z)), 0.0)
+        limit_errors = errors_of_two_integrations(
+            path, self._measured_path(self._integrate_until_settled(z)), 0.0
+        )
         return CycleErrors(
-            errors.period_error + more.period_error,
-            errors.amplitude_error + more.amplitude_error,
-            errors.extrema_error + more.extrema_error,
+            errors.period_error + limit_errors.period_error,
+            errors.amplitude_error + limit_errors.amplitude_error,
+            errors.extrema_error + limit_errors.extrema_error,
             nan,
         )
 
-    def _with_measures(self, straight: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
-        """The outcome `straight` with the status, measures and errors of the settled cycle of `path`."""
-        enough = errors.largest_weighted_error <= self.request.accuracy
+    def _with_measures(self, outcome: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
+        """The outcome `outcome` with the status, measures and errors of the settled cycle of `path`."""
+        is_accurate = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(
-            straight,
-            status=MarchedStatus.cycle if enough else MarchedStatus.not_settled,
+            outcome,
+            status=MarchedStatus.cycle if is_accurate else MarchedStatus.not_settled,
             message=""
-            if enough
+            if is_accurate
             else f"the cycle's errors, up to {errors.largest_weighted_error:.1e}, exceed "
             "the requested accuracy",
             periods=self.return_count,

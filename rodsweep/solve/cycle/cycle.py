@@ -136,8 +136,8 @@ def with_measures(
     )
 
 
-def padded_or_cut(values: Array | Complex, count: int, filler: complex) -> Any:
-    """The first `count` entries of `values`, (m,), padded with `filler` if m < count; shape (count,)."""
-    first = np.full(count, filler, values.dtype)
+def padded_or_cut(values: Array | Complex, count: int, fill_value: complex) -> Any:
+    """The first `count` entries of `values`, (m,), padded with `fill_value` if m < count; shape (count,)."""
+    first = np.full(count, fill_value, values.dtype)
     first[: len(values)] = values[:count]
     return first

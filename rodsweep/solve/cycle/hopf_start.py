@@ -41,13 +41,13 @@ class HopfPointBelow:
     frequency: float
 
 
-def leading_eigenvalue(rod: Rod, near: complex | None = None) -> complex:
+def leading_eigenvalue(rod: Rod, guess: complex | None = None) -> complex:
     """The leading eigenvalue of the straight rod, in 1/tau2 with Im >= 0; raises Unsolvable if the spectrum
-    fails. near: leading eigenvalue of a similar rod, which is followed to this rod; None for a search."""
-    found = straight_rod_stability(rod, None if near is None else np.array([near]), certify=False)
-    if isnan(found.error):
-        raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {found.message}")
-    return found.w
+    fails. guess: leading eigenvalue of a similar rod, which is followed to this rod; None for a search."""
+    stability = straight_rod_stability(rod, None if guess is None else np.array([guess]), certify=False)
+    if isnan(stability.error):
+        raise Unsolvable(f"the spectrum at F = {rod.F:g} is not known: {stability.message}")
+    return stability.w
 
 
 def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
@@ -56,15 +56,15 @@ def hopf_point_below(rod: Rod) -> HopfPointBelow | None:
     points between successive forces are missed. Raises Unsolvable if a leading eigenvalue is unknown, or if
     the unstable mode does not oscillate."""
     F = rod.F
-    above = leading_eigenvalue(rod)
+    upper_w = leading_eigenvalue(rod)
     while HOPF_START_SETTINGS.min_force < F:
         # Successive forces have a constant ratio: thresholds of a rod are far apart at large forces.
         lower = F * (1 - HOPF_START_SETTINGS.force_scan_ratio)
-        below = leading_eigenvalue(replace(rod, F=lower), above)
-        if below.real < 0 <= above.real:
-            return _hopf_point_between(rod, (lower, below), (F, above))
+        lower_w = leading_eigenvalue(replace(rod, F=lower), upper_w)
+        if lower_w.real < 0 <= upper_w.real:
+            return _hopf_point_between(rod, (lower, lower_w), (F, upper_w))
         F = lower
-        above = below
+        upper_w = lower_w
     return None
 
 
@@ -75,24 +75,26 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
     Newton's method fails or another eigenvalue leads at the candidate, the interval is bisected.
     """
     problem = path_problem(Path(rod, "F"))
-    (a, below), (b, above) = low, high
+    (a, lower_w), (b, upper_w) = low, high
     while b - a > HOPF_START_SETTINGS.hopf_tolerance * b:
-        share = below.real / (below.real - above.real)
-        found = _newton_hopf_point(problem, a + share * (b - a), below + share * (above - below), (a, b))
-        if found is not None:
+        fraction = lower_w.real / (lower_w.real - upper_w.real)
+        hopf = _newton_hopf_point(
+            problem, a + fraction * (b - a), lower_w + fraction * (upper_w - lower_w), (a, b)
+        )
+        if hopf is not None:
             # The eigenvalue on the axis must lead; otherwise another mode is already unstable.
-            w = leading_eigenvalue(replace(rod, F=found.F))
+            w = leading_eigenvalue(replace(rod, F=hopf.F))
             tolerance = HOPF_START_SETTINGS.hopf_tolerance * abs(w)
-            if abs(w.real) <= tolerance and abs(w.imag - found.frequency) <= tolerance:
-                return found
+            if abs(w.real) <= tolerance and abs(w.imag - hopf.frequency) <= tolerance:
+                return hopf
         middle = (a + b) / 2
         w = leading_eigenvalue(replace(rod, F=middle))
         if w.real < 0:
             a = middle
-            below = w
+            lower_w = w
         else:
             b = middle
-            above = w
+            upper_w = w
     raise Unsolvable(f"the mode that becomes unstable at F = {a:g} does not oscillate there")
 
 
@@ -125,17 +127,17 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     starts towards smaller forces or cannot be followed.
     """
     rod = form.rod
-    at = replace(rod, F=hopf.F)
-    normal = _normal_form(replace(form, rod=at), 1j * hopf.frequency)
+    hopf_rod = replace(rod, F=hopf.F)
+    normal = _normal_form(replace(form, rod=hopf_rod), 1j * hopf.frequency)
     if not normal.amplitude_coefficient > 0:
-        why = "starts towards smaller forces: follow it with the task `branch`"
-        raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} {why}")
+        reason = "starts towards smaller forces: follow it with the task `branch`"
+        raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} {reason}")
     if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
-    coarse = replace(form, mesh=coarse_mesh_along_branch(rod))
+    coarse_form = replace(form, mesh=coarse_mesh_along_branch(rod))
     for distance in HOPF_START_SETTINGS.start_force_distances:
         try:
-            return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse, workspace)
+            return _orbit_along_force(normal, min(rod.F, hopf.F * (1 + distance)), coarse_form, workspace)
         except Unsolvable as error:
             failure = error
     raise failure
@@ -176,14 +178,18 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
     raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
-    found = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    solved = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
-    least, most = HOPF_START_SETTINGS.squared_amplitude_ratios
-    if not least < found.orbit.form.tip_coordinates(found.orbit.start_state)[1] ** 2 / squared < most:
+    min_ratio, max_ratio = HOPF_START_SETTINGS.squared_amplitude_ratios
+    if (
+        not min_ratio
+        < solved.orbit.form.tip_coordinates(solved.orbit.start_state)[1] ** 2 / squared
+        < max_ratio
+    ):
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
-        return found.orbit
-    return orbit_in_steps(predictor_from(found, None, "F"), form, "F", tolerance, workspace).orbit
+        return solved.orbit
+    return orbit_in_steps(predictor_from(solved, None, "F"), form, "F", tolerance, workspace).orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:

@@ -58,5 +58,5 @@ def normal_form_accuracy(rod: Rod) -> float:
     """Relative accuracy for which the mesh of the normal form of `rod` is chosen, for the start of a
     branch."""
     settings = HOPF_START_SETTINGS
-    finer = min(1.0, rod.least_axial_drag / settings.max_drag_of_finer_normal_form)
-    return max(settings.normal_form_accuracy * finer, settings.finest_normal_form_accuracy)
+    refinement = min(1.0, rod.least_axial_drag / settings.max_drag_of_finer_normal_form)
+    return max(settings.normal_form_accuracy * refinement, settings.finest_normal_form_accuracy)

@@ -62,14 +62,14 @@ def solve_cycle(
     rod: Rod,
     request: CycleRequest,
     start: Neighbour | None = None,
-    along: str | None = None,
+    parameter: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
     """Outcome of the search for the cycle of a rod from its leading mode, a neighbour's cycle or a Hopf
     point; a failure becomes a status, never an exception.
 
-    start: `Cycle.neighbour` of the previous rod of a chain, or None. along: name of the parameter that varies
-    along the chain. workspace: memory of Newton's matrices, shared by many rods; None makes a new workspace.
+    start: `Cycle.neighbour` of the previous rod of a chain, or None. parameter: name of the parameter
+    that varies along the chain. workspace: memory of Newton's matrices, shared by many rods; None: new.
     """
     memory = workspace or NewtonWorkspace()
 
@@ -79,7 +79,7 @@ def solve_cycle(
 
     def solve() -> Cycle:
         stability = straight_rod_stability(rod, start.eigenvalues if start else None)
-        cycle = _solve_cycle_or_raise(rod, request, stability, start, along, memory)
+        cycle = _solve_cycle_or_raise(rod, request, stability, start, parameter, memory)
         return _with_second_state(rod, _with_status_by_spectrum(cycle, stability), stability)
 
     return outcome_or_failure(solve, failed)
@@ -90,42 +90,42 @@ def _solve_cycle_or_raise(
     request: CycleRequest,
     stability: StraightRodStability,
     neighbour: Neighbour | None,
-    along: str | None,
+    parameter: str | None,
     workspace: NewtonWorkspace,
 ) -> Cycle:
     w = stability.w
     straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
     if request.start == "hopf":
         return _cycle_from_hopf(_form_on_motion_mesh(rod), request, straight, stability, workspace)
-    found = None
-    if neighbour is not None and along is not None:
+    refined = None
+    if neighbour is not None and parameter is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
-            found = cycle_from_neighbour(neighbour, form, along, request.accuracy, workspace)
+            refined = cycle_from_neighbour(neighbour, form, parameter, request.accuracy, workspace)
     elif neighbour is None and not request.is_recorded:
-        found = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, along, workspace)
-    if found is not None and found.verdict(request.accuracy)[0] == CycleStatus.cycle:
-        cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), found, request)
-        return _with_neighbour(cycle, found, neighbour, along, request.accuracy, stability)
-    by_mode = neighbour is None and request.tip is None
-    decays = reason_for_decay(rod, w, request.amplitude) if by_mode else ""
-    if decays and not request.is_recorded:
-        return replace(straight, message=decays)
-    unstable = found if found is not None and found.stable is False else None
+        refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter, workspace)
+    if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
+        cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
+        return _with_neighbour(cycle, refined, neighbour, parameter, request.accuracy, stability)
+    is_from_mode = neighbour is None and request.tip is None
+    decay_reason = reason_for_decay(rod, w, request.amplitude) if is_from_mode else ""
+    if decay_reason and not request.is_recorded:
+        return replace(straight, message=decay_reason)
+    unstable_cycle = refined if refined is not None and refined.stable is False else None
     for mesh in motion_meshes(rod, request.transient > 0):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
-        transient = Transient(StressForm(rod, mesh), stability, request, along, unstable, workspace)
+        transient = Transient(StressForm(rod, mesh), stability, request, parameter, unstable_cycle, workspace)
         end = _outcome_of_motion(transient, request, neighbour)
         if not transient.unsolved_message:
             break
     cycle = _with_motion_data(straight, transient, end, request)
-    if decays:
-        return replace(cycle, message=decays)
+    if decay_reason:
+        return replace(cycle, message=decay_reason)
     cycle = replace(cycle, status=end.status, message=end.message)
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
     cycle = _with_cycle_quantities(cycle, end.cycle, request)
-    return _with_neighbour(cycle, end.cycle, None, along, request.accuracy, stability)
+    return _with_neighbour(cycle, end.cycle, None, parameter, request.accuracy, stability)
 
 
 def _form_on_motion_mesh(rod: Rod) -> StressForm:
@@ -134,13 +134,13 @@ def _form_on_motion_mesh(rod: Rod) -> StressForm:
 
 
 def _with_motion_data(
-    straight: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
+    outcome: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
-    """The outcome `straight` with the mesh, the number of returns and the requested path or shapes of the
+    """The outcome `outcome` with the mesh, the number of returns and the requested path or shapes of the
     integrated motion `transient`. end: outcome of this motion."""
     trace = transient.record
     return replace(
-        straight,
+        outcome,
         periods=end.return_count,
         elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
@@ -157,20 +157,20 @@ def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequ
 
 def _with_neighbour(
     cycle: Cycle,
-    found: RefinedCycle,
-    before: Neighbour | None,
-    along: str | None,
+    refined: RefinedCycle,
+    previous: Neighbour | None,
+    parameter: str | None,
     accuracy: float,
     stability: StraightRodStability,
 ) -> Cycle:
-    """The outcome `cycle` with the data of the solved cycle `found` from which the next rod of a chain
-    starts; unchanged outside a chain (`along` is None). before: data of the previous rod, or None. along:
-    parameter that varies along the chain. accuracy: requested relative accuracy. stability: leading
-    eigenvalue of the straight rod."""
-    if along is None:
+    """The outcome `cycle` with the data of the solved cycle `refined` from which the next rod of a chain
+    starts; unchanged outside a chain (`parameter` is None). previous: data of the previous rod, or None.
+    parameter: parameter that varies along the chain. accuracy: requested relative accuracy. stability:
+    leading eigenvalue of the straight rod."""
+    if parameter is None:
         return cycle
-    eigenvalues = eigenvalues_to_follow(found.orbit.form.rod, stability)
-    return replace(cycle, neighbour=Neighbour.from_cycle(found, before, along, accuracy, eigenvalues))
+    eigenvalues = eigenvalues_to_follow(refined.orbit.form.rod, stability)
+    return replace(cycle, neighbour=Neighbour.from_cycle(refined, previous, parameter, accuracy, eigenvalues))
 
 
 def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> Cycle:
@@ -184,33 +184,33 @@ def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> C
 def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRodStability) -> Cycle:
     """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
     state."""
-    state, F, why = second_state(rod, cycle.status, stability.stable)
-    message = "; ".join(filter(None, (cycle.message, why)))
+    state, F, reason = second_state(rod, cycle.status, stability.stable)
+    message = "; ".join(filter(None, (cycle.message, reason)))
     return replace(cycle, second_state=int(state), subcritical_F=F, message=message)
 
 
 def _cycle_from_hopf(
     form: StressForm,
     request: CycleRequest,
-    straight: Cycle,
+    outcome: Cycle,
     stability: StraightRodStability,
     workspace: NewtonWorkspace,
 ) -> Cycle:
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
-    straight: outcome to which the quantities of the cycle are added, or only a status and a message if no
+    outcome: outcome to which the quantities of the cycle are added, or only a status and a message if no
     cycle is found. stability: stability of the straight rod, for the status if there is no Hopf point.
     """
     try:
         hopf = hopf_point_below(form.rod)
         if hopf is None:
             status = CycleStatus.straight if stability.stable else CycleStatus.not_settled
-            return replace(straight, status=status, message="there is no Hopf point at a smaller force")
-        found = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
-    except Unsolvable as why:
-        return replace(straight, status=CycleStatus.not_settled, message=str(why))
-    status, message = found.verdict(request.accuracy)
-    return _with_cycle_quantities(replace(straight, status=status, message=message), found, request)
+            return replace(outcome, status=status, message="there is no Hopf point at a smaller force")
+        refined = refined_cycle(orbit_from_hopf(form, hopf, workspace), request.accuracy, workspace)
+    except Unsolvable as reason:
+        return replace(outcome, status=CycleStatus.not_settled, message=str(reason))
+    status, message = refined.verdict(request.accuracy)
+    return _with_cycle_quantities(replace(outcome, status=status, message=message), refined, request)
 
 
 def _outcome_of_motion(
@@ -229,22 +229,22 @@ def _outcome_of_motion(
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
-def _with_cycle_quantities(cycle: Cycle, found: RefinedCycle, request: CycleRequest) -> Cycle:
+def _with_cycle_quantities(cycle: Cycle, refined: RefinedCycle, request: CycleRequest) -> Cycle:
     """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
-    `found`."""
-    cycle = with_measures(cycle, request, found.path, found.measures, found.errors)
-    return _with_multipliers(cycle, found)
+    `refined`."""
+    cycle = with_measures(cycle, request, refined.path, refined.measures, refined.errors)
+    return _with_multipliers(cycle, refined)
 
 
-def _with_multipliers(cycle: Cycle, found: RefinedCycle) -> Cycle:
-    """The outcome `cycle` with multipliers of the solved cycle `found`: the largest modulus, the stored list
-    (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
-    mu = padded_or_cut(found.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
+def _with_multipliers(cycle: Cycle, refined: RefinedCycle) -> Cycle:
+    """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
+    list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
+    mu = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
     mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
     return replace(
         cycle,
-        multiplier=found.largest_multiplier,
+        multiplier=refined.largest_multiplier,
         multipliers=mu,
-        trivial_multiplier_error=found.trivial_multiplier_error,
-        errors=replace(cycle.errors, multiplier_error=found.errors.multiplier_error),
+        trivial_multiplier_error=refined.trivial_multiplier_error,
+        errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
     )

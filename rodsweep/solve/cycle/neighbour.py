@@ -46,13 +46,13 @@ class NextMeshSettings:
     """Settings for the choice of the next mesh in a chain of cycles."""
 
     max_error_ratio_of_same_mesh: float = 0.9
-    """A mesh is sufficient for the next cycle if the error of the present cycle is at most this fraction of
+    """A mesh is sufficient for the next cycle if the error of the current cycle is at most this fraction of
     the accuracy."""
     max_new_mesh_cost_ratio: float = 0.8
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
     at most this number."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
-    """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the present cycle:
+    """This limit replaces `max_new_mesh_cost_ratio` if the errors were measured at the current cycle:
     measuring the errors of a new mesh costs as much as three cycles."""
 
 
@@ -82,31 +82,31 @@ class Neighbour:
     @classmethod
     def from_cycle(
         cls,
-        found: RefinedCycle,
-        before: "Neighbour | None",
+        refined: RefinedCycle,
+        previous: "Neighbour | None",
         name: str,
         accuracy: float,
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
     ) -> "Neighbour":
-        """Data of the cycle `found`, which was solved with its tangent. before: data of the previous rod of
-        the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as in
-        `Neighbour`."""
-        branch = predictor_from(found.converged_orbit, before.predictor if before else None, name)
-        return cls(branch, *_next_mesh_and_calibration(found, before, name, accuracy), eigenvalues)
+        """Data of the cycle `refined`, which was solved with its tangent. previous: data of the previous rod
+        of the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as
+        in `Neighbour`."""
+        branch = predictor_from(refined.converged_orbit, previous.predictor if previous else None, name)
+        return cls(branch, *_next_mesh_and_calibration(refined, previous, name, accuracy), eigenvalues)
 
     def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
         orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
         `CyclePredictor`."""
         branch = self.predictor
-        own: dict[str, Any] = {
+        arrays: dict[str, Any] = {
             "places": branch.parameter_offsets,
             "orders": branch.derivative_orders,
             "data": branch.values_and_derivatives,
             "next_mesh": self.next_mesh.as_array,
             "eigenvalues": self.eigenvalues,
         }
-        return orbit_arrays(branch.orbit) | own | self.calibration.arrays()
+        return orbit_arrays(branch.orbit) | arrays | self.calibration.arrays()
 
     @classmethod
     def from_arrays(cls, arrays: CheckpointArrays) -> "Neighbour":
@@ -118,35 +118,37 @@ class Neighbour:
 
 
 def _next_mesh_and_calibration(
-    found: RefinedCycle, before: "Neighbour | None", name: str, accuracy: float
+    refined: RefinedCycle, previous: "Neighbour | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
     """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
-    must be measured again at the next cycle. before: data of the previous rod, or None. name: varied
+    must be measured again at the next cycle. previous: data of the previous rod, or None. name: varied
     parameter. accuracy: requested relative accuracy."""
-    present = mesh_of(found.orbit)
-    known = found.calibration
-    fits = found.errors.largest_weighted_error <= NEXT_MESH_SETTINGS.max_error_ratio_of_same_mesh * accuracy
-    if known.parameter_change and not fits:
+    current_mesh = mesh_of(refined.orbit)
+    calibration = refined.calibration
+    is_accurate = (
+        refined.errors.largest_weighted_error <= NEXT_MESH_SETTINGS.max_error_ratio_of_same_mesh * accuracy
+    )
+    if calibration.parameter_change and not is_accurate:
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
-        return present, known.with_outdated_errors
-    share = inf if not fits else _max_cost_ratio(found, before, name)
-    planned = cheapest_mesh(known, accuracy) if share else present
-    if share and planned.cost <= share * present.cost:
-        return planned, known.with_outdated_errors
-    return present, known
+        return current_mesh, calibration.with_outdated_errors
+    max_cost = inf if not is_accurate else _max_cost_ratio(refined, previous, name)
+    target_mesh = cheapest_mesh(calibration, accuracy) if max_cost else current_mesh
+    if max_cost and target_mesh.cost <= max_cost * current_mesh.cost:
+        return target_mesh, calibration.with_outdated_errors
+    return current_mesh, calibration
 
 
-def _max_cost_ratio(found: RefinedCycle, before: "Neighbour | None", name: str) -> float:
-    """Largest cost of a new mesh divided by the cost of the present, sufficient mesh; 0 if the present mesh
-    remains in use. before: data of the previous rod, or None. name: varied parameter."""
-    if before is None:
+def _max_cost_ratio(refined: RefinedCycle, previous: "Neighbour | None", name: str) -> float:
+    """Largest cost of a new mesh divided by the cost of the current, sufficient mesh; 0 if the current mesh
+    remains in use. previous: data of the previous rod, or None. name: varied parameter."""
+    if previous is None:
         # Coefficient tails, not measured errors, determined the first mesh of a chain.
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
-    if not found.calibration.parameter_change:
+    if not refined.calibration.parameter_change:
         return NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio_if_measured
-    step = relative_parameter_difference(before.predictor.orbit.form, found.orbit.form, name)
+    step = relative_parameter_difference(previous.predictor.orbit.form, refined.orbit.form, name)
     # If the errors must be measured again anyway, another mesh needs no additional measurement.
-    return 0.0 if found.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
+    return 0.0 if refined.calibration.is_valid_after(step) else NEXT_MESH_SETTINGS.max_new_mesh_cost_ratio
 
 
 def cycle_from_neighbour(
@@ -164,15 +166,15 @@ def cycle_from_neighbour(
         raise Unsolvable(
             "the rods have different unknowns: velocities are unknowns only at small axial or rotational drag"
         )
-    found = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
-    path = CyclePath(found.orbit)
+    solved = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
+    path = CyclePath(solved.orbit)
     change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
-    known = neighbour.calibration.scaled_on_chain(found.orbit, change, error_indicators(found, path))
-    if known.is_valid:
-        cycle = cycle_with_calibrated_errors(known, found, accuracy, path)
+    calibration = neighbour.calibration.scaled_on_chain(solved.orbit, change, error_indicators(solved, path))
+    if calibration.is_valid:
+        cycle = cycle_with_calibrated_errors(calibration, solved, accuracy, path)
         if cycle.errors.largest_weighted_error <= accuracy:
             return cycle
-    return cycle_with_measured_errors(found, known, accuracy, name)
+    return cycle_with_measured_errors(solved, calibration, accuracy, name)
 
 
 def _cycle_on_next_mesh(
@@ -184,11 +186,11 @@ def _cycle_on_next_mesh(
     tolerance = newton_tolerance(accuracy)
     target = neighbour.next_mesh
     try:
-        found = orbit_near_prediction(
+        solved = orbit_near_prediction(
             neighbour.predictor.on_mesh(target).predicted_orbit(form, name), tolerance, workspace, name
         )
     except Unsolvable:
         # The steps are made on a coarser mesh; only the last correction is made on `next_mesh`.
         start = orbit_in_steps(neighbour.predictor.on_mesh(target.coarser), form, name, tolerance, workspace)
-        found = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
-    return with_matrix_within_distance(found, allowed_matrix_distance(accuracy), name)
+        solved = newton(target.interpolated_orbit(start.orbit), tolerance, workspace, name)
+    return with_matrix_within_distance(solved, allowed_matrix_distance(accuracy), name)

@@ -30,10 +30,10 @@ def warm_up() -> None:
         solve_cycle(replace(rod, F=1.01 * rod.F), request, cycle.neighbour, "F")
     deviation = abs(cycle.measures.period / REFERENCE_PERIOD - 1)
     reproduced = cycle.status == CycleStatus.cycle and deviation < request.accuracy
-    given = user_options_text(CYCLE_OPTIONS_PREFIX)
-    if given and not reproduced:
+    options = user_options_text(CYCLE_OPTIONS_PREFIX)
+    if options and not reproduced:
         outcome = f"{cycle.status.name} {cycle.message}".strip()
         raise EnvironmentIncomplete(
-            f"with the PETSc options '{given}' the known cycle of the reference rod is not found: "
+            f"with the PETSc options '{options}' the known cycle of the reference rod is not found: "
             f"'{outcome}'; the task limit_cycle cannot run; remove these options"
         )

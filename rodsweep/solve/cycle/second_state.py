@@ -41,17 +41,17 @@ def second_state(rod: Rod, status: PointStatus, stable: bool | None) -> tuple[Se
     if status != CycleStatus.straight:
         return SecondState.straight, nan, "the straight rod is stable as well"
     try:
-        beside = subcritical_hopf_near(rod)
+        hopf = subcritical_hopf_near(rod)
     except FAILURES:
         return SecondState.not_known, nan, ""
-    if beside is None:
+    if hopf is None:
         return SecondState.none_known, nan, ""
-    return SecondState.cycle_possible, beside.F, _second_state_sentence(beside)
+    return SecondState.cycle_possible, hopf.F, _second_state_sentence(hopf)
 
 
-def _second_state_sentence(beside: SubcriticalHopf) -> str:
+def _second_state_sentence(hopf: SubcriticalHopf) -> str:
     return (
-        f"the Hopf point at F = {beside.F:.9g} is subcritical: an unstable cycle exists, with a largest y of "
-        f"about {beside.unstable_y:.2g} L by the normal form, and from a start at larger y the rod may reach "
+        f"the Hopf point at F = {hopf.F:.9g} is subcritical: an unstable cycle exists, with a largest y of "
+        f"about {hopf.unstable_y:.2g} L by the normal form, and from a start at larger y the rod may reach "
         "a stable cycle; the task `branch` follows the branch of these cycles"
     )

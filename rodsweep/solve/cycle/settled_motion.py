@@ -11,7 +11,7 @@ from .status import MarchedStatus
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that has settled on a cycle. state: present state of the beam, (unknowns,).
+    """A motion that has settled on a cycle. state: current state of the beam, (unknowns,).
     returns_per_period: number of returns of the tip to theta = 0 per period. last_time_step: last time step,
     in tau2."""
 
@@ -73,11 +73,11 @@ class ReturnDistances:
             self._below_noise = []
         else:
             self._below_noise.append(distance)
-        recent = self._below_noise[-MARCHING_SETTINGS.tests_below_noise :]
-        if len(recent) == MARCHING_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
+        last_distances = self._below_noise[-MARCHING_SETTINGS.tests_below_noise :]
+        if len(last_distances) == MARCHING_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
             # Distances that stay small are no coincidence, so the noise is smaller than assumed.
-            fall = max(recent) / self._last_above_noise
-            rate = fall ** (periods / len(self._below_noise))
+            reduction = max(last_distances) / self._last_above_noise
+            rate = reduction ** (periods / len(self._below_noise))
             self.contraction_rate = min(self.contraction_rate, rate)
         self.last = distance
 

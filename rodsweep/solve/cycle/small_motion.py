@@ -35,22 +35,24 @@ SMALL_MOTION_SETTINGS = SmallMotionSettings()
 
 
 def stable_cycle_near_hopf(
-    form: StressForm, w: complex, request: CycleRequest, along: str | None, workspace: NewtonWorkspace
+    form: StressForm, w: complex, request: CycleRequest, parameter: str | None, workspace: NewtonWorkspace
 ) -> RefinedCycle | None:
     """The stable small cycle near a Hopf point to which the motion from the requested start converges; None
     if no such cycle is found, or if the modulus of its largest nontrivial multiplier is close to 1.
 
-    form: the discretized rod. w: leading eigenvalue of the straight rod. along: parameter along which the
-    tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.
+    form: the discretized rod. w: leading eigenvalue of the straight rod. parameter: parameter along
+    which the tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.
     """
     try:
-        found = refined_cycle(orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, along)
+        cycle = refined_cycle(
+            orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, parameter
+        )
     except Unsolvable:
         return None
-    settled = found.verdict(request.accuracy)[0] == CycleStatus.cycle
+    is_stable = cycle.verdict(request.accuracy)[0] == CycleStatus.cycle
     return (
-        found
-        if settled and 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        cycle
+        if is_stable and 1 - cycle.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
         else None
     )
 
@@ -68,7 +70,7 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
-    share = abs(normal.landau.real) * amplitude**2 / -w.real
-    if share >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
+    fraction = abs(normal.landau.real) * amplitude**2 / -w.real
+    if fraction >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
         return ""
-    return f"the motion decays: at its start the cubic term is only {share:.0e} of the linear decay rate"
+    return f"the motion decays: at its start the cubic term is only {fraction:.0e} of the linear decay rate"

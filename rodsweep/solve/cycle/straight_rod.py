@@ -64,11 +64,11 @@ class StraightRodStability:
         # A NaN satisfies no comparison, so an unknown eigenvalue gives None.
         return self.w.real < 0 if abs(self.w.real) > margin else None
 
-    def growth_rate(self, otherwise: float) -> float:
-        """Growth rate of the leading mode, in 1/tau2; 0 if its sign is undecided, `otherwise` if the
+    def growth_rate(self, default: float) -> float:
+        """Growth rate of the leading mode, in 1/tau2; 0 if its sign is undecided, `default` if the
         eigenvalue is unknown."""
         if isnan(self.error):
-            return otherwise
+            return default
         return 0.0 if self.stable is None else self.w.real
 
     @property
@@ -95,22 +95,23 @@ def straight_rod_stability(
     """
     forget_arm_determinants()  # made for the Hopf points of a line, on some ranks
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
-    leader = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
-    if leader is not None:
-        return StraightRodStability(leader.w, leader.error, followed_eigenvalues=leader.eigenvalues)
-    found = solve_spectrum(rod, request)
-    if isnan(found.error_estimate[0]):
-        return StraightRodStability(complex(nan, nan), nan, found.message)
-    w = complex(found.eigenvalues[0])
-    return StraightRodStability(complex(w.real, abs(w.imag)), float(found.error_estimate[0]))
+    leading_w = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
+    if leading_w is not None:
+        return StraightRodStability(leading_w.w, leading_w.error, followed_eigenvalues=leading_w.eigenvalues)
+    spectrum = solve_spectrum(rod, request)
+    if isnan(spectrum.error_estimate[0]):
+        return StraightRodStability(complex(nan, nan), nan, spectrum.message)
+    w = complex(spectrum.eigenvalues[0])
+    return StraightRodStability(complex(w.real, abs(w.imag)), float(spectrum.error_estimate[0]))
 
 
-def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
+def eigenvalues_to_follow(rod: Rod, stability: StraightRodStability) -> Complex:
     """Eigenvalues of `rod`, (n,), the leading eigenvalue first, from which the eigenvalues of a similar rod
-    can be followed: the followed eigenvalues of `found`, if any; else several eigenvalues of a nonuniform
-    rod, if their search succeeds; else the leading eigenvalue of `found` alone. found: stability of `rod`."""
-    if len(found.followed_eigenvalues):
-        return found.followed_eigenvalues
+    can be followed: the followed eigenvalues of `stability`, if any; else several eigenvalues of a nonuniform
+    rod, if their search succeeds; else the leading eigenvalue of `stability` alone. stability: stability of
+    `rod`."""
+    if len(stability.followed_eigenvalues):
+        return stability.followed_eigenvalues
     if not rod.is_uniform:
         request = SpectrumRequest(
             STRAIGHT_ROD_SETTINGS.followed_eigenvalue_count, STRAIGHT_ROD_SETTINGS.accuracy, True
@@ -118,4 +119,4 @@ def eigenvalues_to_follow(rod: Rod, found: StraightRodStability) -> Complex:
         w = solve_spectrum(rod, request).eigenvalues
         if np.isfinite(w).all():
             return w[w.imag >= 0]
-    return np.array([found.w])
+    return np.array([stability.w])

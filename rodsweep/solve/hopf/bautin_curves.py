@@ -85,13 +85,13 @@ class BautinProblem:
 
     def scaled_coordinates(self, values: Array, frequency: float) -> Array:
         """Coordinates v, (4,): the parameters `values`, (3,), scaled to [0, 1], and log `frequency`."""
-        places = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
-        return np.array([*places, np.log(frequency)])
+        coordinates = [axis.coordinate(float(value)) for axis, value in zip(self.axes, values, strict=True)]
+        return np.array([*coordinates, np.log(frequency)])
 
-    def solve_point(self, guess: Array, held: int) -> _CurvePoint:
-        """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index `held`
-        fixed; raises Unsolvable."""
-        free = [i for i in range(3) if i != held]
+    def solve_point(self, guess: Array, fixed_index: int) -> _CurvePoint:
+        """The generalised Hopf point near the coordinates `guess`, (4,), with the parameter of index
+        `fixed_index` fixed; raises Unsolvable."""
+        free = [i for i in range(3) if i != fixed_index]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
@@ -100,107 +100,107 @@ class BautinProblem:
         hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
         start = guess[[*free, 3]]
         point = self._zero_by_secants(hopf, start, boundary.tangent(start))
-        found_values = np.empty(3)
+        point_values = np.empty(3)
         errors = np.zeros(3)
-        found_values[free] = point.values
+        point_values[free] = point.values
         errors[free] = point.errors
-        found_values[held] = values[self.axes[held].name]
-        found = BautinCurvePoint(
-            values=found_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
+        point_values[fixed_index] = values[self.axes[fixed_index].name]
+        solved_point = BautinCurvePoint(
+            values=point_values, errors=errors, frequency=point.frequency, landau_imag=point.landau_imag
         )
-        return _CurvePoint(self.scaled_coordinates(found_values, point.frequency), found)
+        return _CurvePoint(self.scaled_coordinates(point_values, point.frequency), solved_point)
 
-    def step(self, behind: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
-        """The next point after `behind`, predicted along the last chord, at first along the third parameter;
-        raises Unsolvable. length: largest predicted change of a parameter, divided by its range."""
-        here = behind[-1].v
+    def step(self, previous: Sequence[_CurvePoint], length: float) -> StepResult[_CurvePoint]:
+        """The next point, predicted along the last chord, at first along the third parameter; raises
+        Unsolvable. length: largest predicted change of a parameter, divided by its range."""
+        v = previous[-1].v
         tangent = np.array([0.0, 0.0, self.direction, 0.0])
-        if len(behind) > 1:
-            chord = here - behind[-2].v
+        if len(previous) > 1:
+            chord = v - previous[-2].v
             # Step lengths are shares of a parameter's range; the frequency has no range.
             tangent = chord / np.abs(chord[:3]).max()
         try:
-            there, on_edge = self._point_in_ranges(here, length * tangent)
-        except ValueError as why:
-            raise Unsolvable(f"the step leaves the allowed range of the parameters: {why}") from why
-        missed = float(np.abs(there.v[:3] - here[:3] - length * tangent[:3]).max()) / length
+            point, on_edge = self._point_in_ranges(v, length * tangent)
+        except ValueError as reason:
+            raise Unsolvable(f"the step leaves the allowed range of the parameters: {reason}") from reason
+        prediction_error = float(np.abs(point.v[:3] - v[:3] - length * tangent[:3]).max()) / length
         # No prediction error for the first step, which has no chord, and for a step that an edge shortened.
-        return StepResult(there, 0.0 if on_edge or len(behind) == 1 else missed, 1.0)
+        return StepResult(point, 0.0 if on_edge or len(previous) == 1 else prediction_error, 1.0)
 
-    def _point_in_ranges(self, here: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near here + change, (4,), or on the range end that the step crosses; whether on an end).
+    def _point_in_ranges(self, v: Array, change: Array) -> tuple[_CurvePoint, bool]:
+        """(point near v + change, (4,), or on the range end that the step crosses; whether on an end).
 
-        No point outside the ranges is solved: its parameters may describe no rod. Raises Unsolvable.
+        No point outside the ranges is solved: its parameters may not be allowed. Raises Unsolvable.
         """
-        ahead = (here + change)[:3]
-        beyond = np.where(ahead > 1, 1.0, np.where(ahead < 0, 0.0, np.nan))
-        shares = (beyond - here[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
+        predicted = (v + change)[:3]
+        range_ends = np.where(predicted > 1, 1.0, np.where(predicted < 0, 0.0, np.nan))
+        fractions = (range_ends - v[:3]) / np.where(change[:3] == 0, 1.0, change[:3])
         # The parameter that changes most is fixed: at a fold in another parameter the point is unique.
-        if np.isnan(shares).all():
-            return self.solve_point(here + change, int(np.argmax(np.abs(change[:3])))), False
-        which = int(np.nanargmin(shares))
-        guess = here + shares[which] * change
-        guess[which] = beyond[which]
-        return self.solve_point(guess, which), True
+        if np.isnan(fractions).all():
+            return self.solve_point(v + change, int(np.argmax(np.abs(change[:3])))), False
+        index = int(np.nanargmin(fractions))
+        guess = v + fractions[index] * change
+        guess[index] = range_ends[index]
+        return self.solve_point(guess, index), True
 
     def margins(self, point: _CurvePoint) -> Array:
         """Distances of a point from both ends of each of the three ranges, minus a tolerance, (6,)."""
         return np.ravel([point.v[:3], 1 - point.v[:3]], order="F") - BAUTIN_SETTINGS.edge_tolerance
 
     def located_zero(
-        self, behind: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
+        self, previous: Sequence[_CurvePoint], outer: _CurvePoint, margin: int
     ) -> _CurvePoint | None:
         """The point `outer` itself: `_point_in_ranges` has shortened the step to the end of a range."""
         return outer
 
-    def is_closed_by(self, behind: Sequence[_CurvePoint], there: _CurvePoint) -> bool:
+    def is_closed_by(self, previous: Sequence[_CurvePoint], point: _CurvePoint) -> bool:
         """Whether the curve has more than `BAUTIN_SETTINGS.min_loop_points` points, and the first point of
-        the curve lies between its last point and `there`."""
-        first = behind[0].v
-        last = behind[-1].v
-        step = float(np.linalg.norm(there.v - behind[-1].v))
-        near = max(np.linalg.norm(first - last), np.linalg.norm(first - there.v)) < step
-        return len(behind) > BAUTIN_SETTINGS.min_loop_points and bool(near)
+        the curve lies between its last point and `point`."""
+        first = previous[0].v
+        last = previous[-1].v
+        step = float(np.linalg.norm(point.v - previous[-1].v))
+        is_near = max(np.linalg.norm(first - last), np.linalg.norm(first - point.v)) < step
+        return len(previous) > BAUTIN_SETTINGS.min_loop_points and bool(is_near)
 
     @staticmethod
-    def _zero_by_secants(hopf: HopfCurve, start: Array, way: Array) -> GeneralisedHopfPoint:
-        """The point with Re c = 0 near start + s way, (3,) each, by secant steps of s; raises Unsolvable."""
+    def _zero_by_secants(hopf: HopfCurve, start: Array, direction: Array) -> GeneralisedHopfPoint:
+        """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
-        before = 0.0
+        previous_s = 0.0
         s = BAUTIN_SETTINGS.first_secant_step
-        last = hopf.hopf_point_on_plane(start, way, hopf.accuracy).relative_real_part
+        last = hopf.hopf_point_on_plane(start, direction, hopf.accuracy).relative_real_part
         for _ in range(BAUTIN_SETTINGS.max_secant_steps):
-            here = hopf.hopf_point_on_plane(start + s * way, way, hopf.accuracy)
-            if here.relative_real_part == last:
+            hopf_point = hopf.hopf_point_on_plane(start + s * direction, direction, hopf.accuracy)
+            if hopf_point.relative_real_part == last:
                 break
-            slope = (here.relative_real_part - last) / (s - before)
-            step = -here.relative_real_part / slope
+            slope = (hopf_point.relative_real_part - last) / (s - previous_s)
+            step = -hopf_point.relative_real_part / slope
             if not abs(s + step) < BAUTIN_STEP_CONTROL.max_length:
                 break
-            along = here.coefficients.landau_error / abs(slope)
-            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, along):
-                return hopf.as_generalised_hopf(here, 0, way * (along + abs(step)))
-            last = here.relative_real_part
-            before = s
+            error_along = hopf_point.coefficients.landau_error / abs(slope)
+            if abs(step) <= max(BAUTIN_SETTINGS.tolerance, error_along):
+                return hopf.as_generalised_hopf(hopf_point, 0, direction * (error_along + abs(step)))
+            last = hopf_point.relative_real_part
+            previous_s = s
             s = s + step
         raise Unsolvable("no generalised Hopf point is found near the predicted point")
 
 
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
-    here = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
-    back, first = _follow_in_direction(replace(problem, direction=-1.0), here)
+    start_point = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
+    backward, first = _follow_in_direction(replace(problem, direction=-1.0), start_point)
     if first is BautinEnd.closed:
-        return BautinCurve(tuple(point.point for point in back), (first, first))
-    on, last = _follow_in_direction(problem, here)
+        return BautinCurve(tuple(point.point for point in backward), (first, first))
+    forward, last = _follow_in_direction(problem, start_point)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(point.point for point in [*back[:0:-1], *on]), (first, last))
+    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, last))
 
 
-def as_curve_point(point: GeneralisedHopfPoint, third: float) -> BautinCurvePoint:
-    """A generalised Hopf point of a plane as a point of a curve. third: value of the third parameter."""
+def as_curve_point(point: GeneralisedHopfPoint, value: float) -> BautinCurvePoint:
+    """A generalised Hopf point of a plane as a point of a curve. value: of the third parameter."""
     return BautinCurvePoint(
-        values=np.array([*point.values, third]),
+        values=np.array([*point.values, value]),
         errors=np.array([*point.errors, 0.0]),
         frequency=point.frequency,
         landau_imag=point.landau_imag,
@@ -220,31 +220,31 @@ def _follow_in_direction(problem: BautinProblem, start: _CurvePoint) -> tuple[li
     if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEnd.range_end
     curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, _report_point_count)
-    places = curve.solutions[:1]
-    for here, there in pairwise(curve.solutions):
+    points = curve.solutions[:1]
+    for point, next_point in pairwise(curve.solutions):
         try:
-            places += [*_requested_points(problem, here, there), there]
+            points += [*_requested_points(problem, point, next_point), next_point]
         except (*FAILURES, ValueError):
-            return places, BautinEnd.not_found
+            return points, BautinEnd.not_found
     if curve.end_reason is CurveStop.zero_margin:
-        return places, BautinEnd.range_end if curve.margin_index // 2 == 2 else BautinEnd.plane_edge
-    return places, END_BY_STOP_REASON[curve.end_reason]
+        return points, BautinEnd.range_end if curve.margin_index // 2 == 2 else BautinEnd.plane_edge
+    return points, END_BY_STOP_REASON[curve.end_reason]
 
 
-def _report_point_count(places: Sequence[_CurvePoint]) -> None:
+def _report_point_count(points: Sequence[_CurvePoint]) -> None:
     """Reports the number of points of the curve as progress."""
-    report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(places)} points"))
+    report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(points)} points"))
 
 
-def _requested_points(problem: BautinProblem, here: _CurvePoint, there: _CurvePoint) -> list[_CurvePoint]:
-    """Points at the requested third parameters between `here` and `there`; raises Unsolvable, ValueError."""
-    a = here.v[2]
-    b = there.v[2]
-    new = [z for z in map(problem.axes[2].coordinate, problem.requested_values) if min(a, b) < z < max(a, b)]
-    found = []
-    for z in sorted(new, reverse=bool(a > b)):
+def _requested_points(problem: BautinProblem, first: _CurvePoint, second: _CurvePoint) -> list[_CurvePoint]:
+    """Points at requested third parameters between `first` and `second`; raises Unsolvable, ValueError."""
+    a, b = first.v[2], second.v[2]
+    requested = map(problem.axes[2].coordinate, problem.requested_values)
+    inner = [z for z in requested if min(a, b) < z < max(a, b)]
+    points = []
+    for z in sorted(inner, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
-            guess = here.v + (z - a) / (b - a) * (there.v - here.v)
+            guess = first.v + (z - a) / (b - a) * (second.v - first.v)
             guess[2] = z
-            found.append(problem.solve_point(guess, 2))
-    return found
+            points.append(problem.solve_point(guess, 2))
+    return points

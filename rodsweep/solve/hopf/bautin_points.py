@@ -103,14 +103,14 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     )
     signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled_points))])
     points = []
-    unlocated = 0
-    decided = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
-    for a, b in zip(decided[:-1], decided[1:], strict=True):
+    unlocated_count = 0
+    decided_indices = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
+    for a, b in zip(decided_indices[:-1], decided_indices[1:], strict=True):
         if signs[a] * signs[b] < 0:
-            found = hopf.generalised_hopf_between(int(a), int(b))
-            points += [found] if found else []
-            unlocated += found is None
-    return CurveCriticality(signs, tuple(points), unlocated)
+            bautin_point = hopf.generalised_hopf_between(int(a), int(b))
+            points += [bautin_point] if bautin_point else []
+            unlocated_count += bautin_point is None
+    return CurveCriticality(signs, tuple(points), unlocated_count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,29 +133,29 @@ class HopfCurve:
         try:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
-            rough = self.hopf_point_on_plane(
+            hopf_point = self.hopf_point_on_plane(
                 v, normal, GENERALISED_HOPF_SETTINGS.first_sign_accuracy
             ).coefficients.criticality
             # An accurate c, which costs more, is needed only where the rough sign is undecided.
-            return rough or self.hopf_point_on_plane(v, normal, self.accuracy).coefficients.criticality
+            return hopf_point or self.hopf_point_on_plane(v, normal, self.accuracy).coefficients.criticality
         except FAILURES:
             return math.nan
 
     def hopf_point_on_plane(self, guess: Array, normal: Array, accuracy: float) -> _HopfNormalForm:
         """The Hopf point at which the Hopf curve crosses the plane through `guess`, (3,), with normal vector
         `normal`, (3,), and its normal form; raises Unsolvable. accuracy: relative accuracy of c."""
-        there = self.boundary.point_near(guess, normal)
-        if there is None:
+        solution = self.boundary.point_near(guess, normal)
+        if solution is None:
             raise Unsolvable("Newton's method finds no Hopf point near a known point of the Hopf curve")
-        x, y, h = map(float, there.v)
+        x, y, h = map(float, solution.v)
         rod = self.boundary.plane.rod_at(x, y)
         w = complex(0.0, math.exp(h))
         slope = path_problem(Path(rod, "F")).eigenvalue(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
-        error = there.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
-        hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=there.error * w.imag)
-        return _HopfNormalForm(there, hopf_coefficients(rod, hopf, accuracy))
+        error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
+        hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag)
+        return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
 
     def generalised_hopf_between(self, first: int, last: int) -> GeneralisedHopfPoint | None:
         """The generalised Hopf point between the stored points with the indices `first` and `last`, at which
@@ -179,42 +179,47 @@ class HopfCurve:
                     xtol=GENERALISED_HOPF_SETTINGS.tolerance,
                 )
             )
-            here, before, beyond = (
+            hopf_point, start_values, beyond = (
                 on_chord(s + side * GENERALISED_HOPF_SETTINGS.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond.relative_real_part - before.relative_real_part) / (
+        slope = (beyond.relative_real_part - start_values.relative_real_part) / (
             2 * GENERALISED_HOPF_SETTINGS.relative_difference_step
         )
-        if abs(here.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_relative_real_part or slope == 0:
+        if (
+            abs(hopf_point.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_relative_real_part
+            or slope == 0
+        ):
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
-        passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
-        along = here.coefficients.landau_error / abs(slope) + GENERALISED_HOPF_SETTINGS.tolerance
-        return self.as_generalised_hopf(here, first + int(passed.sum()), chord * along)
+        is_passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
+        error_along = hopf_point.coefficients.landau_error / abs(slope) + GENERALISED_HOPF_SETTINGS.tolerance
+        return self.as_generalised_hopf(hopf_point, first + int(is_passed.sum()), chord * error_along)
 
-    def as_generalised_hopf(self, here: _HopfNormalForm, after: int, moved: Array) -> GeneralisedHopfPoint:
-        """The generalised Hopf point at the Hopf point `here`, with errors of both parameters.
+    def as_generalised_hopf(
+        self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array
+    ) -> GeneralisedHopfPoint:
+        """The generalised Hopf point at the Hopf point `hopf_point`, with errors of both parameters.
 
-        after: index of the curve's stored point before this point. moved: position error along the chord,
-        (3,).
+        index_before: index of the curve's stored point before this point. position_error: position error
+        along the chord, (3,).
         """
-        there = here.boundary_point
+        solution = hopf_point.boundary_point
         axes = self.boundary.plane.axes
-        tangent = there.tangent
+        tangent = solution.tangent
         # The error along the curve is the error along the chord over the cosine of their angle.
-        way = tangent * float(np.linalg.norm(moved) ** 2 / (tangent @ moved))
-        values = [axis.value(float(x)) for axis, x in zip(axes, there.v[:2], strict=True)]
+        tangent_error = tangent * float(np.linalg.norm(position_error) ** 2 / (tangent @ position_error))
+        values = [axis.value(float(x)) for axis, x in zip(axes, solution.v[:2], strict=True)]
         errors = [
-            abs(axis.parameter_per_coordinate(value)) * (abs(float(off)) + there.error)
-            for axis, value, off in zip(axes, values, way[:2], strict=True)
+            abs(axis.parameter_per_coordinate(value)) * (abs(float(coordinate_error)) + solution.error)
+            for axis, value, coordinate_error in zip(axes, values, tangent_error[:2], strict=True)
         ]
         return GeneralisedHopfPoint(
-            preceding_index=after,
+            preceding_index=index_before,
             values=(values[0], values[1]),
             errors=(errors[0], errors[1]),
-            frequency=math.exp(float(there.v[2])),
-            growth_slope=here.coefficients.growth_slope,
-            landau_imag=here.coefficients.landau.imag,
+            frequency=math.exp(float(solution.v[2])),
+            growth_slope=hopf_point.coefficients.growth_slope,
+            landau_imag=hopf_point.coefficients.landau.imag,
         )

@@ -61,16 +61,16 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
     def search() -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
         path = Path(replace(rod.without_nonlinear_parameters, F=0.0), "F")
-        found = _hopf_points(path, end, request.certify, request.max_hopf_points)
+        hopf_points = _hopf_points(path, end, request.certify, request.max_hopf_points)
         coefficients = tuple(
-            _coefficients(rod, hopf, request) for hopf in found.thresholds[: request.max_hopf_points]
+            _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_hopf_points]
         )
-        status, message = _status_and_message(found, coefficients, request)
+        status, message = _status_and_message(hopf_points, coefficients, request)
         return Criticality(
             status=status,
-            search_result=found,
+            search_result=hopf_points,
             coefficients=coefficients,
-            end=found.searched_interval[1],
+            end=hopf_points.searched_interval[1],
             message=message,
         )
 
@@ -108,24 +108,27 @@ def _empty_criticality(cause: str) -> Criticality:
 
 
 def _status_and_message(
-    found: ThresholdSearchResult, coefficients: tuple[HopfCoefficients, ...], request: CriticalityRequest
+    hopf_points: ThresholdSearchResult,
+    coefficients: tuple[HopfCoefficients, ...],
+    request: CriticalityRequest,
 ) -> tuple[CriticalityStatus, str]:
-    """Returns (status, message) from the Hopf points `found` and their coefficients. status: the most serious
-    problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not proved."""
+    """Returns (status, message) from the Hopf points `hopf_points` and their coefficients. status: the most
+    serious problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not
+    proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
-    known = [c for c in coefficients if c.are_known]
-    worse = any(c.error > request.accuracy * abs(c.value) for c in found.thresholds) or any(
-        c.largest_error > request.accuracy for c in known
+    known_coefficients = [c for c in coefficients if c.are_known]
+    is_inaccurate = any(c.error > request.accuracy * abs(c.value) for c in hopf_points.thresholds) or any(
+        c.largest_error > request.accuracy for c in known_coefficients
     )
     # From the most to the least serious.
     verdicts = {
-        CriticalityStatus.ended_early: found.ended_early,
+        CriticalityStatus.ended_early: hopf_points.ended_early,
         CriticalityStatus.coefficients_failed: bool(failures),
-        CriticalityStatus.window_open: not math.isnan(found.open_range[0]),
-        CriticalityStatus.list_full: len(found.thresholds) > request.max_hopf_points,
-        CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known),
-        CriticalityStatus.accuracy_not_reached: worse,
-        CriticalityStatus.not_certified: request.certify and not found.proved,
+        CriticalityStatus.window_open: not math.isnan(hopf_points.open_range[0]),
+        CriticalityStatus.list_full: len(hopf_points.thresholds) > request.max_hopf_points,
+        CriticalityStatus.sign_undecided: any(c.criticality == 0 for c in known_coefficients),
+        CriticalityStatus.accuracy_not_reached: is_inaccurate,
+        CriticalityStatus.not_certified: request.certify and not hopf_points.proved,
     }
-    status = next((status for status, holds in verdicts.items() if holds), CriticalityStatus.ok)
-    return status, "; ".join(filter(None, (failures, found.doubt_text)))
+    status = next((status for status, applies in verdicts.items() if applies), CriticalityStatus.ok)
+    return status, "; ".join(filter(None, (failures, hopf_points.doubt_text)))

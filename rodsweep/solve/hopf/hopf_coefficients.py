@@ -112,36 +112,36 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         w,
         min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
     )
-    fine = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
+    fine_form = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
     change = math.inf
     rounding = 0.0
     for number in range(HOPF_COEFFICIENT_SETTINGS.max_refinements):
-        here = Elements(fine.form.mesh.edges, fine.form.mesh.order)
-        more = (
-            elements_with_third_more_unknowns(here)
+        elements = Elements(fine_form.form.mesh.edges, fine_form.form.mesh.order)
+        finer_elements = (
+            elements_with_third_more_unknowns(elements)
             if number
-            else Elements(here.edges, here.order + HOPF_COEFFICIENT_SETTINGS.order_increase)
+            else Elements(elements.edges, elements.order + HOPF_COEFFICIENT_SETTINGS.order_increase)
         )
-        coarse = fine
-        fine = normal_form_on(more, rod, w, accuracy)
-        change = abs(fine.landau - coarse.landau) / abs(fine.landau)
-        rounding = _landau_rounding_error(fine)
+        coarse_form = fine_form
+        fine_form = normal_form_on(finer_elements, rod, w, accuracy)
+        change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
+        rounding = _landau_rounding_error(fine_form)
         if change <= max(accuracy, rounding):
             break
     # The slope of the root of D has no error of a mesh.
-    slope, bend = _eigenvalue_derivatives(rod, w)
+    slope, second_derivative = _eigenvalue_derivatives(rod, w)
     if rod.is_uniform_and_linear:
-        off = abs(fine.eigenvalue_slope - slope) / abs(slope)
+        slope_difference = abs(fine_form.eigenvalue_slope - slope) / abs(slope)
     else:  # for an arm the root's slope is a difference quotient, less accurate than the slope on the mesh
-        slope = fine.eigenvalue_slope
-        off = abs(fine.eigenvalue_slope - coarse.eigenvalue_slope) / abs(slope)
+        slope = fine_form.eigenvalue_slope
+        slope_difference = abs(fine_form.eigenvalue_slope - coarse_form.eigenvalue_slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
-    unit = bend / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    moved = HOPF_COEFFICIENT_SETTINGS.max_force_sensitivity * hopf.error * unit
-    landau_error = max(change, rounding) + moved
-    slope_error = max(off, rounding) + hopf.error * bend / abs(slope)
+    unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
+    force_effect = HOPF_COEFFICIENT_SETTINGS.max_force_sensitivity * hopf.error * unit
+    landau_error = max(change, rounding) + force_effect
+    slope_error = max(slope_difference, rounding) + hopf.error * second_derivative / abs(slope)
     return _coefficients_with_errors(
-        replace(fine, eigenvalue_slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
+        replace(fine_form, eigenvalue_slope=slope), landau_error, slope_error, hopf.error / abs(rod.F)
     )
 
 
@@ -179,8 +179,8 @@ def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
     problem = path_problem(Path(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
-    _, before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
-    return complex(slope), abs(slope - before) / step
+    _, slope_before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
+    return complex(slope), abs(slope - slope_before) / step
 
 
 def _landau_rounding_error(normal: NormalForm) -> float:

@@ -52,18 +52,18 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     most `max_unstable_y`. The straight rod must be stable. Raises Unsolvable if the search for Hopf points or
     a coefficient fails.
     """
-    low = rod.F / SUBCRITICAL_HOPF_SETTINGS.max_force_ratio
-    high = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
-    if not 0 < low < high:
+    min_force = rod.F / SUBCRITICAL_HOPF_SETTINGS.max_force_ratio
+    max_force = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
+    if not 0 < min_force < max_force:
         return None
-    crossings = find_axis_crossings(Path(rod, "F"), low, high, certify=False).thresholds
-    above = [one for one in crossings if one.value > rod.F]
-    below = [one for one in crossings if one.value <= rod.F]
-    nearest = above[:1] + below[-1:]
+    crossings = find_axis_crossings(Path(rod, "F"), min_force, max_force, certify=False).thresholds
+    crossings_above = [crossing for crossing in crossings if crossing.value > rod.F]
+    crossings_below = [crossing for crossing in crossings if crossing.value <= rod.F]
+    nearest = crossings_above[:1] + crossings_below[-1:]
     for hopf in sorted(nearest, key=lambda one: abs(one.value - rod.F)):
-        found = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
-        y = abs(found.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
+        coefficients = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
+        y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.
-        if found.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
+        if coefficients.criticality > 0 and y <= SUBCRITICAL_HOPF_SETTINGS.max_unstable_y:
             return SubcriticalHopf(hopf.value, y)
     return None

@@ -55,55 +55,55 @@ def converged_modes(
     estimate; None if even the second mesh has more than `ModeMeshSettings.max_unknowns` unknowns. wave: wave
     number that the mesh must resolve. accuracy: requested relative accuracy, at which the refinement ends."""
     mesh = mesh_for(rod, wave, mesh_accuracy_for_modes(accuracy))
-    gaps = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
-    coarse = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
-    best: ModeVectors | None = None
-    least = inf
+    separations = np.array([eigenvalue_separation(rod, complex(w)) for w in eigenvalues])
+    coarse_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
+    best_modes: ModeVectors | None = None
+    min_error = inf
     for _ in range(MODE_MESH_SETTINGS.max_meshes):
-        if best is None:
+        if best_modes is None:
             mesh = replace(mesh, order=mesh.order + MODE_MESH_SETTINGS.order_increase)
         else:
             mesh = finer_mesh(rod, mesh)
         if mesh.unknown_count > MODE_MESH_SETTINGS.max_unknowns:
             break
-        fine = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
-        result = _with_errors_from_coarse(coarse, fine, gaps)
+        fine_modes = mode_vectors(rod, pencil_on(mesh), eigenvalues, points)
+        result = _with_errors_from_coarse(coarse_modes, fine_modes, separations)
         error = max(result.errors_by_name().values())
         # If a finer mesh does not halve the error, rounding errors dominate.
-        improved = error < least / 2
-        if best is None or error < least:
-            best = result
-            least = error
-        if least <= accuracy or not improved:
+        has_improved = error < min_error / 2
+        if best_modes is None or error < min_error:
+            best_modes = result
+            min_error = error
+        if min_error <= accuracy or not has_improved:
             break
-        coarse = fine
-    return best
+        coarse_modes = fine_modes
+    return best_modes
 
 
-def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, gaps: Array) -> ModeVectors:
+def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations: Array) -> ModeVectors:
     """The modes `fine` with their differences from the modes `coarse` as errors; a rounding error is added to
-    the errors of the condition numbers. gaps: distance from each eigenvalue to the nearest other eigenvalue,
-    (modes,)."""
+    the errors of the condition numbers. separations: distance from each eigenvalue to the nearest other
+    eigenvalue, (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = (
         (coarse.right_modes, fine.right_modes),
         (coarse.mode_strains, fine.mode_strains),
         (coarse.left_modes, fine.left_modes),
     )
-    for old, new in pairs:
-        size = np.abs(new).max(axis=2)
-        change = np.abs(new - old).max(axis=2)
-        relative = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
-        error = np.maximum(error, relative.max(axis=0))
+    for coarse_field, fine_field in pairs:
+        size = np.abs(fine_field).max(axis=2)
+        change = np.abs(fine_field - coarse_field).max(axis=2)
+        relative_change = np.where(size > 0, change / np.where(size > 0, size, 1.0), change)
+        error = np.maximum(error, relative_change.max(axis=0))
     # Rounding turns no eigenvector of a normal operator, whose condition numbers are 1.
-    turned = (
+    angles = (
         MODE_MESH_SETTINGS.condition_rounding_factor
         * (1 - 1 / fine.condition**2)
         * fine.rounding
-        / np.maximum(gaps, EXPONENT_SETTINGS.least_divisor)
+        / np.maximum(separations, EXPONENT_SETTINGS.least_divisor)
     )
-    moved = np.abs(coarse.condition / fine.condition - 1)
-    return replace(fine, mode_error=error, condition_error=moved + turned)
+    condition_change = np.abs(coarse.condition / fine.condition - 1)
+    return replace(fine, mode_error=error, condition_error=condition_change + angles)
 
 
 def eigenvalue_separation(rod: Rod, w: complex) -> float:
@@ -113,5 +113,5 @@ def eigenvalue_separation(rod: Rod, w: complex) -> float:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)
     value = determinant.value(w)
-    second = abs(second_derivative(w, value.S, determinant))
-    return 2 * abs(value.D_w) / max(second, ulp(0.0))
+    D_ww = abs(second_derivative(w, value.S, determinant))
+    return 2 * abs(value.D_w) / max(D_ww, ulp(0.0))

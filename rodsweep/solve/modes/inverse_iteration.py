@@ -127,8 +127,8 @@ def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Comple
     # Random rounding errors of the entries of A add up in squares: an rms estimate, not a bound.
     squares = (np.abs(Z) ** 2 * (np.abs(A) ** 2 @ np.abs(X) ** 2)).sum(axis=0)
     rounding = ROUND_OFF * np.sqrt(squares) / np.abs((B[:, None] * Z * X).sum(axis=0))
-    right, left = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
-    return right, left, rounding
+    right_vectors, left_vectors = (V * factors_to_unit_tip(*form.displacements(V)) for V in (X, Z))
+    return right_vectors, left_vectors, rounding
 
 
 def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
@@ -148,13 +148,13 @@ def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
     the result with the larger growth is returned.
     """
     x: NDArray = np.ones(len(B))
-    before = x
+    previous = x
     last = growth = 0.0
     for _ in range(MODE_ITERATION_SETTINGS.iterations):
-        before = x
+        previous = x
         last = growth
         x = inverse @ (B * x)
         growth = float(np.abs(x).max())
         x = x / growth
     # Growth falls once rounding errors of the iterate dominate.
-    return x if growth >= last else before
+    return x if growth >= last else previous

@@ -91,25 +91,25 @@ def solve_modes(rod: Rod, request: ModesRequest) -> Modes:
     )
     if not np.isfinite(spectrum.eigenvalues).all():
         return outcome
-    found = outcome_or_failure(
+    modes = outcome_or_failure(
         lambda: _with_modes(rod, request, outcome),
         lambda cause: replace(outcome, status=SpectrumStatus.failed, message=cause),
     )
-    return replace(found, seconds=spectrum.seconds + found.seconds)
+    return replace(modes, seconds=spectrum.seconds + modes.seconds)
 
 
 def _modes_by_equivalent_rod(rod: Rod, request: ModesRequest) -> Modes:
     """Modes of a uniform rod of nonlinear material, from the equivalent linear rod; times are rescaled."""
     linear, rate = rod.equivalent_linear_rod
-    found = solve_modes(linear, request)
-    spectrum = found.spectrum
-    growth = found.growth
+    modes_of_linear = solve_modes(linear, request)
+    spectrum = modes_of_linear.spectrum
+    growth = modes_of_linear.growth
     return replace(
-        found,
+        modes_of_linear,
         spectrum=replace(
             spectrum, eigenvalues=rate * spectrum.eigenvalues, error_estimate=rate * spectrum.error_estimate
         ),
-        vectors=replace(found.vectors, rounding=rate * found.vectors.rounding),
+        vectors=replace(modes_of_linear.vectors, rounding=rate * modes_of_linear.vectors.rounding),
         growth=replace(
             growth,
             transient_time=growth.transient_time / rate,
@@ -138,24 +138,24 @@ def _with_modes(rod: Rod, request: ModesRequest, outcome: Modes) -> Modes:
     if request.computes_growth:
         rate = float(abs(spectrum.eigenvalues[0]))
         mesh = mesh_for(rod, max(wave, LEADING_MODE_SETTINGS.min_growth_wave_number), request.accuracy)
-        grows = (
+        is_growing = (
             spectrum.eigenvalues.real
             > LEADING_MODE_SETTINGS.min_growth_rate_over_error * spectrum.error_estimate
         ).any()
-        known = spectrum.status != SpectrumStatus.undecided
-        stable = True if known else None
-        if grows or spectrum.unstable_count > 0:
+        is_proved = spectrum.status != SpectrumStatus.undecided
+        stable = True if is_proved else None
+        if is_growing or spectrum.unstable_count > 0:
             stable = False
         growth = growth_of(rod, mesh, request.accuracy, stable, rate)
         errors |= growth.errors_by_name(rate)
         result = replace(result, growth=growth if stable is not None else replace(growth, growth_error=nan))
-    culprit, error = max(errors.items(), key=lambda item: item[1])
+    quantity, error = max(errors.items(), key=lambda item: item[1])
     if error <= request.accuracy:
         return result
     is_known = np.isfinite(error)
     message = (
-        f"the error of the {culprit} is {error:.0e}, above the requested {request.accuracy:.0e}"
+        f"the error of the {quantity} is {error:.0e}, above the requested {request.accuracy:.0e}"
         if is_known
-        else f"no digit of the {culprit} is known"
+        else f"no digit of the {quantity} is known"
     )
     return replace(result, status=SpectrumStatus.accuracy_not_reached, message=message)

@@ -60,36 +60,36 @@ def largest_propagator_norm(
     times[[0, -1]] = span
     squares, bends = _squared_norms_and_curvature_bounds(propagator, times)
     i = int(squares.argmax())
-    best = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
+    maximum = _local_maximum(propagator, times[max(i - 1, 0)], times[min(i + 1, count - 1)])
     t = times[:-1]
     h = np.diff(times)
     left = squares[:-1]
     right = squares[1:]
     bend = bends[:-1]
-    ceiling = best[0]
+    upper_bound = maximum[0]
     for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
         bound = np.sqrt(_squared_norm_bound(h, left, right, bend, abscissa))
-        enough = max(best[0], floor) * (1 + tolerance)
-        open_ = bound > enough
-        given_up = (
+        sufficient_bound = max(maximum[0], floor) * (1 + tolerance)
+        open_ = bound > sufficient_bound
+        is_abandoned = (
             halving == NORM_MAXIMUM_SETTINGS.max_halvings
             or int(open_.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals
         )
-        ceiling = max(ceiling, bound[~open_ | given_up].max(initial=0.0))
-        if given_up or not open_.any():
+        upper_bound = max(upper_bound, bound[~open_ | is_abandoned].max(initial=0.0))
+        if is_abandoned or not open_.any():
             break
         # Only intervals in which a larger norm may hide are halved.
         t, h, left, right, bend = (x[open_] for x in (t, h / 2, left, right, bend))
-        middle, new_bend = _squared_norms_and_curvature_bounds(propagator, t + h)
+        middle, middle_bends = _squared_norms_and_curvature_bounds(propagator, t + h)
         i = int(middle.argmax())
-        if middle[i] > best[0] ** 2:
-            best = max(best, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
+        if middle[i] > maximum[0] ** 2:
+            maximum = max(maximum, _local_maximum(propagator, t[i], t[i] + 2 * h[i]))
         t = np.concatenate([t, t + h])
         h = np.concatenate([h, h])
         left = np.concatenate([left, middle])
         right = np.concatenate([middle, right])
-        bend = np.concatenate([bend, new_bend])
-    return best, max(ceiling, best[0])
+        bend = np.concatenate([bend, middle_bends])
+    return maximum, max(upper_bound, maximum[0])
 
 
 def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) -> tuple[Array, Array]:
@@ -114,15 +114,15 @@ def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscis
 def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[float, float]:
     """Returns (|exp(L t)|, t) at a maximum between the times `low` and `high`: the zero of the derivative, by
     the Illinois regula falsi; the end with the larger norm if the derivatives show no maximum between."""
-    at_low, rate_low = propagator.norm_and_log_slope(low)
-    at_high, rate_high = propagator.norm_and_log_slope(high)
+    low_norm, rate_low = propagator.norm_and_log_slope(low)
+    high_norm, rate_high = propagator.norm_and_log_slope(high)
     if rate_low <= 0 or rate_high >= 0:
-        return max((at_low, low), (at_high, high))
-    best = (0.0, low)
+        return max((low_norm, low), (high_norm, high))
+    maximum = (0.0, low)
     for _ in range(NORM_MAXIMUM_SETTINGS.max_regula_falsi_steps):
         t = (low * rate_high - high * rate_low) / (rate_high - rate_low)
         value, rate = propagator.norm_and_log_slope(t)
-        best = max(best, (value, t))
+        maximum = max(maximum, (value, t))
         if abs(rate) * (high - low) <= NORM_MAXIMUM_SETTINGS.max_relative_rise_in_bracket:
             break
         if rate > 0:
@@ -135,4 +135,4 @@ def _local_maximum(propagator: Propagator, low: float, high: float) -> tuple[flo
             high = t
             rate_high = rate
             rate_low = rate_low / 2
-    return best
+    return maximum

@@ -22,7 +22,7 @@ class NumericalAbscissaSettings:
     """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
     large."""
     final_shift_distance: float = 0.05
-    """Distance of the next shift above the present estimate a of the numerical abscissa, divided by 1 + |a|:
+    """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was
     at most twice this distance above it."""
     min_positive_ratio: float = 1e-9
@@ -58,14 +58,14 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
         # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative
         # is nearest.
         abscissa = shift + 1 / float(values[0])
-        close = (
+        is_close = (
             abscissa
             + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance * abs(abscissa)
             + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance
         )
-        if shift - abscissa <= 2 * (close - abscissa):
+        if shift - abscissa <= 2 * (is_close - abscissa):
             return abscissa
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the
         # digits.
-        shift = close
+        shift = is_close
     return nan

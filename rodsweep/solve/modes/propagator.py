@@ -45,9 +45,9 @@ def shifted_inverse(A: Array, B: Array, shift: float) -> Array:
     every rod, also for c2 = 0 or gamma3 = 0; its zero eigenvalues are the infinite eigenvalues of L. For
     gamma3 = 0 state and norm contain y alone.
     """
-    moving = B > 0
-    root = np.sqrt(B[moving])
-    inverse = np.linalg.inv(A - np.diag(shift * B))[np.ix_(moving, moving)]
+    has_derivative = B > 0
+    root = np.sqrt(B[has_derivative])
+    inverse = np.linalg.inv(A - np.diag(shift * B))[np.ix_(has_derivative, has_derivative)]
     return root[:, None] * inverse * root
 
 
@@ -62,7 +62,7 @@ class Propagator:
 
     def __init__(self, G: Array):
         self.G = G
-        values, right = np.linalg.eig(G)
+        values, right_vectors = np.linalg.eig(G)
         finite = np.nonzero(
             np.abs(values) > PROPAGATOR_SETTINGS.infinite_eigenvalue_ratio * np.abs(values).max()
         )[0]
@@ -71,8 +71,8 @@ class Propagator:
         w = 1 / values[finite]
         order = np.lexsort((-w.imag, -w.real))
         self.w: Complex = w[order].astype(complex)
-        self.right = right[:, finite[order]]
-        self.left = np.linalg.inv(right)[finite[order]].T
+        self.right = right_vectors[:, finite[order]]
+        self.left = np.linalg.inv(right_vectors)[finite[order]].T
         self.generator: Array = np.zeros((0, 0))
         self.overlap: Array = np.zeros((0, 0))
 
@@ -92,8 +92,8 @@ class Propagator:
         Q = _orthonormal_basis(self.right[:, :k], self.w[:k])
         Z = _orthonormal_basis(self.left[:, :k], self.w[:k])
         # In the basis of nested invariant subspaces G is block triangular: entries below are rounding errors.
-        inside = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
-        self.generator = np.linalg.inv(np.where(inside, Q.T @ self.G @ Q, 0.0))
+        mask = np.tri(k, dtype=bool).T | np.diag(self.w[: k - 1].imag > 0, -1)
+        self.generator = np.linalg.inv(np.where(mask, Q.T @ self.G @ Q, 0.0))
         self.overlap = Z.T @ Q
         return k
 
@@ -143,12 +143,12 @@ def matrix_exponential(matrices: Array) -> Array:
     """
     size = float(np.abs(matrices).sum(axis=-2).max())
     squarings = max(0, int(np.ceil(np.log2(size))) + 1) if size > 0 else 0
-    scaled = matrices / 2.0**squarings
+    scaled_matrices = matrices / 2.0**squarings
     identity = np.eye(matrices.shape[-1])
-    powers = [identity, scaled, scaled @ scaled]
-    powers += [powers[2] @ scaled, powers[2] @ powers[2]]
+    powers = [identity, scaled_matrices, scaled_matrices @ scaled_matrices]
+    powers += [powers[2] @ scaled_matrices, powers[2] @ powers[2]]
     # exp(x) - 1 is squared, not exp(x): small norms keep their digits, since (1 + r)^2 - 1 = 2 r + r^2.
-    result = np.zeros_like(scaled)
+    result = np.zeros_like(scaled_matrices)
     for order in range(PROPAGATOR_SETTINGS.taylor_terms - 4, -1, -4):  # four terms a product
         terms = sum(powers[i] / float(factorial(order + i)) for i in range(4) if order + i > 0)
         result = terms + powers[4] @ result

@@ -94,10 +94,10 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
     stable: whether the rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if
     undecided.
     """
-    best = UNKNOWN_GROWTH
-    least = inf
+    best_growth = UNKNOWN_GROWTH
+    min_error = inf
     abscissa = numerical_abscissa(rod, pencil_on(mesh))
-    coarse = None
+    coarse_propagator = None
     for step in range(GROWTH_SETTINGS.max_meshes):
         order = (
             mesh.order + GROWTH_SETTINGS.order_increase
@@ -109,27 +109,27 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
         if step and mesh.unknown_count > GROWTH_SETTINGS.max_unknowns:
             break
         pencil = pencil_on(mesh)
-        before = abscissa
+        previous_abscissa = abscissa
         abscissa = numerical_abscissa(rod, pencil)
-        change = abs(abscissa - before)
-        found = GROWTH_BY_STABILITY[stable]
+        change = abs(abscissa - previous_abscissa)
+        growth = GROWTH_BY_STABILITY[stable]
         # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.
-        if found is None and abscissa + change <= 0:
-            found = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
-        if found is None:
-            coarse = coarse or propagator_of(rod, pencil_on(last))
-            fine = propagator_of(rod, pencil)
-            found = transient_growth(coarse, fine, abscissa + change, accuracy)
-            coarse = fine
-        result = replace(found, numerical_abscissa=abscissa, abscissa_error=change)
+        if growth is None and abscissa + change <= 0:
+            growth = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
+        if growth is None:
+            coarse_propagator = coarse_propagator or propagator_of(rod, pencil_on(last))
+            fine_propagator = propagator_of(rod, pencil)
+            growth = transient_growth(coarse_propagator, fine_propagator, abscissa + change, accuracy)
+            coarse_propagator = fine_propagator
+        result = replace(growth, numerical_abscissa=abscissa, abscissa_error=change)
         error = max(inf if isnan(error) else error for error in result.errors_by_name(rate).values())
-        improved = error < least / 2
-        if error < least or step == 0:
-            best = result
-            least = error
-        if least <= accuracy or not improved:
+        has_improved = error < min_error / 2
+        if error < min_error or step == 0:
+            best_growth = result
+            min_error = error
+        if min_error <= accuracy or not has_improved:
             break
-    return best
+    return best_growth
 
 
 def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
@@ -148,42 +148,43 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         return UNKNOWN_GROWTH
     if min(len(fine.w), len(coarse.w)) <= leading_count:
         return UNKNOWN_GROWTH
-    patience = log(1 / accuracy) + GROWTH_SETTINGS.truncation_exponent
+    decay_exponent = log(1 / accuracy) + GROWTH_SETTINGS.truncation_exponent
     tolerance = max(GROWTH_SETTINGS.search_tolerance_ratio * accuracy, GROWTH_SETTINGS.min_search_tolerance)
-    best = (1.0, 0.0)
-    ceiling = 1.0
-    tail = stop = 0.0
+    maximum = (1.0, 0.0)
+    upper_bound = 1.0
+    excess = end = 0.0
     k = GROWTH_SETTINGS.min_modes
     while True:
         k = fine.use_leading_modes(k)
         # After this time the omitted modes have decayed to the accuracy; before, more modes are needed.
-        first = patience / abs(fine.w[min(k, len(fine.w) - 1)].real)
-        if not stop:
-            stop, tail = _end_of_growth(fine, first, patience)
-        if stop > first and fine.norm_and_log_slope(first)[0] >= 1:
-            peak, bound = largest_propagator_norm(fine, (first, stop), abscissa, best[0], tolerance)
-            best = max(best, peak)
-            ceiling = max(ceiling, bound)
-        stop = first
+        first = decay_exponent / abs(fine.w[min(k, len(fine.w) - 1)].real)
+        if not end:
+            end, excess = _end_of_growth(fine, first, decay_exponent)
+        if end > first and fine.norm_and_log_slope(first)[0] >= 1:
+            peak, bound = largest_propagator_norm(fine, (first, end), abscissa, maximum[0], tolerance)
+            maximum = max(maximum, peak)
+            upper_bound = max(upper_bound, bound)
+        end = first
         # |exp(L t)| <= exp(abscissa t) bounds the growth over the early times that the modes do not resolve.
-        before = exp(min(abscissa * first, NORM_MAXIMUM_SETTINGS.max_exponent))
-        if before <= best[0] * (1 + tolerance) or k == len(fine.w):
+        early_bound = exp(min(abscissa * first, NORM_MAXIMUM_SETTINGS.max_exponent))
+        if early_bound <= maximum[0] * (1 + tolerance) or k == len(fine.w):
             break
         k = min(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k), len(fine.w))
-    hidden = max(ceiling, before) / best[0] - 1 + tail
-    if best[0] > 1:
+    error = max(upper_bound, early_bound) / maximum[0] - 1 + excess
+    if maximum[0] > 1:
         # The meshes are compared at the peak and at the geometric mean of the peak's time and the earliest
         # time that may matter; the coarser mesh uses more modes if possible.
         coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k))
-        times = best[1], sqrt(best[1] * max(first, log(best[0]) / abscissa))
-        hidden += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
-    return Growth(transient_growth=best[0], transient_time=best[1], growth_error=hidden)
+        times = maximum[1], sqrt(maximum[1] * max(first, log(maximum[0]) / abscissa))
+        error += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
+    return Growth(transient_growth=maximum[0], transient_time=maximum[1], growth_error=error)
 
 
-def _end_of_growth(propagator: Propagator, earliest_end: float, patience: float) -> tuple[float, float]:
+def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: float) -> tuple[float, float]:
     """Returns (end, excess). end: a time after which |exp(L t)| does not exceed its earlier values. excess:
     relative amount by which a later norm may nevertheless exceed these values. earliest_end: earliest end, in
-    tau2. patience: the other modes are negligible once they are exp(-patience) times the leading modes.
+    tau2. decay_exponent: the other modes are negligible once they are exp(-decay_exponent) times the leading
+    modes.
 
     Since |exp(L (t + r))| <= |exp(L t)| |exp(L r)|, any time with |exp(L t)| < 1 is an end. Near a threshold
     such a time is very late. But once the leading pair dominates, the motion repeats itself and shrinks every
@@ -194,13 +195,15 @@ def _end_of_growth(propagator: Propagator, earliest_end: float, patience: float)
     m = 2 if w[0].imag else 1
     gap = w[0].real - w[m].real
     # Norm of the projection onto the leading modes: how large non-normal modes may become before they decay.
-    share = 1 / np.linalg.svd(propagator.overlap[:m, :m], compute_uv=False)[-1]
-    alone = (patience + log(share)) / gap if gap > 0 else inf
+    norm = 1 / np.linalg.svd(propagator.overlap[:m, :m], compute_uv=False)[-1]
+    pair_only_time = (decay_exponent + log(norm)) / gap if gap > 0 else inf
     end = earliest_end
-    while end < alone:
+    while end < pair_only_time:
         if propagator.norm_and_log_slope(end)[0] < 1:
             return end, 0.0
         end *= 2
-    alone = max(alone, earliest_end)
+    pair_only_time = max(pair_only_time, earliest_end)
     # The norm of a decaying pair repeats with half its period, so a maximum may be half a period later.
-    return alone + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.truncation_contribution(m, alone)
+    return pair_only_time + (pi / w[0].imag if m == 2 else 0.0), 2 * propagator.truncation_contribution(
+        m, pair_only_time
+    )

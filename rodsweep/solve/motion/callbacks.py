@@ -58,11 +58,11 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
     Udot, R: handles of vectors. context: address of the context record."""
     c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
-    at = context + OUTPUTS_OFFSET
-    outputs = integers_at(at, 3)
-    read_array(U, at)
-    read_array(Udot, at + 8)
-    write_array(R, at + 16)
+    scratch = context + OUTPUTS_OFFSET
+    outputs = integers_at(scratch, 3)
+    read_array(U, scratch)
+    read_array(Udot, scratch + 8)
+    write_array(R, scratch + 16)
     out = doubles_at(outputs[2], n)
     dot = doubles_at(outputs[1], n)
     c.time = t
@@ -72,9 +72,9 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
         write_rate(doubles_at(outputs[0], n), out, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
         for i in range(n):
             out[i] = dot[i] - out[i]
-    release_read(U, at)
-    release_read(Udot, at + 8)
-    release_write(R, at + 16)
+    release_read(U, scratch)
+    release_read(Udot, scratch + 8)
+    release_write(R, scratch + 16)
     return 0
 
 
@@ -86,10 +86,10 @@ def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
     computes the first slope of each step by an additional Newton solve.
     """
     c = record_at(context, CONTEXT_DTYPE)
-    at = context + OUTPUTS_OFFSET
-    write_array(F, at)
-    doubles_at(integers_at(at, 1)[0], c.unknowns)[:] = 0.0
-    release_write(F, at)
+    scratch = context + OUTPUTS_OFFSET
+    write_array(F, scratch)
+    doubles_at(integers_at(scratch, 1)[0], c.unknowns)[:] = 0.0
+    release_write(F, scratch)
     return 0
 
 
@@ -101,27 +101,27 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     PETSc keeps the LU factors of an unchanged B."""
     c = record_at(context, CONTEXT_DTYPE)
     n = c.unknowns
-    at = context + OUTPUTS_OFFSET
-    outputs = integers_at(at, 1)
-    _get_object_state(B, at)
+    scratch = context + OUTPUTS_OFFSET
+    outputs = integers_at(scratch, 1)
+    _get_object_state(B, scratch)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
-    untouched = c.last_matrix == B and c.matrix_state == outputs[0]
-    if c.matrix_due == UP_TO_DATE and c.shift == shift and untouched:
+    is_unchanged = c.last_matrix == B and c.matrix_state == outputs[0]
+    if c.matrix_due == UP_TO_DATE and c.shift == shift and is_unchanged:
         return 0
     J = doubles_at(c.jacobian, n * n).reshape(n, n)
     # The Jacobian is the expensive part; if only the shift is new, the Jacobian is reused.
     if c.matrix_due == AT_ITERATE:
-        read_array(U, at)
+        read_array(U, scratch)
         write_rate_jacobian(doubles_at(outputs[0], n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
-        release_read(U, at)
+        release_read(U, scratch)
     elif c.matrix_due == AT_BASE:
         write_rate_jacobian(doubles_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
-    _get_dense(B, at)
+    _get_dense(B, scratch)
     M = doubles_at(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
-    _restore_dense(B, at)
+    _restore_dense(B, scratch)
     c.last_matrix = B
     _get_object_state(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
@@ -171,8 +171,14 @@ class CallbackWorkspace:
         self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
         root = beam.layout.unknown_count**0.5
-        fresh = {"matrix_due": AT_BASE, "shift": 0.0, "last_step": 0.0, "contraction": 1.0, "measured": 0}
-        self._set_context_fields(fresh | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
+        initial_values = {
+            "matrix_due": AT_BASE,
+            "shift": 0.0,
+            "last_step": 0.0,
+            "contraction": 1.0,
+            "measured": 0,
+        }
+        self._set_context_fields(initial_values | dict.fromkeys(("growing", "stages", "steps", "left"), 0))
         self._set_context_fields({"small_error": error * root, "rounding": floor * root})
         take_steps(self.context)
 
@@ -206,9 +212,9 @@ class CallbackWorkspace:
         """Registers `solve_stage` as the method of `snes`, a SNES of type shell."""
         ksp = snes.getKSP()
         ksp.setOperators(matrix)
-        objects = ts, matrix, ksp, *self._vectors
+        petsc_objects = ts, matrix, ksp, *self._vectors
         self._set_context_fields(
-            {name: entry.handle for name, entry in zip(PETSC_HANDLE_FIELDS, objects, strict=True)}
+            {name: entry.handle for name, entry in zip(PETSC_HANDLE_FIELDS, petsc_objects, strict=True)}
         )
         self.context["most_iterations"] = snes.getTolerances()[3]
         call_petsc("SNESShellSetContext", snes.handle, self.context.ctypes.data)

@@ -61,7 +61,7 @@ CONTEXT_DTYPE = np.dtype(
         ("matrix_state", INTEGER),  # PETSc's state number of this matrix, which increases with every change
         ("factorisations", INTEGER),  # number of LU factorisations so far, for tests
         ("contraction", FLOAT),  # ratio of successive steps of Newton's method
-        ("measured", INTEGER),  # whether the contraction was measured with the present matrix
+        ("measured", INTEGER),  # whether the contraction was measured with the current matrix
         ("growing", INTEGER),  # number of successive growing Newton steps
         ("last_step", FLOAT),  # 2-norm of the last Newton step
         ("small_error", FLOAT),  # 2-norm of an acceptable error
@@ -93,14 +93,14 @@ OUTPUTS_OFFSET, MATRIX_STATE_OFFSET = (CONTEXT_FIELDS[name][1] for name in ("out
 """Offsets, in bytes, of the fields of `CONTEXT_DTYPE` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the present
+"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the current
 iterate of Newton's method."""
 
 
 def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
     """Arrays of the rod `beam` by the names in `ROD_ARRAY_FIELDS`; the shapes differ."""
-    own = beam.nodal_rod._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
-    return {name: own[name] for name in ROD_ARRAY_FIELDS}
+    arrays = beam.nodal_rod._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
+    return {name: arrays[name] for name in ROD_ARRAY_FIELDS}
 
 
 @compiled
@@ -108,16 +108,18 @@ def rod_of(c: Any) -> NodalRod:
     """The integrated rod, as views of the arrays whose addresses are in the context record `c`."""
     d = c.components
     m = c.nodes
-    rest = double_array_at(c.rest_strain, (d, m))
+    rest_strain = double_array_at(c.rest_strain, (d, m))
     compliance = double_array_at(c.compliance, (d, m))
     drag = double_array_at(c.drag, (d, m))
     mobility = double_array_at(c.mobility, (d, m))
-    second = double_array_at(c.mobility_laplacian, (d, m, m))
-    none = integers_at(c.rest_strain, 0)
+    laplacian = double_array_at(c.mobility_laplacian, (d, m, m))
+    empty = integers_at(c.rest_strain, 0)
     jumps = integers_at(c.jumps, c.jump_count)
     sides = double_array_at(c.jump_sides, (c.jump_count, 2, CONSTANTS_PER_JUMP_SIDE))
     tip_stress = doubles_at(c.tip_stress, d)
-    return NodalRod(tip_stress, rest, compliance, drag, mobility, second, none, c.law, jumps, sides)
+    return NodalRod(
+        tip_stress, rest_strain, compliance, drag, mobility, laplacian, empty, c.law, jumps, sides
+    )
 
 
 @compiled

@@ -62,17 +62,17 @@ def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
     # At a distance equal to its length the rod would be straight, and the force not determined.
     end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance * bending.length), atan2(y, x)])
     force = np.zeros(2)
-    reached = 0.0
+    solved_fraction = 0.0
     step = FIXED_TIP_SETTINGS.first_step
-    while reached < 1 and step > FIXED_TIP_SETTINGS.min_step:
-        share = min(1.0, reached + step)
-        radius, angle = start + share * (end - start)
-        found = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
-        if found is None:
+    while solved_fraction < 1 and step > FIXED_TIP_SETTINGS.min_step:
+        fraction = min(1.0, solved_fraction + step)
+        radius, angle = start + fraction * (end - start)
+        solution = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))
+        if solution is None:
             step /= 2
         else:
-            reached = share
-            (Pi, force) = found
+            solved_fraction = fraction
+            (Pi, force) = solution
     return bending.state(Pi)
 
 
@@ -108,19 +108,19 @@ class _BentRod:
         weights = self.mesh.quadrature
         matrix = np.zeros((size + 2, size + 2))
         for _ in range(FIXED_TIP_SETTINGS.max_iterations):
-            first, second = self._derivatives(Pi, force)
+            tip_derivative, second_derivative = self._derivatives(Pi, force)
             # Bending energy minus the work of the force, with the tip's position as two constraints.
-            matrix[:size, :size] = np.diag(weights) - second
-            matrix[:size, size:] = -first.T
-            matrix[size:, :size] = first
-            misplaced = target - self.tip_position(Pi)
-            change = np.linalg.solve(matrix, np.append(first.T @ force - weights * Pi, misplaced))
+            matrix[:size, :size] = np.diag(weights) - second_derivative
+            matrix[:size, size:] = -tip_derivative.T
+            matrix[size:, :size] = tip_derivative
+            tip_error = target - self.tip_position(Pi)
+            change = np.linalg.solve(matrix, np.append(tip_derivative.T @ force - weights * Pi, tip_error))
             # A step that turns the rod by a radian is outside the range of the linearisation.
             if not np.abs(self.angle_matrix @ change[:size]).max() < FIXED_TIP_SETTINGS.max_rotation:
                 return None
             Pi = Pi + change[:size]
             force = force + change[size:]
-            if np.abs(misplaced).max() < FIXED_TIP_SETTINGS.target_tolerance:
+            if np.abs(tip_error).max() < FIXED_TIP_SETTINGS.target_tolerance:
                 return Pi, force
         return None
 
@@ -131,6 +131,6 @@ class _BentRod:
         w = self.mesh.quadrature
         c = np.cos(A @ Pi)
         s = np.sin(A @ Pi)
-        reach = np.array([c * self.h1 - s * self.h2, s * self.h1 + c * self.h2])
-        turned = np.array([-reach[1], reach[0]])
-        return (w * turned) @ A, -A.T @ ((w * (force @ reach))[:, None] * A)
+        tangent = np.array([c * self.h1 - s * self.h2, s * self.h1 + c * self.h2])
+        normal = np.array([-tangent[1], tangent[0]])
+        return (w * normal) @ A, -A.T @ ((w * (force @ tangent))[:, None] * A)

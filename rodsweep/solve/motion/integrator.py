@@ -124,10 +124,10 @@ class Integrator:
         ts.setMaxStepRejections(INTEGRATOR_SETTINGS.max_rejections)
         ts.setMaxSNESFailures(INTEGRATOR_SETTINGS.max_failed_stages)
         options = self.scheme.petsc_options(database.getString(prefix + "ts_type", self.scheme.family))
-        ours = {
+        own_options = {
             prefix + name: value for name, value in options.items() if not database.hasName(prefix + name)
         }
-        for name, value in ours.items():
+        for name, value in own_options.items():
             database.setValue(name, value)
         ts.setErrorIfStepFails(False)
         ts.setExactFinalTime(PETSc.TS.ExactFinalTime.MATCHSTEP)
@@ -135,7 +135,7 @@ class Integrator:
             ts.setFromOptions()
             ts.getSNES().getKSP().setFromOptions()  # a SNES of type shell does not do this
         finally:
-            for name in ours:  # the remaining options are the user's, and are recorded as such
+            for name in own_options:  # the remaining options are the user's, and are recorded as such
                 database.delValue(name)
         self.workspace.register_callbacks(ts, self.matrix)
         return ts
@@ -206,8 +206,8 @@ class Integrator:
     def destroy(self) -> None:
         """Frees the PETSc objects. Garbage collection would not free them, because TS and integrator refer to
         each other."""
-        for held in (self.ts, self.workspace, self.matrix, self.vector):
-            held.destroy()
+        for petsc_object in (self.ts, self.workspace, self.matrix, self.vector):
+            petsc_object.destroy()
 
 
 _integrators: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(

@@ -37,16 +37,16 @@ def leading_mode(beam: Beam) -> LeadingMode:
     """The leading mode of the straight rod, from the transverse block of the Jacobian; the axial block is
     decoupled."""
     layout = beam.layout
-    rest = np.zeros(layout.unknown_count)
-    J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest)).T).T
+    rest_state = np.zeros(layout.unknown_count)
+    J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest_state)).T).T
     values, vectors = np.linalg.eig(J)
     # The second key selects the member of a complex pair with Im w > 0.
     k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknown_count, complex)
     layout.transverse_unknowns(z)[:] = vectors[:, k]
     # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
-    real, imag = (beam.transverse_velocities(rest, part) for part in (z.real, z.imag))
+    real, imag = (beam.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
-    least = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
-    scale = tip if abs(tip) >= least else least * (tip / abs(tip) if tip else 1.0)
+    min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
+    scale = tip if abs(tip) >= min_tip else min_tip * (tip / abs(tip) if tip else 1.0)
     return LeadingMode(complex(values[k]), z / scale)

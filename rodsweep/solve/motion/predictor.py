@@ -49,9 +49,9 @@ def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
     Stage k of this step has the index k, stage k of the last step the index MAX_STAGES + k.
     """
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), UNUSED_POINT)
-    for stage, (this, last) in EXTRAPOLATION_POINTS.get(variant, {}).items():
-        known = [*this, *(MAX_STAGES + k for k in last)]
-        points[stage, : len(known)] = known
+    for stage, (current_stages, last_stages) in EXTRAPOLATION_POINTS.get(variant, {}).items():
+        known_points = [*current_stages, *(MAX_STAGES + k for k in last_stages)]
+        points[stage, : len(known_points)] = known_points
     return points
 
 
@@ -63,29 +63,31 @@ def begin_step(ts: int) -> int:
     context_of_ts(ts, address.ctypes.data)
     context = address[0]
     c = record_at(context, CONTEXT_DTYPE)
-    at = context + OUTPUTS_OFFSET
-    outputs = integers_at(at, 3)
-    real = doubles_at(at, 3)
+    scratch = context + OUTPUTS_OFFSET
+    outputs = integers_at(scratch, 3)
+    real = doubles_at(scratch, 3)
     times = times_of(c)
     states = states_of(c)
-    base = doubles_at(c.base, c.unknowns)
+    base_state = doubles_at(c.base, c.unknowns)
     last = c.current * MAX_STAGES
     # The two halves of the array take turns: stages of this step and of the last step.
     c.current = 1 - c.current
-    now = c.current * MAX_STAGES
-    time_of(ts, at)
-    times[now] = real[0]
-    solution_of(ts, at)
+    current = c.current * MAX_STAGES
+    time_of(ts, scratch)
+    times[current] = real[0]
+    solution_of(ts, scratch)
     solution = outputs[0]
-    read_array(solution, at)
-    states[now] = doubles_at(outputs[0], c.unknowns)
-    release_read(solution, at)
-    time_step_of(ts, at)
+    read_array(solution, scratch)
+    states[current] = doubles_at(outputs[0], c.unknowns)
+    release_read(solution, scratch)
+    time_step_of(ts, scratch)
     c.length = real[0]
-    base[:] = states[now]
+    base_state[:] = states[current]
     if c.stages > 0:
         # A matrix at the predicted middle of the step contracts better than a matrix at the start.
-        base += (states[now] - states[last]) * (c.middle * c.length / (times[now] - times[last]))
+        base_state += (states[current] - states[last]) * (
+            c.middle * c.length / (times[current] - times[last])
+        )
     c.steps = min(c.stages, 1)
     c.stages = 1
     c.matrix_due = AT_BASE
@@ -120,15 +122,15 @@ def predict_stage(c: Any, guess: Array) -> None:
     ]
     points = points[: np.sum(points != UNUSED_POINT)]
     times = times_of(c)
-    now = c.current * MAX_STAGES
-    last = MAX_STAGES - now
+    current = c.current * MAX_STAGES
+    last = MAX_STAGES - current
     # Beyond this ratio the last step is too short to extrapolate from, and PETSc's guess is used.
     if len(points) and c.length <= STAGE_PREDICTOR_SETTINGS.max_extrapolated_step_ratio * (
-        times[now] - times[last]
+        times[current] - times[last]
     ):
-        # Indices start at the present half; indices of the last step are larger by MAX_STAGES, modulo
+        # Indices start at the current half; indices of the last step are larger by MAX_STAGES, modulo
         # 2 MAX_STAGES.
-        extrapolate((points + now) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
+        extrapolate((points + current) % (2 * MAX_STAGES), times, states_of(c), c.time, guess)
 
 
 @compiled
@@ -136,7 +138,7 @@ def store_stage(c: Any, stage: Array) -> None:
     """Stores the solved `stage`, (unknowns,), and its time `c.time` in the context record `c`, for later
     extrapolation; nothing is stored beyond MAX_STAGES stages."""
     if c.stages < MAX_STAGES:
-        at = c.current * MAX_STAGES + c.stages
-        times_of(c)[at] = c.time
-        states_of(c)[at] = stage
+        row = c.current * MAX_STAGES + c.stages
+        times_of(c)[row] = c.time
+        states_of(c)[row] = stage
         c.stages += 1

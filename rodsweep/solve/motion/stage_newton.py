@@ -53,7 +53,7 @@ class StageNewtonSettings(CompiledSettings):
     Newton steps."""
 
     new_matrix_contraction: float = 0.3
-    """If the contraction exceeds this, a new matrix is computed at the present iterate."""
+    """If the contraction exceeds this, a new matrix is computed at the current iterate."""
     stagnant_contraction: float = 0.5
     """If the contraction exceeds this and the Newton steps are as small as rounding error, the iteration ends
     as converged."""
@@ -106,15 +106,17 @@ def convergence_reason(c: Any, iteration: int, dx: float) -> int:
     # The first iteration of a stage has no previous step.
     theta = dx / c.last_step if iteration > 1 and c.last_step > 0 else 0.0
     if iteration > 1:
-        least = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
-        c.contraction = max(least, theta)
+        min_contraction = STAGE_NEWTON_SETTINGS.min_contraction_ratio * c.contraction if c.measured else 0.0
+        c.contraction = max(min_contraction, theta)
         c.measured = 1
     c.growing = c.growing + 1 if theta > STAGE_NEWTON_SETTINGS.growing_step_ratio else 0
     c.last_step = dx
     # The contraction of an earlier stage is a guess for this one.
-    unsure = STAGE_NEWTON_SETTINGS.first_iteration_safety if iteration == 1 else 1.0
-    small = dx * min(1.0, unsure * c.contraction) <= c.small_error
-    if small or (theta > STAGE_NEWTON_SETTINGS.stagnant_contraction and iteration > 2 and dx <= c.rounding):
+    safety = STAGE_NEWTON_SETTINGS.first_iteration_safety if iteration == 1 else 1.0
+    is_small = dx * min(1.0, safety * c.contraction) <= c.small_error
+    if is_small or (
+        theta > STAGE_NEWTON_SETTINGS.stagnant_contraction and iteration > 2 and dx <= c.rounding
+    ):
         return STEP_SMALL
     may_give_up = iteration > STAGE_NEWTON_SETTINGS.iterations_before_giving_up
     if may_give_up and c.growing >= STAGE_NEWTON_SETTINGS.max_growing_steps:
@@ -133,48 +135,48 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     to the address `reason`. iteration: number of iterations made. dx, size: 2-norms of the Newton step and of
     the residual."""
     c = record_at(context, CONTEXT_DTYPE)
-    answer = numba.carray(pointer(reason), (1,), np.int32)
-    answer[0] = ITERATING
+    reason_array = numba.carray(pointer(reason), (1,), np.int32)
+    reason_array[0] = ITERATING
     if not np.isfinite(size):
         linearise_at_start(c)
-        answer[0] = NOT_FINITE
+        reason_array[0] = NOT_FINITE
     elif iteration > 0:
-        answer[0] = convergence_reason(c, iteration, dx)
+        reason_array[0] = convergence_reason(c, iteration, dx)
     return 0
 
 
 @compiled
-def read_stage_equation(c: Any, at: int, snes: int, X: int) -> None:
+def read_stage_equation(c: Any, scratch: int, snes: int, X: int) -> None:
     """Determines the equation of a stage, shift x + constant - f(x) = 0, by calls of PETSc, and stores the
-    constant and the shift in the context record `c`. at: address of scratch memory, into which PETSc writes
-    the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector with any value of
-    x.
+    constant and the shift in the context record `c`. scratch: address of scratch memory, into which PETSc
+    writes the addresses of three arrays. snes: handle of the stage's solver. X: handle of a vector with any
+    value of x.
 
     In every time scheme the slope dx/dt is affine in x. The residual without f at any x and the shift, which
     PETSc passes with the matrix, therefore determine the equation.
     """
     n = c.unknowns
-    outputs = integers_at(at, 3)
+    outputs = integers_at(scratch, 3)
     # Without f, PETSc's stage residual is affine in x: one evaluation yields its constant.
     c.without_rate = 1
     c.error = stage_residual(snes, X, c.residual, c.ts)
     c.without_rate = 0
     c.error |= stage_jacobian(snes, X, c.matrix, c.matrix, c.ts)
-    read_array(X, at)
-    read_array(c.residual, at + 8)
+    read_array(X, scratch)
+    read_array(c.residual, scratch + 8)
     x = doubles_at(outputs[0], n)
     residual = doubles_at(outputs[1], n)
     constant = doubles_at(c.constant, n)
     for i in range(n):
         constant[i] = residual[i] - c.shift * x[i]
-    release_read(X, at)
-    release_read(c.residual, at + 8)
-    right_side_of(snes, at)
+    release_read(X, scratch)
+    release_read(c.residual, scratch + 8)
+    right_side_of(snes, scratch)
     right_side = outputs[0]
     if right_side:
-        read_array(right_side, at)
+        read_array(right_side, scratch)
         constant -= doubles_at(outputs[0], n)
-        release_read(right_side, at)
+        release_read(right_side, scratch)
 
 
 @compiled
@@ -187,29 +189,29 @@ def euclidean_norm(x: Array) -> float:
 
 
 @compiled
-def newton_step(c: Any, at: int, X: int) -> float:
+def newton_step(c: Any, scratch: int, X: int) -> float:
     """Makes one Newton step from the stage X and writes the result to X; returns the 2-norm of the step. c:
-    context record. at: address of scratch memory, into which PETSc writes the addresses of three arrays. X:
-    handle of the stage's vector."""
+    context record. scratch: address of scratch memory, into which PETSc writes the addresses of three arrays.
+    X: handle of the stage's vector."""
     n = c.unknowns
-    outputs = integers_at(at, 3)
+    outputs = integers_at(scratch, 3)
     constant = doubles_at(c.constant, n)
     f = doubles_at(c.rates, n)
-    write_array(X, at)
-    write_array(c.residual, at + 8)
+    write_array(X, scratch)
+    write_array(c.residual, scratch + 8)
     x = doubles_at(outputs[0], n)
     residual = doubles_at(outputs[1], n)
     write_rate(x, f, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
     for i in range(n):
         residual[i] = c.shift * x[i] + constant[i] - f[i]
-    release_write(c.residual, at + 8)
+    release_write(c.residual, scratch + 8)
     c.error |= solve_linear(c.ksp, c.residual, c.correction)
-    read_array(c.correction, at + 16)
+    read_array(c.correction, scratch + 16)
     step = doubles_at(outputs[2], n)
     x -= step
     size = euclidean_norm(step)
-    release_read(c.correction, at + 16)
-    release_write(X, at)
+    release_read(c.correction, scratch + 16)
+    release_write(X, scratch)
     return size
 
 
@@ -221,28 +223,28 @@ def solve_stage(snes: int, X: int) -> int:
     context_of_snes(snes, address.ctypes.data)
     context = address[0]
     c = record_at(context, CONTEXT_DTYPE)
-    at = context + OUTPUTS_OFFSET
-    time_step_of(c.ts, at)
-    if doubles_at(at, 1)[0] != c.length:  # the step was rejected and is repeated with another length
-        c.length = doubles_at(at, 1)[0]
+    scratch = context + OUTPUTS_OFFSET
+    time_step_of(c.ts, scratch)
+    if doubles_at(scratch, 1)[0] != c.length:  # the step was rejected and is repeated with another length
+        c.length = doubles_at(scratch, 1)[0]
         c.stages = 1
-    read_stage_equation(c, at, snes, X)
-    write_array(X, at)
-    predict_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
-    release_write(X, at)
+    read_stage_equation(c, scratch, snes, X)
+    write_array(X, scratch)
+    predict_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))
+    release_write(X, scratch)
     reason = ITERATING
     iteration = 0
     while reason == ITERATING and not c.error:
         if c.matrix_due != UP_TO_DATE:
             c.error |= stage_jacobian(snes, X, c.matrix, c.matrix, c.ts)
         iteration += 1
-        reason = convergence_reason(c, iteration, newton_step(c, at, X))
+        reason = convergence_reason(c, iteration, newton_step(c, scratch, X))
         if reason == ITERATING and iteration >= c.most_iterations:
             linearise_at_start(c)
             reason = NOT_CONTRACTING
-    read_array(X, at)
-    store_stage(c, doubles_at(integers_at(at, 1)[0], c.unknowns))
-    release_read(X, at)
+    read_array(X, scratch)
+    store_stage(c, doubles_at(integers_at(scratch, 1)[0], c.unknowns))
+    release_read(X, scratch)
     set_iterations(snes, iteration)
     set_reason(snes, reason)
     return c.error

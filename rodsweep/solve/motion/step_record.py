@@ -41,12 +41,12 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
 
 @compiled
-def store_step(c: Any, at: int, ts: int) -> int:
+def store_step(c: Any, scratch: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT_DTYPE`). at: address for
+    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT_DTYPE`). scratch: address for
     outputs."""
     n = c.unknowns
-    outputs = integers_at(at, 3)
+    outputs = integers_at(scratch, 3)
     if c.stored == c.capacity:
         # Doubling keeps the cost of copying proportional to the number of steps.
         c.capacity = max(2 * c.capacity, STEP_RECORD_SETTINGS.first_capacity)
@@ -54,14 +54,14 @@ def store_step(c: Any, at: int, ts: int) -> int:
         if rows == 0:
             return OUT_OF_MEMORY
         c.rows = rows
-    time_of(ts, at)
-    solution_of(ts, at + 8)
-    read_array(outputs[1], at + 16)
+    time_of(ts, scratch)
+    solution_of(ts, scratch + 8)
+    read_array(outputs[1], scratch + 16)
     row = doubles_at(c.rows + 8 * c.stored * (n + 1), n + 1)
     z = doubles_at(outputs[2], n)
-    row[0] = doubles_at(at, 1)[0]
+    row[0] = doubles_at(scratch, 1)[0]
     row[1:] = z
-    release_read(outputs[1], at + 16)
+    release_read(outputs[1], scratch + 16)
     c.stored += 1
     # z1 is the first of three fields; h1 = 0 where z1 equals `crushed`.
     nodes = n // 3
@@ -96,9 +96,9 @@ def take_steps(context: Any) -> Array:
     """Rows (time, state) of the time steps stored in `context`, (steps, 1 + unknowns); frees the memory of
     the stored steps."""
     address = int(context["rows"])
-    kept = int(context["stored"])
+    row_count = int(context["stored"])
     columns = int(context["unknowns"]) + 1
-    rows = _copied_rows(address, kept, columns) if kept else np.empty((0, columns))
+    rows = _copied_rows(address, row_count, columns) if row_count else np.empty((0, columns))
     _free_address(address)
     context["rows"] = context["stored"] = context["capacity"] = 0
     return rows

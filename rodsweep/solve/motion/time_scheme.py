@@ -59,15 +59,15 @@ class TimeScheme:
         """PETSc options of this scheme, without prefix. family: TS type in use, which a user may have set in
         place of `self.family`; options of another family leave out `variant`."""
         kind = {"bdf": "order"}.get(family, "type")
-        own = {"ts_type": self.family}
+        options = {"ts_type": self.family}
         if family == self.family and self.variant:
-            own[f"ts_{family}_{kind}"] = self.variant
+            options[f"ts_{family}_{kind}"] = self.variant
         if family == "arkimex":
             linear = (
                 "false" if self.variant in EXTRAPOLATION_POINTS else "true"
             )  # PETSc predicts for types without extrapolation points
-            own |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
-        adapt = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
+            options |= {"ts_arkimex_fully_implicit": "true", "ts_arkimex_initial_guess_extrapolate": linear}
+        adaptivity = {"ts_adapt_type": "none"} if self.equal_steps else {"ts_adapt_dsp_filter": "PI42"}
         return {
             "ksp_type": "preonly",
             "pc_type": "lu",
@@ -76,6 +76,6 @@ class TimeScheme:
             "snes_type": SNES_TYPES.get(family, "newtonls"),
             "snes_linesearch_type": "basic",
             "snes_max_it": "20" if self.equal_steps else "10",
-            **own,
-            **adapt,
+            **options,
+            **adaptivity,
         }

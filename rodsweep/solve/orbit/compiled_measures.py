@@ -123,12 +123,12 @@ def power_means_and_least_stretch(stages: Array, weights: Array, p: Semidiscrete
     stages: states at the stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of
     the orbit."""
     K, s, n = stages.shape
-    flat = stages.reshape(K * s, n)
+    states = stages.reshape(K * s, n)
     nodes = len(p.node_matrices.weights) - 1
     power = np.empty((2, K * s))
     mean = np.zeros(2)
     square = np.zeros(2)
-    write_powers(flat, power, p)
+    write_powers(states, power, p)
     for a in range(2):
         for i in range(K * s):
             mean[a] += weights[i % s] * p.interval_lengths[i // s] * power[a, i]
@@ -138,11 +138,11 @@ def power_means_and_least_stretch(stages: Array, weights: Array, p: Semidiscrete
     stretch = p.rod.rest_strain[0, nodes]  # at the tip
     for i in range(K * s):
         for j in range(nodes):
-            pull = flat[i, stress_index(0, j, nodes)]
-            stretch = min(stretch, p.rod.rest_strain[0, j] + p.rod.compliance[0, j] * pull)
+            axial_stress = states[i, stress_index(0, j, nodes)]
+            stretch = min(stretch, p.rod.rest_strain[0, j] + p.rod.compliance[0, j] * axial_stress)
         # At a jump the node has a mean strain; the smaller of the stretches on the two sides is used.
         for j in range(len(p.rod.jumps)):
-            stretch = min(stretch, _stretch_at_jump(flat[i], p.rod.jumps[j], p.rod.jump_sides[j], p.rod))
+            stretch = min(stretch, _stretch_at_jump(states[i], p.rod.jumps[j], p.rod.jump_sides[j], p.rod))
     return OrbitMeans(mean[0], np.sqrt(square[0]), mean[1], np.sqrt(square[1]), stretch)
 
 
@@ -182,11 +182,11 @@ def write_powers(states: Array, out: Array, p: SemidiscreteEquations) -> None:
     c = p.rod
     for k in range(len(states)):
         write_balance(states[k], V, G, c, p.node_matrices)
-        gained = 0.0
-        lost = 0.0
+        input_power = 0.0
+        dissipated_power = 0.0
         for a in range(len(V)):
-            gained -= c.tip_stress[a] * G[a, size - 1]
+            input_power -= c.tip_stress[a] * G[a, size - 1]
             for i in range(size):
-                lost += p.node_matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
-        out[0, k] = gained
-        out[1, k] = lost
+                dissipated_power += p.node_matrices.weights[i] * c.drag[a, i] * V[a, i] ** 2
+        out[0, k] = input_power
+        out[1, k] = dissipated_power

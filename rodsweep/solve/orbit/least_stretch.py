@@ -36,19 +36,19 @@ class LeastStretchSettings:
 LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
-def least_stretch_between_nodes(path: "CyclePath", at_nodes: float) -> float:
-    """Smallest h1 of a cycle over rod and period: the smallest nodal value `at_nodes` if it exceeds
+def least_stretch_between_nodes(path: "CyclePath", nodal_minimum: float) -> float:
+    """Smallest h1 of a cycle over rod and period: the smallest nodal value `nodal_minimum` if it exceeds
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
     """
-    if not at_nodes <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
-        return at_nodes
-    return min(at_nodes, least_stretch(path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
+    if not nodal_minimum <= LEAST_STRETCH_SETTINGS.safe_nodal_stretch:
+        return nodal_minimum
+    return min(nodal_minimum, least_stretch(path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
 
 
-def least_stretch(path: "CyclePath", enough: float = inf) -> float:
-    """Smallest h1 of a cycle over the whole rod and the whole period. enough: a smallest sampled value above
-    `enough` is returned without a search between the sampled positions."""
+def least_stretch(path: "CyclePath", safe_stretch: float = inf) -> float:
+    """Smallest h1 of a cycle over the whole rod and the whole period. safe_stretch: a smallest sampled value
+    above `safe_stretch` is returned without a search between the sampled positions."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
 
     form = path.orbit.form
@@ -56,23 +56,27 @@ def least_stretch(path: "CyclePath", enough: float = inf) -> float:
     c = path.strain_coefficients[:, 0]
 
     def least_of(coefficients: Complex) -> Array:
-        at = -np.ascontiguousarray(coefficients)
-        return -series_maxima(at, series_samples(at, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c)))
+        negated = -np.ascontiguousarray(coefficients)
+        return -series_maxima(
+            negated, series_samples(negated, LEAST_STRETCH_SETTINGS.times_per_harmonic * len(c))
+        )
 
     def least(u: Array) -> Array:
         return least_of(c @ mesh.element_evaluation_matrix(u).T)
 
-    before = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
-    at_jumps = float(least_of(c[:, before + [index + 1 for index in before]]).min(initial=inf))
-    places = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(mesh.node_positions))
-    values = least(places)
-    best = int(np.argmin(values))
-    rough = min(float(values[best]), at_jumps)
-    if rough > enough:
-        return rough
-    ends = places[max(best - 1, 0)], places[min(best + 1, len(places) - 1)]
+    left_indices = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
+    jump_minimum = float(
+        least_of(c[:, left_indices + [index + 1 for index in left_indices]]).min(initial=inf)
+    )
+    positions = np.linspace(0.0, 1.0, LEAST_STRETCH_SETTINGS.positions_per_node * len(mesh.node_positions))
+    values = least(positions)
+    best_index = int(np.argmin(values))
+    sampled_minimum = min(float(values[best_index]), jump_minimum)
+    if sampled_minimum > safe_stretch:
+        return sampled_minimum
+    ends = positions[max(best_index - 1, 0)], positions[min(best_index + 1, len(positions) - 1)]
     tolerance = {"xatol": LEAST_STRETCH_SETTINGS.position_tolerance}
-    found = minimize_scalar(
+    minimum = minimize_scalar(
         lambda u: float(least(np.array([u]))[0]), bounds=ends, method="bounded", options=tolerance
     )
-    return min(rough, float(found.fun))
+    return min(sampled_minimum, float(minimum.fun))

@@ -95,14 +95,14 @@ class CyclePath:
     @cached_property
     def extrema(self) -> dict[str, float]:
         """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `Measures`, by name."""
-        least = self._path.least_tip_values.tolist()
-        largest = self._path.largest_tip_values.tolist()
+        minima = self._path.least_tip_values.tolist()
+        maxima = self._path.largest_tip_values.tolist()
         return {
-            "tip_x_min": least[0],
-            "tip_x_max": largest[0],
-            "tip_y_max": largest[1],
+            "tip_x_min": minima[0],
+            "tip_x_max": maxima[0],
+            "tip_y_max": maxima[1],
             # In a symmetric orbit both sides have the same largest angle up to rounding.
-            "tip_theta_max": largest[2] if self.orbit.is_symmetric else max(largest[2], -least[2]),
+            "tip_theta_max": maxima[2] if self.orbit.is_symmetric else max(maxima[2], -minima[2]),
         }
 
     @cached_property
@@ -168,8 +168,8 @@ class CyclePath:
     def _series_from_mean_crossing(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `mean_crossing_time`,
         (count, ...). c: Fourier coefficients c_k, (coefficients, ...)."""
-        turns = np.exp(2j * np.pi * self.mean_crossing_time * np.arange(len(c)))
-        return series_samples(c * turns.reshape(-1, *(1,) * (c.ndim - 1)), count)
+        phase_factors = np.exp(2j * np.pi * self.mean_crossing_time * np.arange(len(c)))
+        return series_samples(c * phase_factors.reshape(-1, *(1,) * (c.ndim - 1)), count)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

@@ -86,25 +86,25 @@ def newton(
         report()
         change = relative_change(orbit, step)
         if not np.isfinite(change):
-            raise Unsolvable("Newton's method for the orbit broke down: its step is not finite")
+            raise Unsolvable("Newton's method for the cycle diverges: its step is not finite")
         # A long first step may come from a poor start; a long later step that is not shorter is divergence.
         if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.max_relative_step):
-            raise Unsolvable("Newton's method for the orbit diverges from its start")
+            raise Unsolvable("Newton's method for the cycle diverges: its steps grow")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
-        share = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
-        orbit = orbit.plus_change(step, share)
-        distance += share * change
+        damping_factor = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
+        orbit = orbit.plus_change(step, damping_factor)
+        distance += damping_factor * change
         if not orbit.period > 0:
-            raise Unsolvable("Newton's method for the orbit broke down: the period is not positive")
-        fresh = distance == share * change
+            raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
+        is_matrix_new = distance == damping_factor * change
         # Expected error after this step: quadratic in the step if the matrix is new, otherwise by the ratio
         # of the last two steps.
-        left = (
+        expected_error = (
             ORBIT_NEWTON_SETTINGS.quadratic_error_factor * change**2
-            if fresh
+            if is_matrix_new
             else change * min(1.0, change / last)
         )
-        if left <= tolerance:
+        if expected_error <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)
         # A correction with the old factors is far cheaper than a new elimination.
         if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(last, 1.0):
@@ -115,54 +115,54 @@ def newton(
             step = matrix.correction(orbit)
         last = change
     raise Unsolvable(
-        f"Newton's method for the orbit does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
-        f"iterations; its last step is {change:.0e}"
+        f"Newton's method for the cycle does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
+        f"iterations; its last relative step is {change:.0e}"
     )
 
 
 def with_matrix_within_distance(
-    found: ConvergedOrbit, distance: float, parameter: str | None = None
+    solved: ConvergedOrbit, distance: float, parameter: str | None = None
 ) -> ConvergedOrbit:
-    """The orbit `found`, after one more Newton step if its matrix was assembled at a relative distance of
+    """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
     more than `distance` from the orbit. parameter: as in `newton`."""
-    if found.matrix_distance <= distance:
-        return found
-    return newton_step(found, parameter)
+    if solved.matrix_distance <= distance:
+        return solved
+    return newton_step(solved, parameter)
 
 
-def newton_step(found: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
-    """The orbit `found` after one more Newton step, with the matrix at the orbit before this step. parameter:
-    as in `newton`."""
-    orbit = found.orbit
-    matrix = Linearisation(orbit, found.workspace, parameter)
+def newton_step(solved: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
+    """The orbit `solved` after one more Newton step, with the matrix at the orbit before this step.
+    parameter: as in `newton`."""
+    orbit = solved.orbit
+    matrix = Linearisation(orbit, solved.workspace, parameter)
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 
-def multipliers_and_trivial_error(found: ConvergedOrbit) -> tuple[Complex, float]:
+def multipliers_and_trivial_error(solved: ConvergedOrbit) -> tuple[Complex, float]:
     """Returns (multipliers, distance): nontrivial Floquet multipliers by descending modulus, (rank - 1,), and
     the distance of the computed trivial multiplier from 1."""
-    values = found.matrix.multipliers()
+    values = solved.matrix.multipliers()
     # The time derivative of the orbit is an eigenvector with the exact multiplier 1.
-    trivial = int(np.argmin(np.abs(values - 1)))
-    others = np.concatenate([values[:trivial], values[trivial + 1 :]])
-    return others, float(abs(values[trivial] - 1))
+    trivial_index = int(np.argmin(np.abs(values - 1)))
+    nontrivial = np.concatenate([values[:trivial_index], values[trivial_index + 1 :]])
+    return nontrivial, float(abs(values[trivial_index] - 1))
 
 
-def largest_multiplier_difference(multipliers: Complex, others: Complex) -> float:
+def largest_multiplier_difference(multipliers: Complex, other_multipliers: Complex) -> float:
     """Absolute error of the largest multiplier, from the multipliers on two meshes: the distance of
-    `multipliers[0]` from the nearest of `others`, or the difference of the two largest moduli, whichever is
-    larger; 0 if a list is empty.
+    `multipliers[0]` from the nearest of `other_multipliers`, or the difference of the two largest moduli,
+    whichever is larger; 0 if a list is empty.
 
-    multipliers, others: by descending modulus, (m,) and (l,). Multipliers with the same index are not
-    compared, because two multipliers may be in a different order on another mesh. The moduli alone may agree
-    by coincidence.
+    multipliers, other_multipliers: by descending modulus, (m,) and (l,). Multipliers with the same index are
+    not compared, because two multipliers may be in a different order on another mesh. The moduli alone may
+    agree by coincidence.
     """
-    if not (len(multipliers) and len(others)):
+    if not (len(multipliers) and len(other_multipliers)):
         return 0.0
-    nearest = np.abs(others - multipliers[0]).min()
+    nearest = np.abs(other_multipliers - multipliers[0]).min()
     # The largest multiplier of a strongly unstable cycle may differ by a factor between meshes; the nearest
     # multiplier is then a different multiplier.
-    return float(max(nearest, abs(abs(others[0]) - abs(multipliers[0]))))
+    return float(max(nearest, abs(abs(other_multipliers[0]) - abs(multipliers[0]))))
 
 
 def relative_change(orbit: Orbit, step: Array) -> float:
@@ -178,19 +178,19 @@ def largest_relative_change(values: Array, step: Array, unknowns: int, nodes: in
     """Largest relative change of n2, m3 and the period in a step, (N,): the largest change of each quantity,
     divided by its largest modulus; inf if the step is not finite. values: orbit values, (N,). unknowns:
     length of a state. nodes: number of nodes without the tip."""
-    largest = abs(step[-1]) / abs(values[-1])
+    max_change = abs(step[-1]) / abs(values[-1])
     for change in step:
         # NaN would be lost in the comparisons below.
         if not np.isfinite(change):
             return np.inf
-    most = np.zeros(PLANE_COMPONENT_COUNT)
+    max_steps = np.zeros(PLANE_COMPONENT_COUNT)
     size = np.zeros(PLANE_COMPONENT_COUNT)
     # The state at the start is left out: it is the last stage of the previous part of the period.
     for first in range(unknowns, len(values) - 1, unknowns):
         for a in range(1, PLANE_COMPONENT_COUNT):
             for i in range(nodes):
-                at = first + stress_index(a, i, nodes)
-                most[a], size[a] = max(most[a], abs(step[at])), max(size[a], abs(values[at]))
+                index = first + stress_index(a, i, nodes)
+                max_steps[a], size[a] = max(max_steps[a], abs(step[index])), max(size[a], abs(values[index]))
     for a in range(1, PLANE_COMPONENT_COUNT):
-        largest = max(largest, most[a] / size[a])
-    return largest
+        max_change = max(max_change, max_steps[a] / size[a])
+    return max_change

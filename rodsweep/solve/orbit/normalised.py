@@ -77,47 +77,47 @@ def values_from_normalised(normalised: Array, r: ReflectionArrays) -> Array:
 
 
 @compiled_for_vectors
-def polynomial_weights(places: Array, orders: Array, step: float) -> Array:
+def polynomial_weights(arguments: Array, orders: Array, step: float) -> Array:
     """Weights, (m,): p(step) - p(0) is the sum of weights times data, p: interpolation polynomial through m
     data.
 
-    places: argument of each datum, (m,). orders: 1 if the datum is a slope p', 0 if it is a difference p -
+    arguments: argument of each datum, (m,). orders: 1 if the datum is a slope p', 0 if it is a difference p -
     p(0), (m,). step: argument at which the polynomial is evaluated.
     """
-    m = len(places)
+    m = len(arguments)
     # Arguments are divided by the largest modulus, so that the Vandermonde matrix is well conditioned.
-    unit = np.abs(places).max()
+    unit = np.abs(arguments).max()
     unit = unit if unit > 0 else 1.0
     columns = np.empty((m, m))
-    right = np.empty(m)
+    right_side = np.empty(m)
     for power in range(1, m + 1):
-        right[power - 1] = (step / unit) ** power
+        right_side[power - 1] = (step / unit) ** power
         for i in range(m):
-            at = places[i] / unit
+            scaled_argument = arguments[i] / unit
             # The weights reproduce each monomial; there is no constant term, because the result is a
             # difference.
-            slope = power * at ** (power - 1) / unit
-            columns[power - 1, i] = slope if orders[i] == 1 else at**power
-    return np.linalg.solve(columns, right)
+            slope = power * scaled_argument ** (power - 1) / unit
+            columns[power - 1, i] = slope if orders[i] == 1 else scaled_argument**power
+    return np.linalg.solve(columns, right_side)
 
 
 @compiled_for_vectors
 def predicted_normalised_values(values: Array, data: Array, orders: Array, weights: Array) -> Array:
-    """Predicted normalised values, (N + 1,): normalised values of the present orbit plus a weighted sum of
-    data. A datum is a slope, or the difference of another orbit's normalised values from the present values.
+    """Predicted normalised values, (N + 1,): normalised values of the current orbit plus a weighted sum of
+    data. A datum is a slope, or the difference of another orbit's normalised values from the current values.
 
-    values: normalised values of the present orbit, (N + 1,). data: slopes, or normalised values of other
+    values: normalised values of the current orbit, (N + 1,). data: slopes, or normalised values of other
     orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
     """
     out = np.zeros(len(values))
-    rest = 1.0
+    weight_of_values = 1.0
     for k in range(len(weights)):
-        # The weights of all values, with the weight of the present values, add up to 1.
-        rest -= weights[k] if orders[k] == 0 else 0.0
+        # The weights of all values, with the weight of the current values, add up to 1.
+        weight_of_values -= weights[k] if orders[k] == 0 else 0.0
         for i in range(len(values)):
             out[i] += weights[k] * data[k, i]
     for i in range(len(values)):
-        out[i] += rest * values[i]
+        out[i] += weight_of_values * values[i]
     return out
 
 
@@ -128,25 +128,25 @@ def normalised_slopes(values: Array, tangent: Array, r: ReflectionArrays) -> Arr
     squared = moment_inner_product(values, values, r)
     change = 2 * moment_inner_product(values, tangent, r)
     # d(v/size) = dv/size - v d(size^2)/(2 size^3), for the reversed components only.
-    share = change / (2 * squared)
+    relative_rate = change / (2 * squared)
     out = np.empty(len(values) + 1)
     for i in range(len(values)):
         out[i] = tangent[i]
     for first in range(0, len(values) - 1, len(r.is_reversed)):
         for i in range(len(r.is_reversed)):
-            out[first + i] -= share * r.is_reversed[i] * values[first + i]
+            out[first + i] -= relative_rate * r.is_reversed[i] * values[first + i]
     out[-1] = change
     _scale_reversed(out, squared**-0.5, r)
     return out
 
 
 @compiled_for_vectors
-def moment_inner_product(values: Array, others: Array, r: ReflectionArrays) -> float:
-    """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `others`, (N,).
-    With equal arguments this is the squared size."""
+def moment_inner_product(values: Array, other_values: Array, r: ReflectionArrays) -> float:
+    """Integral over the rod of m3 m3' at t = 0, m3 and m3' from the orbit values `values` and `other_values`,
+    (N,). With equal arguments this is the squared size."""
     total = 0.0
     for i in range(len(r.moment_weights)):
-        total += r.moment_weights[i] * values[i] * others[i]
+        total += r.moment_weights[i] * values[i] * other_values[i]
     return total
 
 

@@ -108,14 +108,16 @@ class Orbit:
         # The norm is the same in the part of the period that follows by symmetry.
         return float(self.form.energy_norm(self.equidistant_states).max())
 
-    def plus_change(self, change: Array, share: float = 1.0) -> "Orbit":
-        """The orbit with the values `values` + `share` * `change`; change: (N,)."""
-        return replace(self, values=self.values + share * change)
+    def plus_change(self, change: Array, fraction: float = 1.0) -> "Orbit":
+        """The orbit with the values `values` + `fraction` * `change`; change: (N,)."""
+        return replace(self, values=self.values + fraction * change)
 
     def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        at: Array = time_evaluation_matrix((self.interval_count, self.stage_count), times) @ self.all_states
-        return at
+        states: Array = (
+            time_evaluation_matrix((self.interval_count, self.stage_count), times) @ self.all_states
+        )
+        return states
 
     def on_mesh(self, target: Mesh, intervals: int, stages: int) -> "Orbit":
         """The orbit interpolated to the space mesh `target` and to `intervals` time intervals with `stages`
@@ -203,9 +205,9 @@ def time_evaluation_matrix(source: tuple[int, int], times: Array) -> csr_array:
     k = np.searchsorted(starts, times, side="right") - 1
     weights = np.empty((len(times), s + 1))
     for interval in np.unique(k):
-        inside = k == interval
-        within = (times[inside] - starts[interval]) / lengths[interval]
-        weights[inside] = radau_method(s).evaluation_matrix(within)
+        indices = k == interval
+        fractions = (times[indices] - starts[interval]) / lengths[interval]
+        weights[indices] = radau_method(s).evaluation_matrix(fractions)
     first = k * s  # the end of the previous interval is the start of this interval
     columns = first[:, None] + np.arange(s + 1)
     rows = np.arange(0, weights.size + 1, s + 1)

@@ -49,11 +49,11 @@ class OrbitMeshSettings:
     """Largest increase of the element order in one choice of a mesh; the tail cannot be extrapolated to
     higher orders."""
     max_interval_ratio: int = 4
-    """Largest ratio of the new number of time intervals to the present number; the tail cannot be
+    """Largest ratio of the new number of time intervals to the current number; the tail cannot be
     extrapolated to larger ratios."""
     interval_factor: float = 1.2
     """Factor on the number of time intervals for the mesh `finer`, and if the mesh chosen from the tails is
-    not finer than the present mesh."""
+    not finer than the current mesh."""
     halving_order_ratio: float = 0.6
     """Ratio of the element order after all elements are halved to the order before, for equal errors."""
     doubles_per_vector: int = 8
@@ -160,8 +160,8 @@ class OrbitMesh:
     @property
     def finer(self) -> "OrbitMesh":
         """Mesh finer than this mesh in space and time, used if no allowed mesh is predicted to suffice."""
-        more = int(ORBIT_MESH_SETTINGS.interval_factor * self.interval_count) + 1
-        return replace(self.finer_in_space, interval_count=more)
+        interval_count = int(ORBIT_MESH_SETTINGS.interval_factor * self.interval_count) + 1
+        return replace(self.finer_in_space, interval_count=interval_count)
 
     @property
     def finer_in_space(self) -> "OrbitMesh":

@@ -32,27 +32,33 @@ class OrderRatioSettings:
 ORDER_RATIO_SETTINGS = OrderRatioSettings()
 
 
-def order_ratios(orbit: Orbit, order: int, aim: float) -> tuple[float, ...]:
+def order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
     """Ratios of the orders of all elements to the largest order, as in `Elements`; () if all are 1.
 
-    order: largest order, with which the Legendre coefficients in space are expected to fall to `aim` times
-    the largest coefficient.
+    order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
+    times the largest coefficient.
     """
-    each = coefficients_of_elements(orbit)
-    if len(each) == 1:
+    coefficients = coefficients_of_elements(orbit)
+    if len(coefficients) == 1:
         return ()
-    scales = np.max([c.max(axis=1) for c in each], axis=0)
+    scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     scales = np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
-    needed = np.array([_needed_order((c / scales[:, None]).max(axis=0), aim, order) for c in each])
+    orders = np.array(
+        [_needed_order((c / scales[:, None]).max(axis=0), max_tail, order) for c in coefficients]
+    )
     settings = ORDER_RATIO_SETTINGS
-    needed = np.maximum(needed, settings.min_order)
-    ratios = np.ceil(settings.steps * np.maximum(needed / max(needed), settings.min_ratio)) / settings.steps
+    orders = np.maximum(orders, settings.min_order)
+    ratios = np.ceil(settings.steps * np.maximum(orders / max(orders), settings.min_ratio)) / settings.steps
     return () if min(ratios) == 1 else tuple(ratios.tolist())
 
 
-def _needed_order(c: Array, aim: float, order: int) -> int:
-    """Order of an element, at most `order`, beyond which two neighbouring coefficients fall below `aim`. c:
-    moduli of the coefficients of orders 0 to p, (p + 1,). Two coefficients, because one may vanish by
+def _needed_order(c: Array, max_tail: float, order: int) -> int:
+    """Order of an element, at most `order`, beyond which two neighbouring coefficients fall below `max_tail`.
+    c: moduli of the coefficients of orders 0 to p, (p + 1,). Two coefficients, because one may vanish by
     parity."""
-    small = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= aim)
-    return order if not len(small) else min(int(small[0]) + ORDER_RATIO_SETTINGS.added_order, order)
+    small_indices = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= max_tail)
+    return (
+        order
+        if not len(small_indices)
+        else min(int(small_indices[0]) + ORDER_RATIO_SETTINGS.added_order, order)
+    )

@@ -12,7 +12,7 @@ PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 """Indices into the array that `path_differences` returns."""
 
 
-def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
+def path_differences(coarse: CyclePath, fine: CyclePath) -> Array:
     """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
     largest difference, and largest difference of the tip's x, y or theta over the period.
 
@@ -20,18 +20,18 @@ def path_differences(rough: CyclePath, fine: CyclePath) -> Array:
     rods, which may be different on a branch. The remaining three differences are divided by the largest y of
     `fine`.
     """
-    apart = np.abs(fine.tip_samples - rough.resampled_tip(len(fine.tip_samples))).max()
+    max_distance = np.abs(fine.tip_samples - coarse.resampled_tip(len(fine.tip_samples))).max()
     extrema = fine.extrema
-    changes = {name: abs(value - extrema[name]) for name, value in rough.extrema.items()}
+    changes = {name: abs(value - extrema[name]) for name, value in coarse.extrema.items()}
     size = abs(extrema["tip_y_max"])
-    period = max(abs(rough.orbit.period / fine.orbit.period - 1), rod_difference(rough.orbit, fine.orbit))
-    return np.array([period, *(np.array([changes["tip_y_max"], max(changes.values()), apart]) / size)])
+    period = max(abs(coarse.orbit.period / fine.orbit.period - 1), rod_difference(coarse.orbit, fine.orbit))
+    return np.array([period, *(np.array([changes["tip_y_max"], max(changes.values()), max_distance]) / size)])
 
 
-def rod_difference(one: Orbit, other: Orbit) -> float:
+def rod_difference(first: Orbit, second: Orbit) -> float:
     """Largest difference between the parameters of the rods of two orbits, relative to the parameters of the
-    orbit `other`; absolute for a parameter of `other` that is 0."""
-    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (one, other))
+    orbit `second`; absolute for a parameter of `second` that is 0."""
+    a, b = (_rod_coordinates(orbit.form.rod) for orbit in (first, second))
     # A coefficient is 0 only in a limit, such as c1 = 0, where it is exactly 0 for both rods.
     return float(np.abs((a - b) / np.where(b == 0, 1, b)).max())
 

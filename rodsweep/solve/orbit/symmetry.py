@@ -42,8 +42,8 @@ class Symmetry:
         """S^-1 `flow`, (unknowns, unknowns). flow: derivative of x(T/p) with respect to x(0), (unknowns,
         unknowns)."""
         # S is orthogonal, so its transpose is its inverse.
-        returned: Array = self.matrix(layout).T @ flow
-        return returned
+        product: Array = self.matrix(layout).T @ flow
+        return product
 
     def reversal_mask(self, layout: StateLayout) -> Array:
         """1 for components of a state that change sign under S, 0 for components that S leaves unchanged,

@@ -55,12 +55,12 @@ class Tails:
 
 def tails_of(orbit: Orbit) -> Tails:
     """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
-    each = coefficients_of_elements(orbit)
-    scales = np.max([c.max(axis=1) for c in each], axis=0)
+    coefficients = coefficients_of_elements(orbit)
+    scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
-    ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in each], axis=0)
+    ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
     last = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
-    finest = np.max([c for c in each if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
+    finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
     return Tails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(finest))
 
 
@@ -71,18 +71,18 @@ def _coefficient_decay(c: Array) -> float:
     `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the coefficients of orders 0 to p, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
-    highest = COEFFICIENT_TAIL_SETTINGS.rounding
-    along = 0.0
+    envelope = COEFFICIENT_TAIL_SETTINGS.rounding
+    slope_sum = 0.0
     squares = 0.0
     # From the last coefficient down: `highest` is an envelope, on which single zeros have no effect.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
-            highest = max(highest, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.least_divisor))
-        along += (k - middle) * np.log(highest)
+            envelope = max(envelope, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.least_divisor))
+        slope_sum += (k - middle) * np.log(envelope)
         squares += (k - middle) ** 2
     # Slope of the least-squares line through the logarithms.
     return min(
-        max(-along / squares, COEFFICIENT_TAIL_SETTINGS.min_decay), COEFFICIENT_TAIL_SETTINGS.max_decay
+        max(-slope_sum / squares, COEFFICIENT_TAIL_SETTINGS.min_decay), COEFFICIENT_TAIL_SETTINGS.max_decay
     )
 
 
@@ -110,7 +110,7 @@ def largest_coefficients(values: Array, analysis: Array) -> Array:
     coefficients, (p + 1, c)."""
     components, states, size = values.shape
     count = analysis.shape[1]
-    largest = np.zeros((components, count))
+    moduli = np.zeros((components, count))
     c = np.empty(count)
     for a in range(components):
         for k in range(states):
@@ -119,22 +119,22 @@ def largest_coefficients(values: Array, analysis: Array) -> Array:
                 for i in range(count):
                     c[i] += values[a, k, j] * analysis[j, i]
             for i in range(count):
-                largest[a, i] = max(largest[a, i], abs(c[i]))
-    return largest
+                moduli[a, i] = max(moduli[a, i], abs(c[i]))
+    return moduli
 
 
 def smooth_tails(orbit: Orbit) -> Array:
     """Tails in space and in time, (2,), each divided by the largest value of the field. These tails change
     smoothly along a branch, because the tail in space is the norm of
     `COEFFICIENT_TAIL_SETTINGS.last_coefficients` coefficients: a single coefficient may vanish."""
-    each = _stresses_of_elements(orbit, orbit.all_states)
-    largest = np.max([np.abs(values).max(axis=(1, 2)) for values in each], axis=0)
+    stresses = _stresses_of_elements(orbit, orbit.all_states)
+    max_stress = np.max([np.abs(values).max(axis=(1, 2)) for values in stresses], axis=0)
     ends = np.max(
-        [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in each],
+        [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in stresses],
         axis=0,
     )
-    in_space = ends / np.maximum(largest, EXPONENT_SETTINGS.least_divisor)
-    return np.array([float(in_space.max()), _tail_in_time(orbit)])
+    space_tails = ends / np.maximum(max_stress, EXPONENT_SETTINGS.least_divisor)
+    return np.array([float(space_tails.max()), _tail_in_time(orbit)])
 
 
 def _stresses_of_elements(orbit: Orbit, states: Array) -> list[Array]:
@@ -165,7 +165,7 @@ def largest_norms(values: Array, analysis: Array) -> Array:
     """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values,
     analysis: as in `largest_coefficients`."""
     components, states, size = values.shape
-    largest = np.zeros(components)
+    norms = np.zeros(components)
     c = np.empty(analysis.shape[1])
     for a in range(components):
         for k in range(states):
@@ -173,8 +173,8 @@ def largest_norms(values: Array, analysis: Array) -> Array:
             for j in range(size):
                 for i in range(len(c)):
                     c[i] += values[a, k, j] * analysis[j, i]
-            largest[a] = max(largest[a], (c * c).sum())
-    return np.sqrt(largest)
+            norms[a] = max(norms[a], (c * c).sum())
+    return np.sqrt(norms)
 
 
 def _tail_in_time(orbit: Orbit) -> float:
@@ -202,15 +202,15 @@ def largest_tail_in_time(points: Array, row: Array, nodes: int) -> float:
     points: states at the start and at all stages, (1 + K s, n). row: as returned by
     `_last_coefficient_weights`, (s + 1,). nodes: number of nodes without the tip."""
     s = len(row) - 1
-    worst = 0.0
+    max_relative_tail = 0.0
     for a in range(PLANE_COMPONENT_COUNT):
-        largest = 0.0
-        tail = 0.0
+        max_value = 0.0
+        max_coefficient = 0.0
         for m in range(len(points)):
             size = 0.0
             for i in range(nodes):
                 size += points[m, stress_index(a, i, nodes)] ** 2
-            largest = max(largest, size)
+            max_value = max(max_value, size)
         for k in range(0, len(points) - 1, s):
             size = 0.0
             for i in range(nodes):
@@ -218,9 +218,11 @@ def largest_tail_in_time(points: Array, row: Array, nodes: int) -> float:
                 for j in range(s + 1):
                     top += row[j] * points[k + j, stress_index(a, i, nodes)]
                 size += top**2
-            tail = max(tail, size)
-        worst = max(worst, np.sqrt(tail / max(largest, EXPONENT_SETTINGS.least_divisor)))
-    return float(worst)
+            max_coefficient = max(max_coefficient, size)
+        max_relative_tail = max(
+            max_relative_tail, np.sqrt(max_coefficient / max(max_value, EXPONENT_SETTINGS.least_divisor))
+        )
+    return float(max_relative_tail)
 
 
 def legendre_analysis_matrix(nodes: Array) -> Array:

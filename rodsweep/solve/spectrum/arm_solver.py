@@ -25,19 +25,19 @@ class ArmSolver(ShiftInvertSolver):
         self._places: NDArray[np.int64] = self.pencil.columns.astype(np.int64) * n + self.pencil.rows
 
     def load(self, rod: Rod, shift: float) -> LoadedPencil:
-        self.matrices = found = self.pencil.matrices(rod)
-        if not np.isfinite(found.A.sum() + found.B.sum() + shift):
+        self.matrices = matrices = self.pencil.matrices(rod)
+        if not np.isfinite(matrices.A.sum() + matrices.B.sum() + shift):
             raise FloatingPointError(
                 "with these parameters matrix entries exceed the largest floating-point number"
             )
-        self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], found.B)
+        self.B.setValuesCSR(self.row_starts, self.row_starts[:-1], matrices.B)
         self.B.assemble()
-        values = found.A.copy()
-        values[self.is_diagonal_entry] -= shift * found.B
+        values = matrices.A.copy()
+        values[self.is_diagonal_entry] -= shift * matrices.B
         if self.is_dense:
-            flat = self.A.getDenseArray().T.reshape(-1)  # stored by columns
-            flat[:] = 0.0
-            flat[self._places] = values
+            entries = self.A.getDenseArray().T.reshape(-1)  # stored by columns
+            entries[:] = 0.0
+            entries[self._places] = values
         else:
             self.A.setValuesCSR(self.indptr, self.indices, values)
         return LoadedPencil(finite_eigenvalue_count(rod, self.node_count), shift)

@@ -95,47 +95,47 @@ class CountComparison:
 
 
 def candidates_on_mesh(
-    problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, tight: bool
+    problem: TransverseProblem, mesh: AnyMesh, requested: int, vectors: bool, to_rounding: bool
 ) -> Candidates:
     """The eigenvalues of a mesh nearest to the shift of `problem`, refined to roots of D; spurious
     eigenvalues are dropped.
 
-    requested: number of eigenvalues requested. vectors: whether eigenvectors are returned. tight: whether the
-    eigenvalues of the mesh converge to rounding error before they are refined. After an error inside PETSc,
-    SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
+    requested: number of eigenvalues requested. vectors: whether eigenvectors are returned. to_rounding:
+    whether the eigenvalues of the mesh converge to rounding error before they are refined. After an error
+    inside PETSc, SLEPc or LAPACK no eigenvalue is returned; the solver may succeed on another mesh.
     """
-    raw: Complex = np.empty(0, complex)
-    kept = None
+    mesh_eigenvalues: Complex = np.empty(0, complex)
+    vectors_kept = None
     failure = ""
     try:
         solver = problem.solver(mesh)
-        raw = solver.solve(problem.rod, problem.shift, requested, tight)
-        kept = solver.vectors(len(raw)) if vectors else None
+        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding)
+        vectors_kept = solver.vectors(len(mesh_eigenvalues)) if vectors else None
     except PETSC_ERRORS as error:
         destroy_pooled_solvers()
         failure = cause_of(error)
     kept_roots = problem.refined_roots(
-        raw, CANDIDATE_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
+        mesh_eigenvalues, CANDIDATE_SETTINGS.max_waves_per_node * mesh.element_count * mesh.order
     )
-    kept = kept[:, kept_roots.mesh_indices] if kept is not None else None
-    return Candidates(mesh, kept_roots, kept, failure)
+    vectors_kept = vectors_kept[:, kept_roots.mesh_indices] if vectors_kept is not None else None
+    return Candidates(mesh, kept_roots, vectors_kept, failure)
 
 
-def compare_with_count(problem: TransverseProblem, found: Roots, modes: int) -> CountComparison:
+def compare_with_count(problem: TransverseProblem, roots: Roots, modes: int) -> CountComparison:
     """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the
     eigenvalues found.
 
     The line lies to the left of the `modes` leading eigenvalues and of all unstable eigenvalues.
     """
-    w: Any = found.w.tolist()  # for so few numbers Python is faster than NumPy
-    errors: Any = found.error.tolist()
+    w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
+    errors: Any = roots.error.tolist()
     line = line_for_proof(w[modes - 1], errors[modes - 1])
-    complete, evaluations = problem.prove_completeness(line, found)
-    if complete:
-        here, clear = _count_right_of(line, w, errors)
-        return CountComparison(EigenvalueCount(here, evaluations), here, clear)
+    is_complete, evaluations = problem.prove_completeness(line, roots)
+    if is_complete:
+        found_count, are_clear = _count_right_of(line, w, errors)
+        return CountComparison(EigenvalueCount(found_count, evaluations), found_count, are_clear)
     for line in lines_for_count(w, modes):
-        count = problem.count(line, found)
+        count = problem.count(line, roots)
         if count.number is not None:
             break
     return CountComparison(count, *_count_right_of(line, w, errors))
@@ -156,10 +156,10 @@ def line_for_proof(last: complex, error: float) -> float:
 
 
 def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple[int, bool]:
-    """Returns (number, clear). number: number of eigenvalues w to the right of `line`. clear: whether the
-    distance of each w from the line is more than twice its error. errors: absolute errors of w."""
-    clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
-    return sum(value.real > line for value in w), clear
+    """Returns (number, are_clear). number: number of eigenvalues w to the right of `line`. are_clear: whether
+    the distance of each w from the line is more than twice its error. errors: absolute errors of w."""
+    are_clear = all(abs(value.real - line) > 2 * error for value, error in zip(w, errors, strict=True))
+    return sum(value.real > line for value in w), are_clear
 
 
 def lines_for_count(w: list[complex], modes: int) -> list[float]:
@@ -170,15 +170,17 @@ def lines_for_count(w: list[complex], modes: int) -> list[float]:
     `wide_gap_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left of all
     eigenvalues found.
     """
-    wide = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
+    min_gap = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
     target = min(w[modes - 1].real, 0.0)
-    below = [target] + [value.real for value in w if value.real < target]
+    real_parts = [target] + [value.real for value in w if value.real < target]
     gaps = []
-    for right, left in zip(below[:-1], below[1:], strict=True):
+    for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
         width = (right - left) / abs(left)
         if width > CANDIDATE_SETTINGS.min_gap:
-            gaps.append((min(width, wide), (left + right) / 2))
+            gaps.append((min(width, min_gap), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
-    last = below[-1]
-    behind = last - CANDIDATE_SETTINGS.last_line_distance * (abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0)
-    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), behind]
+    last = real_parts[-1]
+    last_line = last - CANDIDATE_SETTINGS.last_line_distance * (
+        abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0
+    )
+    return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]

@@ -24,11 +24,11 @@ from .shift_invert import KRYLOV_SETTINGS, LoadedPencil, ShiftInvertSolver
 def _write_shifted_matrix(A: NDArray, coefficients: NDArray, terms: NDArray, shift: NDArray) -> None:
     """A = sum_i coefficients[i] terms[i] - diag(shift), written into `A`, the transpose of PETSc's array,
     (n, n). coefficients: (m,). terms: matrices stored by columns, (m, n^2). shift: (n,)."""
-    flat = A.reshape(-1)
-    flat[:] = 0.0
+    entries = A.reshape(-1)
+    entries[:] = 0.0
     for i in range(len(coefficients)):
-        for j in range(len(flat)):
-            flat[j] += coefficients[i] * terms[i, j]
+        for j in range(len(entries)):
+            entries[j] += coefficients[i] * terms[i, j]
     for j in range(len(shift)):
         A[j, j] -= shift[j]
 

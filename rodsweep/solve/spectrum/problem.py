@@ -73,20 +73,20 @@ class TransverseProblem(ABC):
         return uniform_solver(mesh) if isinstance(mesh, Resolution) else arm_solver(mesh)
 
     @abstractmethod
-    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw` of a mesh, (n,).
+    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of a mesh, (n,).
 
         max_q: largest wave number |q| that the mesh represents.
         """
 
     @abstractmethod
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
-        """Proved number of eigenvalues with Re w > line. found: known roots of D, which make the count of an
+    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+        """Proved number of eigenvalues with Re w > line. roots: known roots of D, which make the count of an
         arm faster.
         """
 
-    def prove_completeness(self, line: float, found: Roots) -> tuple[bool, int]:
-        """Returns (proved, evaluations). proved: whether it is proved that `found` contains all eigenvalues
+    def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
+        """Returns (proved, evaluations). proved: whether it is proved that `roots` contains all eigenvalues
         to the right of `line`. evaluations: number of evaluations of D.
 
         The proof needs no count. For a uniform rod, whose count is fast, no proof is tried.
@@ -117,14 +117,15 @@ class UniformProblem(TransverseProblem):
     def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
         least the next finer mesh after `mesh`."""
-        asked = resolution_for(float(waves.max()), accuracy)
-        return max(asked, finer_resolution(mesh), key=lambda each: each.unknown_count)
+        requested_mesh = resolution_for(float(waves.max()), accuracy)
+        return max(requested_mesh, finer_resolution(mesh), key=lambda each: each.unknown_count)
 
-    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`."""
-        return refined_roots(raw, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
+    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
+        `TransverseProblem.refined_roots`."""
+        return refined_roots(mesh_eigenvalues, self.rod.coefficients, self._sqrt_frequency_bound, max_q)
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
+    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         return count_right_of(line, self.rod)
 
 
@@ -155,38 +156,41 @@ class ArmProblem(TransverseProblem):
         """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
         return finer_arm_mesh(self.rod, mesh)
 
-    def refined_roots(self, raw: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `raw`, (n,), as in `TransverseProblem.refined_roots`; if a
-        proof is requested, only from the eigenvalues that the proof needs."""
-        in_proof, largest = self._eigenvalues_for_proof(raw)
-        return roots_of_arm(np.where(in_proof, raw, np.inf), self._determinant, self._hull, max_q, largest)
+    def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
+        `TransverseProblem.refined_roots`; if a proof is requested, only from the eigenvalues that the proof
+        needs."""
+        needed_mask, largest_w = self._eigenvalues_for_proof(mesh_eigenvalues)
+        return roots_of_arm(
+            np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, largest_w
+        )
 
-    def _eigenvalues_for_proof(self, raw: Complex) -> tuple[NDArray[np.bool_], float]:
-        """Returns (mask, size). mask: which of the eigenvalues `raw` the proof will need, (n,). size: largest
-        |w| at which the proof needs D; 0 if unknown.
+    def _eigenvalues_for_proof(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
+        """Returns (mask, size). mask: which of the eigenvalues `mesh_eigenvalues` the proof will need, (n,).
+        size: largest |w| at which the proof needs D; 0 if unknown.
         """
-        in_proof = np.isfinite(raw)
-        if not self._modes_to_prove or not self.has_bound or in_proof.sum() < self._modes_to_prove:
-            return in_proof, 0.0
-        finite = np.flatnonzero(in_proof)
-        order = finite[np.lexsort((-raw.imag[finite], -raw.real[finite]))]
-        line = min(float(raw[order[self._modes_to_prove - 1]].real), 0.0)
-        number, size = cheapest_proof(line, self._hull, raw[order], self._modes_to_prove)
+        needed_mask = np.isfinite(mesh_eigenvalues)
+        if not self._modes_to_prove or not self.has_bound or needed_mask.sum() < self._modes_to_prove:
+            return needed_mask, 0.0
+        finite = np.flatnonzero(needed_mask)
+        order = finite[np.lexsort((-mesh_eigenvalues.imag[finite], -mesh_eigenvalues.real[finite]))]
+        line = min(float(mesh_eigenvalues[order[self._modes_to_prove - 1]].real), 0.0)
+        number, size = cheapest_proof(line, self._hull, mesh_eigenvalues[order], self._modes_to_prove)
         if not number:
-            return in_proof, largest_w_of_count(line, self._determinant, self._hull)
-        in_proof[order[number:]] = False
-        return in_proof, size
+            return needed_mask, largest_w_of_count(line, self._determinant, self._hull)
+        needed_mask[order[number:]] = False
+        return needed_mask, size
 
-    def count(self, line: float, found: Roots | KnownRoots | None = None) -> EigenvalueCount:
-        known = () if found is None else (found.w, found.error)
-        return count_of_arm(line, self._determinant, self._hull, *known)
+    def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
+        w_and_errors = () if roots is None else (roots.w, roots.error)
+        return count_of_arm(line, self._determinant, self._hull, *w_and_errors)
 
     @cached_property
     def is_countable(self) -> bool:
         return is_countable(self._determinant, self._hull)
 
-    def prove_completeness(self, line: float, found: Roots) -> tuple[bool, int]:
-        return prove_complete(line, found.w, found.error, self._determinant, self._hull)
+    def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
+        return prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
 
 
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:

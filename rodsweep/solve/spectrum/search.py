@@ -56,8 +56,8 @@ def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
     eigenvalues.
     """
     linear, rate = rod.equivalent_linear_rod
-    found = solve_spectrum(linear, request)
-    return replace(found, eigenvalues=rate * found.eigenvalues, error_estimate=rate * found.error_estimate)
+    scaled = solve_spectrum(linear, request)
+    return replace(scaled, eigenvalues=rate * scaled.eigenvalues, error_estimate=rate * scaled.error_estimate)
 
 
 def warm_up() -> None:
@@ -92,45 +92,45 @@ class SpectrumSearch:
 
     def outcome(self) -> Spectrum:
         """The spectrum, from attempts on meshes until the candidates are accepted or no longer improve."""
-        for turn in range(SEARCH_SETTINGS.max_meshes):
-            too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
-            if too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
+        for attempt in range(SEARCH_SETTINGS.max_meshes):
+            is_too_fine = self.mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns
+            if is_too_fine or self.failure_count > SEARCH_SETTINGS.max_failures:
                 break
-            tight = self.needs_vectors or turn > 0
-            found = candidates_on_mesh(
-                self.problem, self.mesh, self.requested_count, self.needs_vectors, tight
+            to_rounding = self.needs_vectors or attempt > 0
+            candidates = candidates_on_mesh(
+                self.problem, self.mesh, self.requested_count, self.needs_vectors, to_rounding
             )
-            self.last_failure = found.failure
-            judged = self.check_candidates(found)
-            if judged is None:
+            self.last_failure = candidates.failure
+            checked = self.check_candidates(candidates)
+            if checked is None:
                 continue
-            self.update_best(judged)
+            self.update_best(checked)
             if (
-                judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+                checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
                 or self.stalled_refinements >= SEARCH_SETTINGS.max_stalled_refinements
             ):
                 break
-            waves = found.roots.wave_number[: self.modes]
-            self.mesh = self.problem.finer_mesh_for_waves(found.mesh, waves, self.accuracy)
+            waves = candidates.roots.wave_number[: self.modes]
+            self.mesh = self.problem.finer_mesh_for_waves(candidates.mesh, waves, self.accuracy)
         return self.best_spectrum()
 
-    def check_candidates(self, found: Candidates) -> CheckedCandidates | None:
+    def check_candidates(self, candidates: Candidates) -> CheckedCandidates | None:
         """The candidates with their count and error; None if eigenvalues are missing, after a finer mesh or
         more eigenvalues were chosen for the next attempt."""
-        if len(found.roots.w) < self.modes:
+        if len(candidates.roots.w) < self.modes:
             # Too few eigenvalues converged to roots of D, or SLEPc failed: a finer mesh.
-            self.failure_count += bool(found.failure)
+            self.failure_count += bool(candidates.failure)
             # If few eigenvalues are roots, the mesh is too coarse: further eigenvalues would be no roots.
-            if len(found.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
+            if len(candidates.roots.w) >= SEARCH_SETTINGS.min_resolved_fraction * self.modes:
                 self.requested_count += self.modes
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
-        if self.count_needs_decaying_modes(found):
-            self.request_decaying_modes(len(found.roots.w))
+        if self.count_needs_decaying_modes(candidates):
+            self.request_decaying_modes(len(candidates.roots.w))
             return None
         certify = self.request.certify
-        comparison = compare_with_count(self.problem, found.roots, self.modes) if certify else None
-        if comparison is not None and comparison.count.number is None and found.roots.unmatched_count:
+        comparison = compare_with_count(self.problem, candidates.roots, self.modes) if certify else None
+        if comparison is not None and comparison.count.number is None and candidates.roots.unmatched_count:
             self.is_leader_unresolved = True
             self.mesh = self.problem.finer_mesh(self.mesh)
             return None
@@ -138,38 +138,38 @@ class SpectrumSearch:
             self.disagreement = comparison
             self.request_missing_eigenvalues(comparison.count.number, comparison.found_count)
             return None
-        return CheckedCandidates(found, comparison, self.error_over_limit(found, comparison))
+        return CheckedCandidates(candidates, comparison, self.error_over_limit(candidates, comparison))
 
-    def error_over_limit(self, found: Candidates, comparison: CountComparison | None) -> float:
+    def error_over_limit(self, candidates: Candidates, comparison: CountComparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
         without a proof, also need a mesh whose eigenvalues are close to the roots of D.
         """
-        error = found.worst_error(self.modes) / self.request.accuracy
+        error = candidates.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error
         limits = SEARCH_SETTINGS
         allowed = limits.max_displacement if self.problem.has_bound else limits.max_displacement_without_bound
-        coarseness = float(found.roots.displacement[: self.modes].max())
-        return max(error, coarseness / (self.request.accuracy if self.needs_vectors else allowed))
+        displacement = float(candidates.roots.displacement[: self.modes].max())
+        return max(error, displacement / (self.request.accuracy if self.needs_vectors else allowed))
 
-    def request_missing_eigenvalues(self, number: int, here: int) -> None:
+    def request_missing_eigenvalues(self, number: int, found_count: int) -> None:
         """Requests more eigenvalues or a finer mesh, because a count gives `number` eigenvalues to the right
-        of the line, of which `here` were found."""
-        if number <= here:  # spurious eigenvalues, or a line within the errors
+        of the line, of which `found_count` were found."""
+        if number <= found_count:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
-        more = number + SEARCH_SETTINGS.spare_modes
-        if more <= self.requested_count:  # missing eigenvalues are far from the shift or unresolved
-            more = self.requested_count + number - here + SEARCH_SETTINGS.spare_modes
+        new_count = number + SEARCH_SETTINGS.spare_modes
+        if new_count <= self.requested_count:  # missing eigenvalues are far from the shift or unresolved
+            new_count = self.requested_count + number - found_count + SEARCH_SETTINGS.spare_modes
             self.mesh = self.problem.finer_mesh(self.mesh)
-        self.request_eigenvalues(more)
+        self.request_eigenvalues(new_count)
 
-    def count_needs_decaying_modes(self, found: Candidates) -> bool:
-        """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `found` grow. False
-        if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
-        if not (self.request.certify and self.problem.is_count_slow and (found.roots.w.real > 0).all()):
+    def count_needs_decaying_modes(self, candidates: Candidates) -> bool:
+        """Whether a slow count needs eigenvalues with Re w <= 0 too, because all modes in `candidates` grow.
+        False if no count can succeed and `SEARCH_SETTINGS.max_unproved_modes` modes are found."""
+        if not (self.request.certify and self.problem.is_count_slow and (candidates.roots.w.real > 0).all()):
             return False
-        return len(found.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
+        return len(candidates.roots.w) < SEARCH_SETTINGS.max_unproved_modes or self.problem.is_countable
 
     def request_decaying_modes(self, number: int) -> None:
         """Requests more eigenvalues, because all `number` eigenvalues found grow and a count also needs
@@ -188,18 +188,18 @@ class SpectrumSearch:
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.requested_count = requested
 
-    def update_best(self, judged: CheckedCandidates) -> None:
+    def update_best(self, checked: CheckedCandidates) -> None:
         """Stores the candidates if they are the best so far; counts successive attempts without progress."""
         best = self.best
         limit = SEARCH_SETTINGS.progress_ratio * best.error_over_limit if best else 0.0
-        better = best is None or judged.sort_key < (best.sort_key[0], limit)
-        self.stalled_refinements = 0 if better else self.stalled_refinements + 1
+        is_better = best is None or checked.sort_key < (best.sort_key[0], limit)
+        self.stalled_refinements = 0 if is_better else self.stalled_refinements + 1
         if (
             best is None
-            or judged.sort_key <= best.sort_key
-            or judged.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
+            or checked.sort_key <= best.sort_key
+            or checked.error_over_limit <= SEARCH_SETTINGS.max_error_over_limit
         ):
-            self.best = judged
+            self.best = checked
 
     def best_spectrum(self) -> Spectrum:
         """The spectrum of the best candidates; without candidates, a failed spectrum with the reason."""
@@ -207,42 +207,42 @@ class SpectrumSearch:
             return _best_spectrum(self.best, self.problem, self.request)
         if self.disagreement is not None:
             number, found = self.disagreement.count.number, self.disagreement.found_count
-            why = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
-            return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
+            reason = f"the winding number counts {number} eigenvalues right of a line, but {found} are found"
+            return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         if self.is_leader_unresolved:
-            why = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
-            return failed_spectrum(SpectrumStatus.modes_missing, self.request, why)
+            reason = "no mesh resolves all eigenvalues with large real parts, so the leading one is not known"
+            return failed_spectrum(SpectrumStatus.modes_missing, self.request, reason)
         meshes = meshes_text(SEARCH_SETTINGS.max_meshes, self.mesh)
-        why = self.last_failure or f"{meshes} resolves the requested modes"
-        return failed_spectrum(SpectrumStatus.failed, self.request, why)
+        reason = self.last_failure or f"{meshes} resolves the requested modes"
+        return failed_spectrum(SpectrumStatus.failed, self.request, reason)
 
 
 def _best_spectrum(best: CheckedCandidates, problem: TransverseProblem, request: SpectrumRequest) -> Spectrum:
     """The spectrum of the best candidates, with its status and whether it is proved complete."""
-    found = best.candidates.roots
+    roots = best.candidates.roots
     comparison = best.comparison
     accurate = best.error_over_limit <= SEARCH_SETTINGS.max_stalled_error_over_limit
     status = SpectrumStatus.ok if accurate else SpectrumStatus.accuracy_not_reached
-    proved = comparison is not None and comparison.agrees
-    w: Any = found.w.tolist()
-    on_the_axis: Any = found.is_on_axis.tolist()
-    undecided = any(on_the_axis)
+    is_proved = comparison is not None and comparison.agrees
+    w: Any = roots.w.tolist()
+    on_axis: Any = roots.is_on_axis.tolist()
+    is_undecided = any(on_axis)
     message = ""
     if status == SpectrumStatus.ok and request.certify:
-        if not proved:
+        if not is_proved:
             status = SpectrumStatus.not_certified
             message = comparison.count.failure_reason if comparison else ""
-        elif undecided:
+        elif is_undecided:
             status = SpectrumStatus.undecided
-    unstable = sum(value.real > 0 for value in w)
+    unstable_count = sum(value.real > 0 for value in w)
     # Without a request for a proof, the unstable modes are known if the search went beyond them.
-    known = not undecided and (proved if request.certify else unstable < len(found.w))
+    is_known = not is_undecided and (is_proved if request.certify else unstable_count < len(roots.w))
     return Spectrum(
         status=status,
-        eigenvalues=found.w[: request.modes],
-        error_estimate=errors_with_rounding(found.w, found.error, problem.rod)[: request.modes],
-        unstable_count=unstable if known else -1,
-        certified=proved and not undecided,
+        eigenvalues=roots.w[: request.modes],
+        error_estimate=errors_with_rounding(roots.w, roots.error, problem.rod)[: request.modes],
+        unstable_count=unstable_count if is_known else -1,
+        certified=is_proved and not is_undecided,
         elements=best.candidates.mesh.element_count,
         order=best.candidates.mesh.order,
         vectors=modes_at_lobatto_nodes(problem, request, best.candidates.mesh, best.candidates.vectors),

@@ -155,10 +155,10 @@ class ShiftInvertSolver(ABC):
         eps.setWhichEigenpairs(SLEPc.EPS.Which.TARGET_MAGNITUDE)
         # `load` has already shifted the matrix.
         eps.setTarget(0.0)
-        transform = eps.getST()
-        transform.setType(SLEPc.ST.Type.SINVERT)
-        transform.setMatMode(SLEPc.ST.MatMode.INPLACE)
-        ksp = transform.getKSP()
+        spectral_transform = eps.getST()
+        spectral_transform.setType(SLEPc.ST.Type.SINVERT)
+        spectral_transform.setMatMode(SLEPc.ST.MatMode.INPLACE)
+        ksp = spectral_transform.getKSP()
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.getPC().setType(PETSc.PC.Type.LU)
         ksp.getPC().setFactorSolverType(package)
@@ -175,36 +175,36 @@ class ShiftInvertSolver(ABC):
         """Returns (y, theta) at all nodes, (nodes + 1, k) each. vectors: eigenvectors of the last solve,
         (unknowns, k). rod: the rod that was solved."""
 
-    def solve(self, rod: Rod, shift: float, requested: int, tight: bool = False) -> Complex:
+    def solve(self, rod: Rod, shift: float, requested: int, to_rounding: bool = False) -> Complex:
         """Eigenvalues of a rod nearest to the shift, complex, unsorted, (k,), in 1/tau2; k >= `requested` if
         enough eigenvalues converge.
 
-        shift: in 1/tau2. tight: whether the eigenvalues converge to rounding error on the mesh, instead of
-        the few digits that Newton's method on D needs. Raises PETSc.Error.
+        shift: in 1/tau2. to_rounding: whether the eigenvalues converge to rounding error on the mesh, instead
+        of the few digits that Newton's method on D needs. Raises PETSc.Error.
         """
         report()
         self.loaded_pencil = self.load(rod, shift)
         self.A.assemble()
         self.eps.setOperators(self.A, self.B)
-        most = self.loaded_pencil.finite_eigenvalue_count
-        requested = min(requested, most - 1)  # a conjugate pair may add one
-        spare = KRYLOV_SETTINGS.tight_spare_vectors if tight else KRYLOV_SETTINGS.loose_spare_vectors
-        tolerance = KRYLOV_SETTINGS.tight_tolerance if tight else KRYLOV_SETTINGS.loose_tolerance
+        max_count = self.loaded_pencil.finite_eigenvalue_count
+        requested = min(requested, max_count - 1)  # a conjugate pair may add one
+        spare = KRYLOV_SETTINGS.tight_spare_vectors if to_rounding else KRYLOV_SETTINGS.loose_spare_vectors
+        tolerance = KRYLOV_SETTINGS.tight_tolerance if to_rounding else KRYLOV_SETTINGS.loose_tolerance
         krylov = self.krylov_size_option or max(2 * requested, requested + spare)
         self.eps.setTolerances(self.tolerance_option or tolerance, KRYLOV_SETTINGS.max_restarts)
-        krylov = min(krylov, most + KRYLOV_SETTINGS.max_vectors_beyond_finite)
+        krylov = min(krylov, max_count + KRYLOV_SETTINGS.max_vectors_beyond_finite)
         self.eps.setDimensions(requested, krylov, krylov)
         self.eps.setInitialSpace(self.start_vector)
         self.eps.solve()
-        found = self.eps.getConverged()
-        w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(found)], complex)
+        converged_count = self.eps.getConverged()
+        w: Complex = np.array([self.eps.getEigenvalue(i) for i in range(converged_count)], complex)
         return (w + self.loaded_pencil.shift) / self.loaded_pencil.deflection_ratio**2
 
-    def vectors(self, found: int) -> Complex:
-        """Eigenvectors of the first `found` eigenvalues of the last `solve`, (unknowns, found)."""
+    def vectors(self, count: int) -> Complex:
+        """Eigenvectors of the first `count` eigenvalues of the last `solve`, (unknowns, count)."""
         real, imag = self.A.createVecs()
-        X = np.empty((len(self.row_starts) - 1, found), dtype=complex)
-        for i in range(found):
+        X = np.empty((len(self.row_starts) - 1, count), dtype=complex)
+        for i in range(count):
             self.eps.getEigenvector(i, real, imag)
             X[:, i] = real.array + 1j * imag.array
         X[: self.node_count] *= self.loaded_pencil.deflection_ratio
@@ -230,5 +230,5 @@ class ShiftInvertSolver(ABC):
 
     def destroy(self) -> None:
         """Frees the PETSc and SLEPc objects of the solver."""
-        for held in (self.eps, self.A, self.B, self.start_vector):
-            held.destroy()
+        for petsc_object in (self.eps, self.A, self.B, self.start_vector):
+            petsc_object.destroy()

@@ -104,18 +104,18 @@ class FollowedPoints:
 
 
 def modes_at_lobatto_nodes(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: Complex | None
+    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, vectors: Complex | None
 ) -> Complex | None:
-    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `found` is
-    None.
+    """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `vectors`
+    is None.
 
-    found: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
+    vectors: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
     NaN.
     """
-    if found is None:
+    if vectors is None:
         return None
     solver = problem.solver(mesh)
-    y, theta = solver.displacements(found[:, : request.modes], problem.rod)
+    y, theta = solver.displacements(vectors[:, : request.modes], problem.rod)
     matrix = solver.pencil.evaluation_matrix(lobatto_points(request.vector_node_count))
     scale = factors_to_unit_tip(y, theta)
     return np.stack([(matrix @ y * scale).T, (matrix @ theta * scale).T])

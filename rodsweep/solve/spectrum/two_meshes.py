@@ -70,33 +70,39 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The result of `solve_on_two_meshes`; raises Unsolvable if no mesh gives enough eigenvalues."""
     problem = transverse_problem(rod)
     modes = request.modes
-    aim = mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
-    mesh: AnyMesh = problem.mesh_for(modes, aim)
-    before = _leading_eigenvalues(problem, mesh, modes)
-    best: Spectrum | None = None
+    mesh_tolerance = (
+        mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
+    )
+    mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
+    coarser = _leading_eigenvalues(problem, mesh, modes)
+    best_spectrum: Spectrum | None = None
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
         if mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
             break
-        found = _leading_eigenvalues(problem, mesh, modes)
-        if len(found.w) >= modes and len(before.w):
-            here = _spectrum_of_mesh(
+        eigenvalues = _leading_eigenvalues(problem, mesh, modes)
+        if len(eigenvalues.w) >= modes and len(coarser.w):
+            spectrum = _spectrum_of_mesh(
                 problem,
                 request,
                 mesh,
-                found,
-                _errors_between_meshes(found.w, before.w, _eigenvalue_rounding_scale(problem)),
+                eigenvalues,
+                _errors_between_meshes(eigenvalues.w, coarser.w, _eigenvalue_rounding_scale(problem)),
             )
-            if here.status == SpectrumStatus.ok:
-                return here
+            if spectrum.status == SpectrumStatus.ok:
+                return spectrum
             # The finest mesh may have the largest rounding error.
-            best = here if best is None else min(best, here, key=_largest_error)
-        before = found
-    if best is None:
+            best_spectrum = (
+                spectrum if best_spectrum is None else min(best_spectrum, spectrum, key=_largest_error)
+            )
+        coarser = eigenvalues
+    if best_spectrum is None:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
         raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
-    return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
+    return replace(
+        best_spectrum, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best_spectrum.error_estimate
+    )
 
 
 def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
@@ -123,26 +129,26 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) 
     requested = modes + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
-    before = np.empty(0, complex)
+    previous = np.empty(0, complex)
     while True:
-        raw = solver.solve(problem.rod, problem.shift, requested, tight=True)
-        order = np.lexsort((-raw.imag, -raw.real))
-        leading = raw[order[:modes]]
-        complete = len(leading) == len(before) == modes
-        by_rounding = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
-        if complete and np.allclose(
-            leading, before, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=by_rounding
+        mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding=True)
+        order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
+        leading = mesh_eigenvalues[order[:modes]]
+        is_complete = len(leading) == len(previous) == modes
+        rounding_change = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
+        if is_complete and np.allclose(
+            leading, previous, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
         ):
-            return _MeshEigenvalues(raw[order], order)
+            return _MeshEigenvalues(mesh_eigenvalues[order], order)
         if 2 * requested > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
-            return _MeshEigenvalues(raw[:0], order[:0])
-        before = leading
+            return _MeshEigenvalues(mesh_eigenvalues[:0], order[:0])
+        previous = leading
         requested = 2 * requested
 
 
-def _largest_error(found: Spectrum) -> float:
+def _largest_error(spectrum: Spectrum) -> float:
     """Largest relative error estimate among the eigenvalues of a spectrum."""
-    return float((found.error_estimate / np.abs(found.eigenvalues)).max())
+    return float((spectrum.error_estimate / np.abs(spectrum.eigenvalues)).max())
 
 
 def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
@@ -153,37 +159,41 @@ def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
     relative error of an eigenvalue is therefore the largest of three differences: of the eigenvalue and of
     its two neighbours. Near a double eigenvalue the stated rounding errors are larger than elsewhere.
     """
-    apart = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
-    padded = np.pad(apart, 1)
-    relative = np.max([padded[:-2], padded[1:-1], padded[2:]], axis=0)
-    others = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
-    meeting = np.sqrt(1 + np.abs(w) / others.min(axis=1, initial=np.inf))
-    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * relative * np.abs(
+    distances = np.abs(w[:, None] - coarser).min(axis=1) / np.abs(w)
+    padded_distances = np.pad(distances, 1)
+    max_distances = np.max([padded_distances[:-2], padded_distances[1:-1], padded_distances[2:]], axis=0)
+    separations = np.abs(w[:, None] - w) + np.diag(np.full(len(w), np.inf))
+    crowding_factor = np.sqrt(1 + np.abs(w) / separations.min(axis=1, initial=np.inf))
+    errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * max_distances * np.abs(
         w
-    ) + TWO_MESH_SETTINGS.rounding * meeting * (np.abs(w) + scale)
+    ) + TWO_MESH_SETTINGS.rounding * crowding_factor * (np.abs(w) + scale)
     return errors
 
 
 def _spectrum_of_mesh(
-    problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, found: _MeshEigenvalues, error: Array
+    problem: TransverseProblem,
+    request: SpectrumRequest,
+    mesh: AnyMesh,
+    eigenvalues: _MeshEigenvalues,
+    error: Array,
 ) -> Spectrum:
     """The spectrum of one mesh, with the status from the errors. error: absolute error of each found
     eigenvalue, (k,).
     """
-    w = found.w
+    w = eigenvalues.w
     modes = request.modes
-    enough = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
+    is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())
     vectors = None
-    if request.vector_node_count and enough:
-        vectors = problem.solver(mesh).vectors(len(w))[:, found.indices]
-    unstable = int((w.real > 0).sum())
-    decide = slice(max(modes, unstable + 1))  # later eigenvalues decay faster
-    known = unstable < len(w) and not (np.abs(w.real) <= error)[decide].any()
+    if request.vector_node_count and is_accurate:
+        vectors = problem.solver(mesh).vectors(len(w))[:, eigenvalues.indices]
+    unstable_count = int((w.real > 0).sum())
+    decisive = slice(max(modes, unstable_count + 1))  # later eigenvalues decay faster
+    is_known = unstable_count < len(w) and not (np.abs(w.real) <= error)[decisive].any()
     return Spectrum(
-        status=SpectrumStatus.ok if enough else SpectrumStatus.accuracy_not_reached,
+        status=SpectrumStatus.ok if is_accurate else SpectrumStatus.accuracy_not_reached,
         eigenvalues=w[:modes],
         error_estimate=error[:modes],
-        unstable_count=unstable if known else -1,
+        unstable_count=unstable_count if is_known else -1,
         elements=mesh.element_count,
         order=mesh.order,
         vectors=modes_at_lobatto_nodes(problem, request, mesh, vectors),

@@ -208,7 +208,7 @@ def _serves_efficiently(W: float, required_W: float) -> bool:
 
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
-    """Distance to the next node: `reach_overlap` times the sum of the present reach and of the reach expected
+    """Distance to the next node: `reach_overlap` times the sum of the current reach and of the reach expected
     there. growth: expected change of the reach per distance, clipped to between -1 and
     `max_reach_growth`.
     """
@@ -219,7 +219,7 @@ def _overlapping_distance(reach: float, growth: float) -> float:
 @compiled
 def _shortened_distance(reach: float, growth: float, distance: float) -> float:
     """A distance to the next node below `distance`; repeated calls give a distance within the reach of the
-    present node.
+    current node.
     """
     shorter_distance = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * distance)
     return (

@@ -52,44 +52,48 @@ class BorderCondition:
         distance is the error of multipliers and tangent.
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
-        off = 0.0
+        distance = 0.0
         last = np.inf
         step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
             change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
             if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-                raise Unsolvable("Newton's method finds no cycle of the branch near the prediction")
+                raise Unsolvable(
+                    "Newton's method for the cycle finds no cycle of the branch near the prediction"
+                )
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
-            off = off + change
-            rate = change / last if off > change else np.inf  # no rate at the first step with a matrix
+            distance = distance + change
+            rate = change / last if distance > change else np.inf  # no rate at the first step with a matrix
             # The next step would have the length change * rate; a negligible step is not made.
-            settled = change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
-            if (settled or change <= tolerance) and off <= max_matrix_distance:
-                return ConvergedOrbit(orbit, matrix, off)
+            is_converged = (
+                change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+            )
+            if (is_converged or change <= tolerance) and distance <= max_matrix_distance:
+                return ConvergedOrbit(orbit, matrix, distance)
             if (
-                settled
+                is_converged
                 or change <= tolerance
-                or (off > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio)
+                or (distance > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio)
             ):
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
-                off = 0.0
+                distance = 0.0
                 step = matrix.step(self.border, self.residual(orbit))
                 last = np.inf
             else:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
                 last = change
         raise Unsolvable(
-            f"Newton's method on the branch does not converge: its last relative step is {change:.0e}"
+            f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
 
     def solve_on_mesh(
-        self, mesh: OrbitMesh, found: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
+        self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
-        """The cycle `found` solved again on the mesh `mesh` under this condition; raises Unsolvable.
+        """The cycle `solved` solved again on the mesh `mesh` under this condition; raises Unsolvable.
         tolerance, max_matrix_distance: as in `solve_cycle`."""
-        orbit = mesh.interpolated_orbit(found.orbit)
-        return self.solve_cycle(orbit, tolerance, found.workspace, max_matrix_distance)
+        orbit = mesh.interpolated_orbit(solved.orbit)
+        return self.solve_cycle(orbit, tolerance, solved.workspace, max_matrix_distance)
 
 
 def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
@@ -109,15 +113,15 @@ def moved_orbit(orbit: Orbit, name: str, change: Array) -> Orbit:
     raises Unsolvable if the new parameter value is not allowed, if Omega becomes an unknown or is eliminated
     at this value, or if the new period is not positive."""
     try:
-        before = orbit.form.rod.coordinate(name)
-        at = before + float(change[-1])
-        if at < 0 < at + ROUND_OFF * abs(before):  # 0 but for rounding
-            at = 0.0
-        form = orbit.form.with_coordinate(name, at)
+        coordinate = orbit.form.rod.coordinate(name)
+        new_coordinate = coordinate + float(change[-1])
+        if new_coordinate < 0 < new_coordinate + ROUND_OFF * abs(coordinate):  # 0 but for rounding
+            new_coordinate = 0.0
+        form = orbit.form.with_coordinate(name, new_coordinate)
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the branch leaves the allowed range of the parameters: {error}") from error
     require_equal_unknowns(form, orbit)
     result = replace(orbit, form=form, values=orbit.values + change[:-1])
     if not result.period > 0:
-        raise Unsolvable("Newton's method lost the cycle: its period is not positive")
+        raise Unsolvable("Newton's method for the cycle diverges: the period is not positive")
     return result

@@ -40,13 +40,13 @@ class BorderedMatrix:
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
         p = orbit.semidiscrete_equations
-        along = parameter_derivatives(orbit.form, scale.parameter_name)
+        derivatives = parameter_derivatives(orbit.form, scale.parameter_name)
         K, s, n = orbit.stage_states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._stage_columns = np.empty((K, s, 3, n))
         self._memory = MatrixMemory(workspace, K, s, n)
-        write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, self._stage_columns)
+        write_right_sides(orbit.all_states, orbit.solved_duration, p, derivatives, V, self._stage_columns)
         ends = eliminate_newton_matrix(
             orbit.all_states, V, orbit.solved_duration, p, self._memory.factors, self._stage_columns
         )
@@ -63,16 +63,18 @@ class BorderedMatrix:
             else:
                 self._matrix[rows, :n] -= p.symmetry
         for place, c in ((-2, 0), (-1, 2)):
-            own = slice(c, c + 1)
+            column = slice(c, c + 1)
             self._matrix[:-2, place] = -self.matching_right_sides(
-                np.zeros(n), self._stage_columns[:, :, own], ends[own]
+                np.zeros(n), self._stage_columns[:, :, column], ends[column]
             )
         row = np.empty(n)
         write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
         self._matrix[-2, :n] = row
         # `phase_right_side` is a right-hand side, with a minus sign; in a column of the matrix the sign is
         # plus.
-        self._matrix[-2, -1] = -phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
+        self._matrix[-2, -1] = -phase_right_side(
+            orbit.start_state, derivatives.change, p.rod, p.node_matrices
+        )
         self._right_sides = self._matching_and_phase_sides(orbit, self._stage_columns[:, :, 1:2], ends[1:2])
 
     def step(self, border: Array, residual: float) -> Array:
@@ -89,15 +91,15 @@ class BorderedMatrix:
         columns, ends = reduced_residuals(
             orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
         )
-        right = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
-        return self.solve(border, right, columns[:, :, 0], 1.0)
+        right_side = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
+        return self.solve(border, right_side, columns[:, :, 0], 1.0)
 
     def branch_tangent(self, border: Array) -> Array:
         """Tangent of the branch, (N + 1,), of unit arc length, whose components (see `scale.components`) make
         an acute angle with `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
-        right = np.append(np.zeros(len(self._right_sides)), 1.0)
-        change = self.solve(border, right, self._stage_columns[:, :, 1], 0.0)
+        right_side = np.append(np.zeros(len(self._right_sides)), 1.0)
+        change = self.solve(border, right_side, self._stage_columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
@@ -107,13 +109,13 @@ class BorderedMatrix:
 
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
-        along = parameter_derivatives(orbit.form, self.scale.parameter_name)
+        derivatives = parameter_derivatives(orbit.form, self.scale.parameter_name)
         equations = orbit.semidiscrete_equations
         p = self.orbit.semidiscrete_equations
-        changed: tuple[Array, Array] = reduced_variation_sides(
-            orbit.values, equations, along, variations, p, self._memory.factors
+        sides: tuple[Array, Array] = reduced_variation_sides(
+            orbit.values, equations, derivatives, variations, p, self._memory.factors
         )
-        return changed
+        return sides
 
     def orbit_changes_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
@@ -173,45 +175,45 @@ class BorderedMatrix:
         (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a fixed
         start, (1, n)."""
         p = orbit.semidiscrete_equations
-        right = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
-        return np.append(right, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
+        matching_sides = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
+        return np.append(matching_sides, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
-    def solve(self, border: Array, right: Array, sides: Array, share: float) -> Array:
+    def solve(self, border: Array, right_side: Array, sides: Array, fraction: float) -> Array:
         """Solution of the bordered linear system, (N + 1,). border: last row, in components (deflection, log
         period, parameter), (3,).
 
-        right: right-hand sides of the matching conditions, of the phase condition and of the border, (m n +
-        2,). sides: right-hand sides of the stages, (K, s, n). share: factor on `sides`.
+        right_side: right-hand sides of the matching conditions, of the phase condition and of the border, (m
+        n + 2,). sides: right-hand sides of the stages, (K, s, n). fraction: factor on `sides`.
         """
         n = len(self.orbit.start_state)
         matrix = self._matrix.copy()
         matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
         matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
-        return self._back_substitute(np.linalg.solve(matrix, right), sides, share)
+        return self._back_substitute(np.linalg.solve(matrix, right_side), sides, fraction)
 
-    def _back_substitute(self, found: Array, sides: Array, share: float) -> Array:
-        """Change of orbit values and parameter, (N + 1,). found: changes of the starts of the shooting
+    def _back_substitute(self, increments: Array, sides: Array, fraction: float) -> Array:
+        """Change of orbit values and parameter, (N + 1,). increments: changes of the starts of the shooting
         intervals, of the period and of the parameter, (m n + 2,). sides: right-hand sides of the stages, (K,
-        s, n). share: factor on `sides`."""
+        s, n). fraction: factor on `sides`."""
         n = len(self.orbit.start_state)
         stages = (
-            found[-2] * self._stage_columns[:, :, 0]
-            + share * sides
-            + found[-1] * self._stage_columns[:, :, 2]
+            increments[-2] * self._stage_columns[:, :, 0]
+            + fraction * sides
+            + increments[-1] * self._stage_columns[:, :, 2]
         )
         columns = np.ascontiguousarray(stages[:, :, None])
-        starts = found[:-2].reshape(-1, n).copy()
+        starts = increments[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
         out = self._shooting_intervals.stage_changes(
             factors, starts, columns, self.orbit.semidiscrete_equations
         )
-        return np.concatenate([found[:n], out.ravel(), found[-2:]])
+        return np.concatenate([increments[:n], out.ravel(), increments[-2:]])
 
 
-def bordered_matrix_of(found: ConvergedOrbit) -> BorderedMatrix:
+def bordered_matrix_of(solved: ConvergedOrbit) -> BorderedMatrix:
     """The bordered matrix of an orbit that was solved with the parameter as an unknown; raises TypeError if
     the parameter was fixed."""
-    if not isinstance(found.matrix, BorderedMatrix):
+    if not isinstance(solved.matrix, BorderedMatrix):
         raise TypeError("the orbit has no bordered matrix: it was solved without the parameter as an unknown")
-    return found.matrix
+    return solved.matrix

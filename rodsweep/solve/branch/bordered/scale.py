@@ -52,11 +52,11 @@ class ArcLengthScale:
         the orbit, and the modulus of the parameter coordinate. name: continuation parameter.
         min_deflection_unit: smallest unit of the deflection, in L. min_coordinate_unit: smallest unit of the
         parameter coordinate."""
-        largest = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
+        max_deflection = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
         # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(
             name,
-            float(np.hypot(largest, min_deflection_unit)),
+            float(np.hypot(max_deflection, min_deflection_unit)),
             max(abs(orbit.form.rod.coordinate(name)), min_coordinate_unit),
             min_deflection_unit,
             min_coordinate_unit,
@@ -66,8 +66,8 @@ class ArcLengthScale:
         """(deflection at t = 0, logarithm of the period, parameter coordinate) of an orbit, (3,), in units of
         the scale."""
         deflection = deflection_of(orbit) / self.deflection_unit
-        at = orbit.form.rod.coordinate(self.parameter_name) / self.coordinate_unit
-        return np.array([deflection, np.log(orbit.period), at])
+        coordinate = orbit.form.rod.coordinate(self.parameter_name) / self.coordinate_unit
+        return np.array([deflection, np.log(orbit.period), coordinate])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
         """Derivative of `components` at an orbit, (3,), along a change of orbit values and parameter

@@ -44,20 +44,20 @@ class BranchSegment:
         else:
             last, orbit, tangent = self._last_solved
             # From the last cycle along its tangent: a secant method changes the length only a little.
-            moved = moved_orbit(orbit, self.start.scale.parameter_name, (length - last) * tangent)
-            start = moved if mesh_of(moved) == self.mesh else self.mesh.interpolated_orbit(moved)
+            predicted = moved_orbit(orbit, self.start.scale.parameter_name, (length - last) * tangent)
+            start = predicted if mesh_of(predicted) == self.mesh else self.mesh.interpolated_orbit(predicted)
         condition = self.start.arc_length_condition(length)
         workspace = self.start.workspace
-        found = condition.solve_cycle(
+        solved = condition.solve_cycle(
             start,
             SPECIAL_POINT_SETTINGS.cycle_tolerance,
             workspace,
             SPECIAL_POINT_SETTINGS.max_matrix_distance,
         )
-        function = FoldFunction(bordered_matrix_of(found), self.start.unit_tangent, False)
-        correct_until_converged(function, found.orbit)
-        self._last_solved = length, found.orbit, function.null_vectors
-        return found
+        function = FoldFunction(bordered_matrix_of(solved), self.start.unit_tangent, False)
+        correct_until_converged(function, solved.orbit)
+        self._last_solved = length, solved.orbit, function.null_vectors
+        return solved
 
     @property
     def last_solved_cycle(self) -> tuple[float, Orbit, Array]:

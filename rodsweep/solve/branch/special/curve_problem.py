@@ -109,41 +109,41 @@ class SpecialCurveProblem:
 
     def _report(self, points: Sequence[SolvedPoint]) -> None:
         """Reports the last point of a curve to the progress display."""
-        words = f"{self.row_axis.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
-        report(lambda: SolvePosition(words))
+        text = f"{self.row_axis.name} = {points[-1].row_parameter:.5g}, {counted(len(points), 'point')}"
+        report(lambda: SolvePosition(text))
 
-    def step(self, behind: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
+    def step(self, previous: Sequence[SolvedPoint], length: float) -> StepResult[SolvedPoint]:
         """The next point, with prediction error and cosine of the angle between the last two steps; raises
-        Unsolvable. behind: points so far. length: arc length; on the first step, change of the row
+        Unsolvable. previous: points so far. length: arc length; on the first step, change of the row
         coordinate. On the first step the cosine is 1."""
-        last = behind[-1]
-        if len(behind) == 1:
+        last = previous[-1]
+        if len(previous) == 1:
             start = last.orbit
-            at_row = last.row_coordinate + self.row_direction * length
+            row = last.row_coordinate + self.row_direction * length
             line = ALONG_BRANCH
             rates = None
         else:
-            start, at_row = self._predicted_orbit(behind, self._step_before_crushing(behind, length))
+            start, row = self._predicted_orbit(previous, self._step_before_crushing(previous, length))
             change = last.scale.components(start) - last.scale.components(last.orbit)
-            line = line_across(np.append(change, at_row - last.row_coordinate), *behind[-2:])
+            line = line_across(np.append(change, row - last.row_coordinate), *previous[-2:])
             rates = last.normal_derivatives
-        point = self._family(last).corrected_point_with_error(start, at_row, line, rates, last)
+        point = self._family(last).corrected_point_with_error(start, row, line, rates, last)
         mesh = mesh_of(point.orbit)
         predicted = start if mesh == mesh_of(start) else mesh.interpolated_orbit(start)
-        off = relative_change(predicted, point.orbit.values - predicted.values)
-        if len(behind) == 1:  # the prediction was the cycle of another row
-            return StepResult(point, min(off, CURVE_STEP_CONTROL.max_error), 1.0)
-        one = last.step_from(behind[-2])
-        other = point.step_from(last)
-        return StepResult(point, off, float(one @ other / np.linalg.norm(one) / np.linalg.norm(other)))
+        error = relative_change(predicted, point.orbit.values - predicted.values)
+        if len(previous) == 1:  # the prediction was the cycle of another row
+            return StepResult(point, min(error, CURVE_STEP_CONTROL.max_error), 1.0)
+        old = last.step_from(previous[-2])
+        new = point.step_from(last)
+        return StepResult(point, error, float(old @ new / np.linalg.norm(old) / np.linalg.norm(new)))
 
     def _family(self, point: SolvedPoint) -> CycleFamily:
         return CycleFamily.near_point(self.kind, self.row_axis, point, self.workspace)
 
     def _predicted_orbit(self, points: Sequence[SolvedPoint], step: float) -> tuple[Orbit, float]:
         """(orbit, row coordinate) predicted an arc length `step` beyond the last point; raises Unsolvable."""
-        known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-        return self._weighted_sum(known, lagrange_weights(arc_lengths(known), step), mesh_of(known[-1].orbit))
+        tail = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+        return self._weighted_sum(tail, lagrange_weights(arc_lengths(tail), step), mesh_of(tail[-1].orbit))
 
     def _step_before_crushing(self, points: Sequence[SolvedPoint], step: float) -> float:
         """The arc length `step`, shortened so that the rod predicted beyond `points` keeps half of the
@@ -153,12 +153,12 @@ class SpecialCurveProblem:
         known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
         lengths = arc_lengths(known)
 
-        def distance(longest: float) -> float:
-            weights = lagrange_weights(lengths, longest)
+        def distance(step: float) -> float:
+            weights = lagrange_weights(lengths, step)
             rod = known[-1].orbit.form.rod
-            at = float(np.dot(weights, [point.parameter for point in known]))
-            at_row = float(np.dot(weights, [point.row_coordinate for point in known]))
-            values = {**rod.values, self.line_axis.name: at, self.row_axis.name: self.row_axis.value(at_row)}
+            value = float(np.dot(weights, [point.parameter for point in known]))
+            row = float(np.dot(weights, [point.row_coordinate for point in known]))
+            values = {**rod.values, self.line_axis.name: value, self.row_axis.name: self.row_axis.value(row)}
             load = rod.build.crushing_ratio(values["F"], values["k1"], values["taper"])
             return 1 - END_SETTINGS.crushing_margin / 2 - load
 
@@ -171,11 +171,11 @@ class SpecialCurveProblem:
     ) -> tuple[Orbit, float]:
         """(orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises Unsolvable."""
         values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
-        at_row = float(np.dot(weights, [point.row_coordinate for point in points]))
-        at = float(np.dot(weights, [point.parameter for point in points]))
+        row = float(np.dot(weights, [point.row_coordinate for point in points]))
+        value = float(np.dot(weights, [point.parameter for point in points]))
         orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
-        changed = {self.line_axis.name: at, self.row_axis.name: self.row_axis.value(at_row)}
-        return orbit_with_parameters(orbit, changed), at_row
+        parameters = {self.line_axis.name: value, self.row_axis.name: self.row_axis.value(row)}
+        return orbit_with_parameters(orbit, parameters), row
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
@@ -188,11 +188,11 @@ class SpecialCurveProblem:
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 
     def located_zero(
-        self, behind: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
+        self, previous: Sequence[SolvedPoint], outer: SolvedPoint, margin: int
     ) -> SolvedPoint | None:
-        """The point between `behind[-1]` and `outer` at which the margin with index `margin` is 0; None if
-        this point is `behind[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
-        inner = behind[-1]
+        """The point between `previous[-1]` and `outer` at which the margin with index `margin` is 0; None if
+        this point is `previous[-1]` itself. For the margin of the amplitude: `outer`. Raises Unsolvable."""
+        inner = previous[-1]
         if END_BY_MARGIN[margin] is CurveEndReason.hopf:
             return outer  # no cycle exists at the Hopf point itself: the curve's end is extrapolated
         ends = float(self.margins(inner)[margin]), float(self.margins(outer)[margin])
@@ -209,37 +209,37 @@ class SpecialCurveProblem:
     ) -> SolvedPoint:
         """The point between `inner` and `outer` at which the margin with index `margin` is 0; raises
         Unsolvable. ends: values of this margin at `inner` and `outer`."""
-        found: dict[float, SolvedPoint] = {1.0: outer}
+        points: dict[float, SolvedPoint] = {1.0: outer}
 
-        def value(share: float) -> float:
-            found[share] = self.point_near_chord(inner, outer, share)
-            return float(self.margins(found[share])[margin])
+        def value(fraction: float) -> float:
+            points[fraction] = self.point_near_chord(inner, outer, fraction)
+            return float(self.margins(points[fraction])[margin])
 
-        return found[
+        return points[
             zero_along_step(value, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
         ]
 
-    def is_closed_by(self, behind: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
+    def is_closed_by(self, previous: Sequence[SolvedPoint], point: SolvedPoint) -> bool:
         """Whether a curve of over `min_loop_points` points passes its first point on the step to `point`."""
-        last = behind[-1]
+        last = previous[-1]
         step = point.step_from(last)
-        back = point.step_from(behind[0])
-        passed = float(back @ step) / float(step @ step)
-        near = float(np.linalg.norm(back)) <= float(np.linalg.norm(step))
-        return len(behind) > END_SETTINGS.min_loop_points and 0 <= passed <= 1 and near
+        step_from_first = point.step_from(previous[0])
+        projection = float(step_from_first @ step) / float(step @ step)
+        is_near = float(np.linalg.norm(step_from_first)) <= float(np.linalg.norm(step))
+        return len(previous) > END_SETTINGS.min_loop_points and 0 <= projection <= 1 and is_near
 
-    def point_near_chord(self, one: SolvedPoint, other: SolvedPoint, share: float) -> SolvedPoint:
-        """Point of the curve near fraction `share` of the chord from `one` to `other`; raises Unsolvable."""
-        start, at_row = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        line = line_across(other.step_from(one), one, other)
-        return self._family(other).corrected_point(start, at_row, line, other.normal_derivatives)
+    def point_near_chord(self, first: SolvedPoint, second: SolvedPoint, fraction: float) -> SolvedPoint:
+        """Point of the curve near the fraction of the chord from `first` to `second`; raises Unsolvable."""
+        start, row = self._weighted_sum((first, second), (1 - fraction, fraction), mesh_of(second.orbit))
+        line = line_across(second.step_from(first), first, second)
+        return self._family(second).corrected_point(start, row, line, second.normal_derivatives)
 
-    def point_on_row(self, one: SolvedPoint, other: SolvedPoint, at_row: float) -> SolvedPoint:
-        """Point of the curve between `one` and `other` at the row coordinate `at_row`; raises Unsolvable."""
-        length = other.row_coordinate - one.row_coordinate
-        share = (at_row - one.row_coordinate) / length if length else 0.0
-        start, _ = self._weighted_sum((one, other), (1 - share, share), mesh_of(other.orbit))
-        return self._family(other).corrected_point(start, at_row, ALONG_BRANCH, other.normal_derivatives)
+    def point_on_row(self, first: SolvedPoint, second: SolvedPoint, row: float) -> SolvedPoint:
+        """Point of the curve between `first` and `second`. row: its row coordinate. Raises Unsolvable."""
+        length = second.row_coordinate - first.row_coordinate
+        fraction = (row - first.row_coordinate) / length if length else 0.0
+        start, _ = self._weighted_sum((first, second), (1 - fraction, fraction), mesh_of(second.orbit))
+        return self._family(second).corrected_point(start, row, ALONG_BRANCH, second.normal_derivatives)
 
     def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""

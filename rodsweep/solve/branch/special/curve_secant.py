@@ -42,7 +42,7 @@ class _SecantIterate(NamedTuple):
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: present cycle. distance: its distance from
+    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: current cycle. distance: its distance from
     the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
 
     def __init__(
@@ -77,37 +77,37 @@ class SecantSearch:
     def make_step(self) -> SolvedPoint | None:
         """Makes one secant step. Returns the point of the curve after the last step, otherwise None. Raises
         Unsolvable."""
-        present = self._solve_at_distance()
+        current = self._solve_at_distance()
         span = 0.0
-        if own := self._derivatives_from_last(present):
-            self.derivatives = own
+        if measured := self._derivatives_from_last(current):
+            self.derivatives = measured
             self.has_previous_point_derivatives = False
-            span = own.cycle_distance
+            span = measured.cycle_distance
         rates = self.derivatives
         # Without derivatives any small step suffices: the two cycles then give derivatives.
-        step = -present.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
+        step = -current.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
         if not abs(step) <= CURVE_SECANT_SETTINGS.max_secant_step:
             raise Unsolvable("the secant method leaves the curve")
         if rates:
             error = self._error_after(step, span)
             if self._is_accurate_enough(error):
-                known = replace(
+                derivatives = replace(
                     rates,
                     contraction_rate=self.nearby_solver.contraction_rate,
                     relative_curvature=self.measured_curvature,
                 )
-                return self._curve_point(step, known, error)
+                return self._curve_point(step, derivatives, error)
             if self.has_previous_point_derivatives and abs(step) < CURVE_SECANT_SETTINGS.min_cycle_distance:
                 # Between closer cycles no derivative can be measured.
                 step = math.copysign(2 * CURVE_SECANT_SETTINGS.min_cycle_distance, step)
         if self.previous:  # the vectors are extrapolated along a line, like the cycle
-            change = (present.null_vectors - self.previous.null_vectors) / (
-                present.distance - self.previous.distance
+            change = (current.null_vectors - self.previous.null_vectors) / (
+                current.distance - self.previous.distance
             )
-            self.nearby_solver.set_approximate_vectors(present.null_vectors + step * change)
+            self.nearby_solver.set_approximate_vectors(current.null_vectors + step * change)
         if rates:
             self.orbit = self._predicted_orbit(step, rates)
-        self.previous = present
+        self.previous = current
         self.distance += step
         return None
 
@@ -136,49 +136,51 @@ class SecantSearch:
         return error <= CURVE_SECANT_SETTINGS.max_distance_error and self._parameter_error(error) <= allowed
 
     def _solve_at_distance(self) -> _SecantIterate:
-        """The cycle at the present distance across the curve, with its test function; raises Unsolvable."""
+        """The cycle at the current distance across the curve, with its test function; raises Unsolvable."""
         family = self.family
         rates = self.derivatives
         length = self.start_arc_length + self.distance * float(self.line.direction[0])
         row = self.row_coordinate + self.distance * float(self.line.direction[1])
         self.orbit = family.orbit_at_row(self.orbit, row)
         slope = abs(rates.test_slope) if rates else 1.0
-        enough = (
+        is_accurate = (
             AUGMENTED_SETTINGS.tolerance
             if rates
             else AUGMENTED_SETTINGS.tolerance_to_distance_ratio * CURVE_SECANT_SETTINGS.first_secant_step
         )
         condition = BorderCondition(family.scale, family.border, length)
-        self.orbit, test = self.nearby_solver.solve(self.orbit, condition, slope, enough)
+        self.orbit, test = self.nearby_solver.solve(self.orbit, condition, slope, is_accurate)
         return _SecantIterate(self.orbit, self.nearby_solver.test_function.null_vectors, test, self.distance)
 
-    def _derivatives_from_last(self, present: _SecantIterate) -> NormalDerivatives | None:
-        """Derivatives across the curve from the last cycle and the cycle `present`; None if `present` is the
+    def _derivatives_from_last(self, current: _SecantIterate) -> NormalDerivatives | None:
+        """Derivatives across the curve from the last cycle and the cycle `current`; None if `current` is the
         first cycle, or if the two cycles are too close or have equal test functions."""
-        before = self.previous
-        if before is None or present.test_value == before.test_value:
+        previous = self.previous
+        if previous is None or current.test_value == previous.test_value:
             return None
-        if abs(present.distance - before.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
+        if abs(current.distance - previous.distance) < CURVE_SECANT_SETTINGS.min_cycle_distance:
             return None
         name = self.family.scale.parameter_name
         # The test function is nearly linear here, so that difference quotients are as good as derivatives.
-        span = present.distance - before.distance
-        one = before.orbit
-        other = present.orbit
-        change = other.form.rod.coordinate(name) - one.form.rod.coordinate(name)
-        orbit = np.append(other.values - one.values, change) / span
-        slope = (present.test_value - before.test_value) / span
-        self._measure_curvature((present.distance + before.distance) / 2, slope)
-        return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(one), abs(span))
+        span = current.distance - previous.distance
+        previous_orbit = previous.orbit
+        current_orbit = current.orbit
+        change = current_orbit.form.rod.coordinate(name) - previous_orbit.form.rod.coordinate(name)
+        orbit = np.append(current_orbit.values - previous_orbit.values, change) / span
+        slope = (current.test_value - previous.test_value) / span
+        self._measure_curvature((current.distance + previous.distance) / 2, slope)
+        return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(previous_orbit), abs(span))
 
     def _measure_curvature(self, middle: float, slope: float) -> None:
         """Updates the curvature from the last two measured derivatives. middle: distance at which the
         derivative of the test function is `slope`."""
         self.measured_slopes.append((middle, slope))
         if len(self.measured_slopes) > 1:
-            (at, before), (now, last) = self.measured_slopes[-2:]
-            if now != at:
-                self.measured_curvature = self.curvature = abs((last - before) / (now - at) / last)
+            (previous_middle, previous_slope), (last_middle, last_slope) = self.measured_slopes[-2:]
+            if last_middle != previous_middle:
+                self.measured_curvature = self.curvature = abs(
+                    (last_slope - previous_slope) / (last_middle - previous_middle) / last_slope
+                )
 
     def _predicted_orbit(self, step: float, derivatives: NormalDerivatives) -> Orbit:
         """The last cycle, moved by `step` across the curve along `derivatives`."""
@@ -195,11 +197,11 @@ class SecantSearch:
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
         scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, family.scale.min_deflection_unit)
-        ahead = scale.directional_derivative(orbit, tangent)
+        derivative = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,
             scale=scale,
-            branch_direction=ahead / np.linalg.norm(ahead),
+            branch_direction=derivative / np.linalg.norm(derivative),
             row_coordinate=row_coordinate,
             parameter=getattr(orbit.form.rod, scale.parameter_name),
             row_parameter=getattr(orbit.form.rod, family.row_axis.name),
@@ -212,6 +214,8 @@ class SecantSearch:
         rates = self.derivatives
         assert rates is not None
         parameter = PARAMETERS[self.family.scale.parameter_name]
-        at = self.orbit.form.rod.coordinate(self.family.scale.parameter_name)
-        moved = parameter.value(at + distance * float(rates.orbit_derivative[-1])) - parameter.value(at)
-        return abs(moved - distance * self.line.chord_slope * float(self.line.direction[1]))
+        coordinate = self.orbit.form.rod.coordinate(self.family.scale.parameter_name)
+        displacement = parameter.value(
+            coordinate + distance * float(rates.orbit_derivative[-1])
+        ) - parameter.value(coordinate)
+        return abs(displacement - distance * self.line.chord_slope * float(self.line.direction[1]))

@@ -49,22 +49,22 @@ def first_point_of_curve(
     if orbit is None:
         raise Unsolvable(special.message or "the cycle of the special point is not known")
     mesh = mesh_of(orbit)
-    rough = replace(
+    first_point = replace(
         mesh,
         order=ceil(CURVE_START_SETTINGS.order_ratio * mesh.order),
         interval_count=ceil(CURVE_START_SETTINGS.interval_ratio * mesh.interval_count),
         stage_count=cheapest_stage_count(CURVE_SECANT_SETTINGS.accuracy),
     )
-    orbit = rough.interpolated_orbit(orbit)
-    least = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
-    scale = ArcLengthScale.at_orbit(orbit, line_name, least)
+    orbit = first_point.interpolated_orbit(orbit)
+    min_unit = abs(deflection_of(orbit)) * BRANCH_START_SETTINGS.min_deflection_amplitude / special.tip_y_max
+    scale = ArcLengthScale.at_orbit(orbit, line_name, min_unit)
     matrix = BorderedMatrix(orbit, scale, workspace)
-    ahead = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
+    derivative = scale.directional_derivative(orbit, tangent_at(orbit, scale, ALONG_DEFLECTION, matrix))
     row_coordinate = row_axis.coordinate(row)
     start = SolvedPoint(
         orbit=orbit,
         scale=scale,
-        branch_direction=ahead / np.linalg.norm(ahead),
+        branch_direction=derivative / np.linalg.norm(derivative),
         row_coordinate=row_coordinate,
         parameter=special.at,
         row_parameter=row,

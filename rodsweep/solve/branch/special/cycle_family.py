@@ -54,8 +54,10 @@ class CycleFamily:
     ) -> "CycleFamily":
         """The family of the cycles near `point` of a curve of special points of the kind `kind`. row_axis,
         workspace: as in the class."""
-        small = kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
-        return cls(kind, row_axis, point.scale, point.branch_direction, small, workspace)
+        has_small_cycles = (
+            kind == SpecialKind.fold and point.tip_y_max < CURVE_SECANT_SETTINGS.small_fold_cycle
+        )
+        return cls(kind, row_axis, point.scale, point.branch_direction, has_small_cycles, workspace)
 
     def orbit_at_row(self, orbit: Orbit, row_coordinate: float) -> Orbit:
         """The orbit with unchanged values, for the rod at `row_coordinate`; raises Unsolvable."""
@@ -83,16 +85,16 @@ class CycleFamily:
         is_other_mesh: whether `derivatives` were computed at the same point on another mesh.
         """
         # Derivatives along another direction across the curve would mislead the secant method.
-        usable = (
+        is_usable = (
             derivatives
             and derivatives.direction @ line.direction >= CURVE_SECANT_SETTINGS.min_cosine_for_reuse
         )
-        known = derivatives if usable else None
-        search = SecantSearch(self, start, row_coordinate, line, known, is_other_mesh)
+        start_derivatives = derivatives if is_usable else None
+        search = SecantSearch(self, start, row_coordinate, line, start_derivatives, is_other_mesh)
         for _ in range(CURVE_SECANT_SETTINGS.max_secant_steps):
-            found = search.make_step()
-            if found is not None:
-                return found
+            point = search.make_step()
+            if point is not None:
+                return point
         raise Unsolvable("the secant method across the curve does not converge")
 
     def corrected_point_with_error(
@@ -119,18 +121,21 @@ class CycleFamily:
             finer = replace(larger, interval_count=longer)
             if not finer.is_allowed:
                 break
-            known = last.normal_derivatives
+            normal_derivatives = last.normal_derivatives
             start = finer.interpolated_orbit(last.orbit)
-            fine = self.corrected_point(start, last.row_coordinate, line, known, is_other_mesh=True)
+            fine_point = self.corrected_point(
+                start, last.row_coordinate, line, normal_derivatives, is_other_mesh=True
+            )
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
-            along = line.chord_slope * (fine.row_coordinate - last.row_coordinate)
-            off = abs(fine.parameter - last.parameter - along)
-            error = CURVE_SECANT_SETTINGS.error_factor * off + CURVE_SECANT_SETTINGS.min_error * abs(
-                fine.parameter
+            chord_change = line.chord_slope * (fine_point.row_coordinate - last.row_coordinate)
+            parameter_difference = abs(fine_point.parameter - last.parameter - chord_change)
+            error = (
+                CURVE_SECANT_SETTINGS.error_factor * parameter_difference
+                + CURVE_SECANT_SETTINGS.min_error * abs(fine_point.parameter)
             )
-            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine.parameter):
+            if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.parameter):
                 errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
                 return replace(last, measured_error=errors)
-            last = fine
+            last = fine_point
         raise mesh_limit()

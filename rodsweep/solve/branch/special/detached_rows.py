@@ -77,10 +77,10 @@ class DiagramStages:
         """All stages that follow from the results of work items; only the last one may be incomplete."""
         stages: list[Stage] = [self.first]
         while len(stages) < MAX_DIAGRAM_STAGES and not stages[-1].items_to_solve(results):
-            following = self._stage_after(stages, results)
-            if following is None:
+            next_stage = self._stage_after(stages, results)
+            if next_stage is None:
                 break
-            stages.append(following)
+            stages.append(next_stage)
         return stages
 
     def _stage_after(self, stages: Sequence[Stage], results: Results) -> Stage | None:
@@ -88,16 +88,16 @@ class DiagramStages:
         last = stages[-1]
         if isinstance(last, SpecialCurveTracer):
             return _rows_after(last, stages, results)
-        new = self._new_special_points(stages, last, results)
-        if not new:
+        new_points = self._new_special_points(stages, last, results)
+        if not new_points:
             return None
-        known = (*self.first.special_points, *self._special_points_of_rows(stages, results))
-        known = tuple(point for point in known if point not in new)
+        known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+        known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
             self.first,
             first_item=last.end_item,
-            special_points=new,
-            known_special_points=known,
+            special_points=new_points,
+            known_special_points=known_points,
             starts_by_row={row: last.starts_of_row(row) for row in last.crossings},
         )
 
@@ -113,17 +113,17 @@ class DiagramStages:
         self, stages: Sequence[Stage], last: DetachedRows, results: Results
     ) -> list[RowSpecialPoint]:
         """Special points of the rows of `last` that lie on no curve traced so far."""
-        known: dict[int, list[RowSpecialPoint | SpecialPoint]] = {}
+        points_by_row: dict[int, list[RowSpecialPoint | SpecialPoint]] = {}
         for stage in stages:
             if isinstance(stage, SpecialCurveTracer):
                 for point in stage.special_points:
-                    known.setdefault(point.row_index, []).append(point)
+                    points_by_row.setdefault(point.row_index, []).append(point)
         for row, crossings in last.crossings.items():
-            known.setdefault(row, []).extend(crossing.special_point for crossing in crossings)
+            points_by_row.setdefault(row, []).extend(crossing.special_point for crossing in crossings)
         return [
             point
             for point in self._special_points_of_rows([last], results)
-            if not any(point.is_same_as(other) for other in known.get(point.row_index, ()))
+            if not any(point.is_same_as(other) for other in points_by_row.get(point.row_index, ()))
         ]
 
     def changed_rows(self, results: Results) -> dict[int, dict[str, Array]]:
@@ -132,40 +132,40 @@ class DiagramStages:
 
     def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
         """The curves of all stages, each only once; valid if the last stage is complete."""
-        found: list[SpecialPointCurve] = []
+        curves: list[SpecialPointCurve] = []
         stages = self.stages(results)
-        traced = [stage.curves(results) for stage in stages if isinstance(stage, SpecialCurveTracer)]
-        for curve in (curve for one in traced for curve in one.curves):
-            if not any(are_identical_curves(curve, other, self.first.line_axis) for other in found):
-                found.append(curve)
+        traced_stages = [stage.curves(results) for stage in stages if isinstance(stage, SpecialCurveTracer)]
+        for curve in (curve for stage_curves in traced_stages for curve in stage_curves.curves):
+            if not any(are_identical_curves(curve, other, self.first.line_axis) for other in curves):
+                curves.append(curve)
         return TracedCurves(
-            tuple(found),
-            max(one.largest_seed_distance for one in traced),
-            sum(one.untraced_count for one in traced),
+            tuple(curves),
+            max(stage_curves.largest_seed_distance for stage_curves in traced_stages),
+            sum(stage_curves.untraced_count for stage_curves in traced_stages),
         )
 
 
 def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[str, Array]]:
     """Variables of all rows that were solved again, by index of the row; the last result of a row counts."""
-    found: dict[int, dict[str, Array]] = {}
+    variables_by_row: dict[int, dict[str, Array]] = {}
     for stage in stages:
         if isinstance(stage, DetachedRows):
-            numbers = (item for item in range(stage.first_item, stage.end_item) if results.get(item))
-            found |= {stage.row_of(item): results[item] for item in numbers}
-    return dict(sorted(found.items()))
+            items = (item for item in range(stage.first_item, stage.end_item) if results.get(item))
+            variables_by_row |= {stage.row_of(item): results[item] for item in items}
+    return dict(sorted(variables_by_row.items()))
 
 
 def _rows_after(last: SpecialCurveTracer, stages: Sequence[Stage], results: Results) -> DetachedRows | None:
     """The rows that the curves of `last` cross without a special point there; None if there are none."""
-    known: dict[int, tuple[RowCrossing, ...]] = {}
+    known_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for stage in stages:
-        known |= stage.crossings if isinstance(stage, DetachedRows) else {}
-    new: dict[int, tuple[RowCrossing, ...]] = {}
+        known_crossings |= stage.crossings if isinstance(stage, DetachedRows) else {}
+    new_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for crossing in last.crossings(results):
         row = crossing.row_index
-        before = new.get(row) or known.get(row, ())
-        if not any(crossing.special_point.is_same_as(other.special_point) for other in before):
-            new[row] = (*before, crossing)
-    if not new:
+        row_crossings = new_crossings.get(row) or known_crossings.get(row, ())
+        if not any(crossing.special_point.is_same_as(other.special_point) for other in row_crossings):
+            new_crossings[row] = (*row_crossings, crossing)
+    if not new_crossings:
         return None
-    return DetachedRows(last.end_item, last.row_axis.name, last.complete_rows, new)
+    return DetachedRows(last.end_item, last.row_axis.name, last.complete_rows, new_crossings)

@@ -29,18 +29,18 @@ def unstable_multiplier_count(point: BranchCycle) -> int:
 def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[SpecialKind], bool]:
     """(kinds of the special points between the cycles `start` and `end`, whether these kinds explain the
     change of the number of multipliers outside the unit circle)."""
-    found = []
+    kinds = []
     if start.parameter_rate * end.parameter_rate < 0:
-        found.append(SpecialKind.fold)
+        kinds.append(SpecialKind.fold)
     # Two multipliers may pass -1 together or become a pair near -1; an odd difference needs a crossing.
     if (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
-        found.append(kind_at_minus_one(start.orbit))
+        kinds.append(kind_at_minus_one(start.orbit))
     change = abs(unstable_multiplier_count(end) - unstable_multiplier_count(start))
     # Near a fold a multiplier is 1 within its error; the counts at `start` and `end` may be wrong by one.
-    slack = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
-    if not found and change - slack > 1:
+    tolerance = 1 if _has_multiplier_near_one(start) or _has_multiplier_near_one(end) else 0
+    if not kinds and change - tolerance > 1:
         return [SpecialKind.torus], change == 2 and all(map(_has_complex_pair, (start, end)))
-    return found, len(found) <= 1 and abs(change - len(found)) <= slack
+    return kinds, len(kinds) <= 1 and abs(change - len(kinds)) <= tolerance
 
 
 def _count_beyond_minus_one(point: BranchCycle) -> int:
@@ -71,20 +71,20 @@ def special_points_between(
     end: BranchCycle,
     cycle_at: CycleAtArcLength,
     accuracy: float,
-    depth: int = 0,
+    halvings: int = 0,
 ) -> tuple[list[SpecialPoint], bool]:
-    """Returns (points, explained): special points between two cycles, in order, and whether these points
+    """Returns (points, are_complete): special points between two cycles, in order, and whether these points
     explain the change of the number of multipliers outside the unit circle.
 
     cycle_at: function that solves a cycle at an arc length between the two cycles. accuracy: relative
-    accuracy of the branch. depth: number of halvings so far. The step is halved if the multipliers show
+    accuracy of the branch. halvings: number of halvings so far. The step is halved if the multipliers show
     several special points, or if a special point cannot be located. Near crushing, for example, a prediction
     over the whole step may leave the model.
     """
-    kinds, explained = special_kinds_between(start, end)
-    points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if explained else []
-    if depth < SPECIAL_POINT_SETTINGS.max_halvings and (
-        not explained or any(point.message for point in points)
+    kinds, are_complete = special_kinds_between(start, end)
+    points = [special_point_between(kind, start, end, accuracy) for kind in kinds] if are_complete else []
+    if halvings < SPECIAL_POINT_SETTINGS.max_halvings and (
+        not are_complete or any(point.message for point in points)
     ):
         try:
             # Halving separates special points whose changes of the number of multipliers cancel or add up.
@@ -92,7 +92,11 @@ def special_points_between(
         except Unsolvable:
             pass
         else:
-            first, first_explained = special_points_between(start, middle, cycle_at, accuracy, depth + 1)
-            second, second_explained = special_points_between(middle, end, cycle_at, accuracy, depth + 1)
-            return first + second, first_explained and second_explained
-    return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], explained
+            first_points, first_complete = special_points_between(
+                start, middle, cycle_at, accuracy, halvings + 1
+            )
+            second_points, second_complete = special_points_between(
+                middle, end, cycle_at, accuracy, halvings + 1
+            )
+            return first_points + second_points, first_complete and second_complete
+    return points or [special_point_between(kind, start, end, accuracy) for kind in kinds], are_complete

@@ -35,18 +35,18 @@ def kind_at_minus_one(orbit: Orbit) -> SpecialKind:
     return SpecialKind.symmetry_breaking if orbit.is_symmetric else SpecialKind.period_doubling
 
 
-def test_function_value(kind: SpecialKind, segment: BranchSegment, found: ConvergedOrbit) -> float:
-    """Value of the test function that is zero at special points of a kind, at the cycle `found`, the last
+def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: ConvergedOrbit) -> float:
+    """Value of the test function that is zero at special points of a kind, at the cycle `solved`, the last
     cycle that `segment` solved; raises Unsolvable."""
     if kind == SpecialKind.fold:
         return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
-        return least_stretch(CyclePath(found.orbit))
+        return least_stretch(CyclePath(solved.orbit))
     if kind == SpecialKind.torus:
-        function = TorusFunction(bordered_matrix_of(found))
-        correct_until_converged(function, found.orbit)
-        return function.value(found.orbit)
-    matrix = BorderedMatrix(found.orbit, segment.start.scale, found.workspace)
+        function = TorusFunction(bordered_matrix_of(solved))
+        correct_until_converged(function, solved.orbit)
+        return function.value(solved.orbit)
+    matrix = BorderedMatrix(solved.orbit, segment.start.scale, solved.workspace)
     return multiplier_test_function(kind, matrix.multipliers_over_solved_part)
 
 
@@ -62,16 +62,16 @@ def multiplier_test_function(kind: SpecialKind, h: Complex) -> float:
     # Without a complex pair the test function is not defined.
     if real.all():
         raise Unsolvable("all multipliers are real, so no complex pair crosses the unit circle")
-    beyond = np.abs(h[~real]) - 1
-    return float(beyond[np.argmin(np.abs(beyond))])
+    excess = np.abs(h[~real]) - 1
+    return float(excess[np.argmin(np.abs(excess))])
 
 
-def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, ahead: Array, point: BranchCycle) -> float:
-    """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale, ahead:
-    scale and tangent, (3,), at the start of the segment."""
+def _test_value_at_end(kind: SpecialKind, scale: ArcLengthScale, tangent: Array, point: BranchCycle) -> float:
+    """Value of the test function of a kind at `point`, an end of a segment; raises Unsolvable. scale,
+    tangent: scale and tangent, (3,), at the start of the segment."""
     if kind == SpecialKind.fold:
         # By the arc length along the direction `ahead`, which is the variable of the search.
-        rate = float(scale.directional_derivative(point.orbit, point.tangent) @ ahead)
+        rate = float(scale.directional_derivative(point.orbit, point.tangent) @ tangent)
         return float(point.tangent[-1]) / scale.coordinate_unit / rate
     if kind == SpecialKind.left_the_model:
         return least_stretch(point.cycle.path)
@@ -85,12 +85,12 @@ def special_point_between(
     and `SPECIAL_POINT_SETTINGS.accuracy`, or with a larger error if no allowed mesh suffices or the limit of
     the work is reached. A point that is not located has a message, and the parameter difference of the two
     cycles as error."""
-    aim = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
+    required_accuracy = min(accuracy, SPECIAL_POINT_SETTINGS.accuracy)
     try:
         segment = BranchSegment(start, end)
         segment.set_mesh(mesh_of(end.orbit))
         length, slope = _bracketed_zero(kind, segment)
-        mesh = first_mesh(end.calibration, aim)
+        mesh = first_mesh(end.calibration, required_accuracy)
         point: SpecialPoint | None = None
         for number in range(SPECIAL_POINT_SETTINGS.max_mesh_comparisons + 1):
             segment.set_mesh(mesh)
@@ -104,16 +104,16 @@ def special_point_between(
             point = _special_point_at(kind, orbit, start.scale.parameter_name)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
-                if point.error <= aim * abs(point.at):
+                if point.error <= required_accuracy * abs(point.at):
                     break
             # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
-            mesh = next_mesh(mesh, point.error / (aim * abs(point.at)) if number % 2 else 1.0)
+            mesh = next_mesh(mesh, point.error / (required_accuracy * abs(point.at)) if number % 2 else 1.0)
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
             raise mesh_limit()
-    except Unsolvable as why:
-        return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {why}")
+    except Unsolvable as reason:
+        return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
     return point
 
 
@@ -127,18 +127,22 @@ def _with_mesh_errors(
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
         point.at - last.at
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
-    share = SPECIAL_POINT_SETTINGS.secant_error_at_fold
+    fraction = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
         name = start.scale.parameter_name
         length = abs(getattr(start.orbit.form.rod, name) - getattr(end.orbit.form.rod, name))
-        moved = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / length if length else 1.0
-        share = SPECIAL_POINT_SETTINGS.secant_error + min(moved, 1.0)
-    one = start.cycle.measures
-    other = end.cycle.measures
+        slope_error = SPECIAL_POINT_SETTINGS.max_slope_ratio * error / length if length else 1.0
+        fraction = SPECIAL_POINT_SETTINGS.secant_error + min(slope_error, 1.0)
+    start_measures = start.cycle.measures
+    end_measures = end.cycle.measures
     factor = SPECIAL_POINT_SETTINGS.error_factor
-    period = factor * abs(point.period - last.period) + share * abs(one.period - other.period)
-    size = factor * abs(point.tip_y_max - last.tip_y_max) + share * abs(one.tip_y_max - other.tip_y_max)
+    period = factor * abs(point.period - last.period) + fraction * abs(
+        start_measures.period - end_measures.period
+    )
+    size = factor * abs(point.tip_y_max - last.tip_y_max) + fraction * abs(
+        start_measures.tip_y_max - end_measures.tip_y_max
+    )
     return replace(
         point,
         error=error,
@@ -166,17 +170,17 @@ def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, me
     and `end` as errors. message: cause."""
     name = start.scale.parameter_name
     measures = end.cycle.measures
-    before = start.cycle.measures
-    at, other = (getattr(point.orbit.form.rod, name) for point in (end, start))
+    start_measures = start.cycle.measures
+    end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
     return SpecialPoint(
         kind=kind,
-        at=at,
+        at=end_value,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         # The two cycles may have the same parameter value, as on the two sides of a fold.
-        error=max(abs(at - other), SPECIAL_POINT_SETTINGS.accuracy * abs(at)),
-        period_error=abs(before.period / measures.period - 1),
-        tip_y_max_error=abs(before.tip_y_max / measures.tip_y_max - 1),
+        error=max(abs(end_value - start_value), SPECIAL_POINT_SETTINGS.accuracy * abs(end_value)),
+        period_error=abs(start_measures.period / measures.period - 1),
+        tip_y_max_error=abs(start_measures.tip_y_max / measures.tip_y_max - 1),
         message=message,
     )
 
@@ -185,19 +189,24 @@ def _bracketed_zero(kind: SpecialKind, segment: BranchSegment) -> tuple[float, f
     """(arc length of an approximate zero, slope of the test function there), by bracketing; raises
     Unsolvable."""
     start = segment.start
-    known = ((0.0, start), (segment.length, segment.end))
-    values = {at: _test_value_at_end(kind, start.scale, start.unit_tangent, point) for at, point in known}
+    ends_of_segment = ((0.0, start), (segment.length, segment.end))
+    values = {
+        zero_length: _test_value_at_end(kind, start.scale, start.unit_tangent, point)
+        for zero_length, point in ends_of_segment
+    }
 
     def kept(length: float) -> float:
         values[length] = test_function_value(kind, segment, segment.cycle_at(length))
         return values[length]
 
     ends = values[0.0], values[segment.length]
-    least = SPECIAL_POINT_SETTINGS.bracket_tolerance * min(map(abs, ends))
-    at = zero_along_step(kept, ends, segment.length, least, SPECIAL_POINT_SETTINGS.bracket_tolerance)
-    other = min((x for x in values if x != at), key=lambda x: abs(x - at))
-    slope = (values[at] - values[other]) / (at - other)
-    return at - values[at] / slope, slope
+    tolerance = SPECIAL_POINT_SETTINGS.bracket_tolerance * min(map(abs, ends))
+    zero_length = zero_along_step(
+        kept, ends, segment.length, tolerance, SPECIAL_POINT_SETTINGS.bracket_tolerance
+    )
+    other_length = min((x for x in values if x != zero_length), key=lambda x: abs(x - zero_length))
+    slope = (values[zero_length] - values[other_length]) / (zero_length - other_length)
+    return zero_length - values[zero_length] / slope, slope
 
 
 def _zero_by_secants(
@@ -211,21 +220,21 @@ def _zero_by_secants(
         if kind == SpecialKind.fold
         else SPECIAL_POINT_SETTINGS.max_linear_step
     )
-    enough = segment.length * linear
-    at = guess
+    tolerance = segment.length * linear
+    length = guess
     step = np.inf
-    before = None
+    previous = None
     for _ in range(SPECIAL_POINT_SETTINGS.max_secant_steps):
-        f = test_function_value(kind, segment, segment.cycle_at(at))
-        if before is not None and f != before[1]:
-            slope = (f - before[1]) / (at - before[0])
+        f = test_function_value(kind, segment, segment.cycle_at(length))
+        if previous is not None and f != previous[1]:
+            slope = (f - previous[1]) / (length - previous[0])
         last = abs(step)
         step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that hardly decreased is rounding error.
         if (
-            abs(step) <= enough
+            abs(step) <= tolerance
             or SPECIAL_POINT_SETTINGS.converging_step_ratio * last
             < abs(step)
             <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
@@ -234,7 +243,7 @@ def _zero_by_secants(
             change = step * tangent
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
-            return at + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
-        before = at, f
-        at += step
+            return length + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
+        previous = length, f
+        length += step
     raise Unsolvable("the secant method for the special point does not converge")

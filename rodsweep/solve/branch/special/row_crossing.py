@@ -44,11 +44,11 @@ class RowCrossing:
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, Array]) -> "RowCrossing":
         """The crossing from named arrays with the shapes that `arrays` gives, as "crossing" (6,)."""
-        row_index, kind, at, tip_y_max, error, keeps_omega = map(float, arrays["crossing"])
+        row_index, kind, value, tip_y_max, error, keeps_omega = map(float, arrays["crossing"])
         orbit = orbit_from_arrays(arrays, bool(keeps_omega))
         point = SpecialPoint(
             kind=SpecialKind(int(kind)),
-            at=at,
+            at=value,
             period=orbit.period,
             tip_y_max=tip_y_max,
             error=error,

@@ -63,7 +63,7 @@ class CurveSecantSettings:
     order_increase: int = 2
     """Increase of the order of the elements on the next finer mesh."""
     interval_ratio: float = 1.2
-    """Ratio of the number of time intervals of the next finer mesh to the number of the present mesh."""
+    """Ratio of the number of time intervals of the next finer mesh to the number of the current mesh."""
     max_finer_meshes: int = 5
     """Maximum number of meshes tried for one point after the first mesh, each finer than the mesh before."""
 
@@ -110,8 +110,8 @@ class NormalDerivatives:
         mesh = mesh_of(orbit)
         if mesh == self.mesh:
             return self.orbit_derivative
-        on_own_mesh = self.mesh.interpolated_orbit(orbit)
-        change = interpolated_change(on_own_mesh, self.orbit_derivative[:-1], mesh)
+        interpolated_orbit = self.mesh.interpolated_orbit(orbit)
+        change = interpolated_change(interpolated_orbit, self.orbit_derivative[:-1], mesh)
         return np.append(change, self.orbit_derivative[-1])
 
 
@@ -140,8 +140,8 @@ class MeasuredCurveError:
         """Whether the measured error may be used at the later point `point` of the curve: the measurement is
         recent, the mesh is the same, and the scaled error is within the accuracy."""
         max_reuses = CURVE_SECANT_SETTINGS.max_points_per_measurement - 1
-        recent = self.reuse_count < max_reuses and mesh_of(point.orbit) == self.mesh
-        return recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
+        is_recent = self.reuse_count < max_reuses and mesh_of(point.orbit) == self.mesh
+        return is_recent and self.error_at(point) <= CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)
 
     @property
     def for_next_point(self) -> "MeasuredCurveError":
@@ -182,15 +182,15 @@ class SolvedPoint:
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
         along a row, row coordinate)."""
-        moved = self.scale.components(self.orbit) - self.scale.components(other.orbit)
-        return np.append(moved, self.row_coordinate - other.row_coordinate)
+        difference = self.scale.components(self.orbit) - self.scale.components(other.orbit)
+        return np.append(difference, self.row_coordinate - other.row_coordinate)
 
     def unit_normal(self, step: Array) -> Array:
         """Unit normal of the curve, (2,), in components (along the branch, row coordinate); perpendicular to
         `step`, (4,), a step along the curve."""
-        way = np.array([float(self.branch_direction @ step[:3]), step[3]])
+        tangent = np.array([float(self.branch_direction @ step[:3]), step[3]])
         # Rotated by a right angle, so that the correction does not move along the curve.
-        return np.array([-way[1], way[0]]) / np.linalg.norm(way)
+        return np.array([-tangent[1], tangent[0]]) / np.linalg.norm(tangent)
 
 
 def with_parameter_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
@@ -201,27 +201,27 @@ def with_parameter_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     scaled from these points; the later measured point is used only if it has the same mesh. Raises ValueError
     if a point has no error estimate.
     """
-    found: list[SolvedPoint] = []
-    behind: MeasuredCurveError | None = None
+    points_with_errors: list[SolvedPoint] = []
+    previous_error: MeasuredCurveError | None = None
     # In reverse order, so that the next measurement after each point is known.
     for point in reversed(points):
         if point.measured_error is None:
             raise ValueError("the point has no error estimate")
         candidates = [point.measured_error]
         if point.measured_error.reuse_count == 0:
-            behind = point.measured_error
-        elif behind and behind.mesh == mesh_of(point.orbit):
-            candidates.append(behind)
-        by_mesh = max(errors.error_at(point) for errors in candidates)
-        found.append(replace(point, error=by_mesh + point.secant_error))
-    return found[::-1]
+            previous_error = point.measured_error
+        elif previous_error and previous_error.mesh == mesh_of(point.orbit):
+            candidates.append(previous_error)
+        mesh_error = max(errors.error_at(point) for errors in candidates)
+        points_with_errors.append(replace(point, error=mesh_error + point.secant_error))
+    return points_with_errors[::-1]
 
 
-def orbit_with_parameters(orbit: Orbit, changed: dict[str, float]) -> Orbit:
+def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
     """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
-    parameters are not allowed or change the unknowns of a state. changed: new parameter values by name."""
+    parameters are not allowed or change the unknowns of a state. parameters: new parameter values by name."""
     try:
-        form = replace(orbit.form, rod=orbit.form.rod.with_values(**changed))
+        form = replace(orbit.form, rod=orbit.form.rod.with_values(**parameters))
     except (ValueError, ZeroDivisionError) as error:
         raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
     require_equal_unknowns(form, orbit)
@@ -236,14 +236,14 @@ def arc_lengths(points: Sequence[SolvedPoint]) -> Array:
     return lengths
 
 
-def chord_slope(one: SolvedPoint, other: SolvedPoint) -> float:
+def chord_slope(first: SolvedPoint, second: SolvedPoint) -> float:
     """Slope of the chord between two points of a curve: difference of `parameter`, divided by the difference
     of `row_coordinate`; 0 if the row coordinates are equal."""
-    apart = other.row_coordinate - one.row_coordinate
-    return (other.parameter - one.parameter) / apart if apart else 0.0
+    row_difference = second.row_coordinate - first.row_coordinate
+    return (second.parameter - first.parameter) / row_difference if row_difference else 0.0
 
 
-def line_across(step: Array, one: SolvedPoint, other: SolvedPoint) -> SearchLine:
-    """Line on which the point of the curve after the successive points `one` and `other` is searched:
-    perpendicular to `step`, (4,), the predicted step from `other` along the curve."""
-    return SearchLine(other.unit_normal(step), chord_slope(one, other))
+def line_across(step: Array, first: SolvedPoint, second: SolvedPoint) -> SearchLine:
+    """Line on which the point of the curve after the successive points `first` and `second` is searched:
+    perpendicular to `step`, (4,), the predicted step from `second` along the curve."""
+    return SearchLine(second.unit_normal(step), chord_slope(first, second))

@@ -55,12 +55,12 @@ class SpecialCurveTracer:
     def items_to_solve(self, results: Mapping[int, HalfCurveArrays]) -> list[int]:
         """Numbers of the half curves needed now, then of half curves that may be needed later; empty if all
         curves are complete. results: results of half curves, by number."""
-        needed: list[int] = []
-        likely: list[int] = []
+        needed_items: list[int] = []
+        possible_items: list[int] = []
         for curves, search in self._searches(results):
-            needed += search.missing_items
-            likely += curves.possible_items(search)
-        return [self.first_item + item for item in needed + likely] if needed else []
+            needed_items += search.missing_items
+            possible_items += curves.possible_items(search)
+        return [self.first_item + item for item in needed_items + possible_items] if needed_items else []
 
     def crossings(self, results: Mapping[int, HalfCurveArrays]) -> list[RowCrossing]:
         """Crossings of all curves with complete rows at which no special point lies; valid as `curves`."""
@@ -73,20 +73,22 @@ class SpecialCurveTracer:
 
     def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
         """All curves, from the results of the half curves; valid if `items_to_solve(results)` is empty."""
-        found = [search.traced_curves for _, search in self._searches(results)]
-        curves = tuple(traced.curve for one in found for traced in one.curves)
+        traced_searches = [search.traced_curves for _, search in self._searches(results)]
+        curves = tuple(traced.curve for traced_search in traced_searches for traced in traced_search.curves)
         return TracedCurves(
-            curves, max(one.largest_seed_distance for one in found), sum(one.untraced_count for one in found)
+            curves,
+            max(traced_search.largest_seed_distance for traced_search in traced_searches),
+            sum(traced_search.untraced_count for traced_search in traced_searches),
         )
 
     def _searches(
         self, results: Mapping[int, HalfCurveArrays]
     ) -> "Iterator[tuple[_CurvesOfKind, CurveSearch[_TracedCurve]]]":
         """Yields (curves with `results`, state of the search for these curves) for each kind of points."""
-        own = {number - self.first_item: result for number, result in results.items()}
+        own_results = {number - self.first_item: result for number, result in results.items()}
         for kind in FOLLOWED_KINDS:
-            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own)
-            seeds = (i for i, one in enumerate(self.special_points) if one.kind == kind)
+            curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own_results)
+            seeds = (i for i, point in enumerate(self.special_points) if point.kind == kind)
             yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
 
     def solve(
@@ -94,13 +96,15 @@ class SpecialCurveTracer:
     ) -> HalfCurveArrays:
         """The result of half curve number `item`, as `TracedHalfCurve.arrays`. located: function that returns
         the special points, with cycles, of the row with a given index. workspace: memory of matrices."""
-        index, behind = divmod(item - self.first_item, 2)
-        one = self.special_points[index]
+        index, is_backward = divmod(item - self.first_item, 2)
+        point = self.special_points[index]
         problem = SpecialCurveProblem(
-            one.kind, self.line_axis, self.row_axis, workspace, -1.0 if behind else 1.0
+            point.kind, self.line_axis, self.row_axis, workspace, -1.0 if is_backward else 1.0
         )
-        special = (*self.special_points, *self.known_special_points)
-        return trace_half_curve(problem, one, located(one.row_index), special, self.complete_rows).arrays()
+        special_points = (*self.special_points, *self.known_special_points)
+        return trace_half_curve(
+            problem, point, located(point.row_index), special_points, self.complete_rows
+        ).arrays()
 
     def row_of(self, item: int) -> int:
         """Index of the row on which half curve number `item` starts."""
@@ -112,11 +116,11 @@ class SpecialCurveTracer:
 
     def item_label(self, item: int) -> str:
         """Text for half curve `item` in the progress display: kind of curve, starting row, direction."""
-        index, behind = divmod(item - self.first_item, 2)
-        one = self.special_points[index]
-        start = f"{self.row_axis.name} = {one.row_value:.5g}"
-        way = "smaller" if behind else "larger"
-        return f"curve of {FOLLOWED_KINDS[one.kind]} from {start} to {way} values"
+        index, is_backward = divmod(item - self.first_item, 2)
+        point = self.special_points[index]
+        start = f"{self.row_axis.name} = {point.row_value:.5g}"
+        direction = "smaller" if is_backward else "larger"
+        return f"curve of {FOLLOWED_KINDS[point.kind]} from {start} to {direction} values"
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,60 +150,64 @@ class _CurvesOfKind:
 
     def missing_items(self, seed: int) -> list[int]:
         """Numbers of the half curves missing for the curve through special point `seed`; [] if complete."""
-        ahead = 2 * seed
-        behind = 2 * seed + 1
-        if ahead not in self.results:
-            return [item for item in (ahead, behind) if item not in self.results]
-        half = TracedHalfCurve.from_arrays(self.results[ahead]).half
+        forward_item = 2 * seed
+        backward_item = 2 * seed + 1
+        if forward_item not in self.results:
+            return [item for item in (forward_item, backward_item) if item not in self.results]
+        half = TracedHalfCurve.from_arrays(self.results[forward_item]).half
         # A closed curve has no second half; if the first half failed, the second is not needed.
-        on = half is not None and half.end is not CurveEndReason.closed
-        return [behind] if on and behind not in self.results else []
+        needs_backward = half is not None and half.end is not CurveEndReason.closed
+        return [backward_item] if needs_backward and backward_item not in self.results else []
 
     def possible_items(self, search: "CurveSearch[_TracedCurve]") -> list[int]:
         """Numbers of half curves that may be needed later: from special points on no curve yet, on the rows
         where the half curves needed now start."""
         rows = {self.special_points[item // 2].row_value for item in search.missing_items}
-        beside = sorted(
+        candidates = sorted(
             (i for i in search.untried_seeds if self.special_points[i].row_value in rows), key=self._sort_key
         )
-        return [item for i in beside for item in self.missing_items(i)]
+        return [item for i in candidates for item in self.missing_items(i)]
 
     def curve(self, seed: int) -> _TracedCurve | None:
         """The curve through special point `seed`, joined from two halves; None if a half was not followed."""
-        ahead = TracedHalfCurve.from_arrays(self.results[2 * seed])
-        if ahead.half is None:
+        forward = TracedHalfCurve.from_arrays(self.results[2 * seed])
+        if forward.half is None:
             return None
-        closed = ahead.half.end is CurveEndReason.closed
-        behind = TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
-        if behind.half is None and not closed:
+        closed = forward.half.end is CurveEndReason.closed
+        backward = (
+            TracedHalfCurve(None) if closed else TracedHalfCurve.from_arrays(self.results[2 * seed + 1])
+        )
+        if backward.half is None and not closed:
             return None
-        curve = SpecialPointCurve.joined(self.kind, ahead.half, behind.half)
-        near = dict(ahead.distances)
-        for i, distance in behind.distances.items():
-            near[i] = min(distance, near.get(i, math.inf))
-        return _TracedCurve(curve, near, ahead.crossings + behind.crossings)
+        curve = SpecialPointCurve.joined(self.kind, forward.half, backward.half)
+        distances = dict(forward.distances)
+        for i, distance in backward.distances.items():
+            distances[i] = min(distance, distances.get(i, math.inf))
+        return _TracedCurve(curve, distances, forward.crossings + backward.crossings)
 
     def distance(self, curve: _TracedCurve, seed: int) -> float:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
-        near = curve.distances.get(seed, math.inf)
-        lies_off = near > CURVE_IDENTITY_SETTINGS.max_row_distance
+        distance = curve.distances.get(seed, math.inf)
+        is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_row_distance
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return (
-            0.0 if lies_off and self._lies_on_extrapolation(curve.curve, self.special_points[seed]) else near
+            0.0
+            if is_off_curve and self._lies_on_extrapolation(curve.curve, self.special_points[seed])
+            else distance
         )
 
-    def are_identical(self, one: _TracedCurve, other: _TracedCurve) -> bool:
+    def are_identical(self, first: _TracedCurve, second: _TracedCurve) -> bool:
         """Whether two curves are identical: their ends coincide within a tolerance."""
-        return are_identical_curves(one.curve, other.curve, self.line_axis)
+        return are_identical_curves(first.curve, second.curve, self.line_axis)
 
     def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
         return self.special_points[i].row_value, self.special_points[i].at
 
-    def _lies_on_extrapolation(self, curve: SpecialPointCurve, one: RowSpecialPoint) -> bool:
-        """Whether the special point `one` lies on the extrapolation of a curve to a Hopf point."""
-        if one.tip_y_max >= END_SETTINGS.min_amplitude:
+    def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
+        """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
+        if special_point.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
         for end, last in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
@@ -207,20 +215,20 @@ class _CurvesOfKind:
             x = self.line_axis.coordinate(end.at)
             y = self.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            share = (self.row_axis.coordinate(one.row_value) - y) / (last.row_coordinate - y)
-            chord = x + share * (self.line_axis.coordinate(last.at) - x)
-            distance = abs(chord - self.line_axis.coordinate(one.at))
-            if 0 <= share <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
+            fraction = (self.row_axis.coordinate(special_point.row_value) - y) / (last.row_coordinate - y)
+            chord = x + fraction * (self.line_axis.coordinate(last.at) - x)
+            distance = abs(chord - self.line_axis.coordinate(special_point.at))
+            if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
 
 
-def are_identical_curves(one: SpecialPointCurve, other: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
+def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
     """Whether two curves are identical: kinds agree, and their ends coincide within a tolerance. line_axis:
     axis of the parameter along a row."""
-    pairs = zip(_ends(one, line_axis), _ends(other, line_axis), strict=True)
+    pairs = zip(_ends(first, line_axis), _ends(second, line_axis), strict=True)
     distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-    return one.kind == other.kind and all(
+    return first.kind == second.kind and all(
         distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances
     )
 

@@ -172,30 +172,30 @@ class SpecialPointCurve:
     hopf_ends: tuple[HopfEnd | None, HopfEnd | None]
 
     @classmethod
-    def joined(cls, kind: SpecialKind, ahead: HalfCurve, behind: HalfCurve | None) -> "SpecialPointCurve":
-        """The curve joined from the halves `ahead` and `behind`, which start at the same point; behind: None
-        for a closed curve."""
-        before = behind or HalfCurve(ahead.points[:1], ahead.end)
-        points = (*before.points[:0:-1], *ahead.points)
+    def joined(cls, kind: SpecialKind, forward: HalfCurve, backward: HalfCurve | None) -> "SpecialPointCurve":
+        """The curve joined from the halves `forward` and `backward`, which start at the same point; backward:
+        None for a closed curve."""
+        first_half = backward or HalfCurve(forward.points[:1], forward.end)
+        points = (*first_half.points[:0:-1], *forward.points)
         vanishing = [
             extrapolated_hopf_end(side) if end is CurveEndReason.hopf else None
-            for end, side in ((before.end, points[::-1]), (ahead.end, points))
+            for end, side in ((first_half.end, points[::-1]), (forward.end, points))
         ]
-        return cls(kind, points, (before.end, ahead.end), (vanishing[0], vanishing[1]))
+        return cls(kind, points, (first_half.end, forward.end), (vanishing[0], vanishing[1]))
 
 
 def with_generalised_hopf_ends(
-    curve: SpecialPointCurve, plane: Plane, known: Sequence[GeneralisedHopfPoint]
+    curve: SpecialPointCurve, plane: Plane, known_points: Sequence[GeneralisedHopfPoint]
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
-    `known`, which is more accurate than the extrapolation. A curve of torus points, and an end without an
-    identical point, are unchanged.
+    `known_points`, which is more accurate than the extrapolation. A curve of torus points, and an end without
+    an identical point, are unchanged.
     """
 
     def at_generalised_hopf(end: HopfEnd | None) -> HopfEnd | None:
         if end is None or curve.kind != SpecialKind.fold:
             return end
-        for point in known:
+        for point in known_points:
             pairs = zip(plane.axes, point.values, (end.at, end.row_value), strict=True)
             if all(
                 abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
@@ -208,24 +208,24 @@ def with_generalised_hopf_ends(
     return replace(curve, hopf_ends=(first, last))
 
 
-def lagrange_weights(places: Array, at: float) -> Array:
-    """Lagrange weights, (n,), n > 1: the weighted sum of n values at the abscissas `places`, (n,), is the
-    value of their interpolating polynomial at the abscissa `at`."""
-    apart = places[:-1] - places[-1]
-    weights = polynomial_weights(apart, np.zeros(len(apart)), at - places[-1])
+def lagrange_weights(abscissas: Array, abscissa: float) -> Array:
+    """Lagrange weights, (n,), n > 1: the weighted sum of n values at the abscissas `abscissas`, (n,), is the
+    value of their interpolating polynomial at the abscissa `abscissa`."""
+    differences = abscissas[:-1] - abscissas[-1]
+    weights = polynomial_weights(differences, np.zeros(len(differences)), abscissa - abscissas[-1])
     return np.append(weights, 1 - weights.sum())
 
 
 def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     """The Hopf point where the cycles vanish beyond the last of `points`, extrapolated by polynomials in the
     squared amplitude; None if there are too few points."""
-    known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
-    if len(known) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
+    last_points = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    if len(last_points) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
-    squares = np.array([point.tip_y_max**2 for point in known])
-    table = np.array([[point.at, point.row_value, point.period] for point in known])
+    squares = np.array([point.tip_y_max**2 for point in last_points])
+    table = np.array([[point.at, point.row_value, point.period] for point in last_points])
     # The error estimate is the difference between the polynomials with and without the first point.
-    best, other = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
-    difference = abs(best[0] - other[0]) + max(point.error for point in known)
+    values, values_of_lower_order = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
+    difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)
     error = CURVE_IDENTITY_SETTINGS.extrapolation_factor * difference
-    return HopfEnd(float(best[0]), float(best[1]), float(error), float(best[2]))
+    return HopfEnd(float(values[0]), float(values[1]), float(error), float(values[2]))

@@ -62,10 +62,10 @@ class SpecialPointSettings:
     """Assumed decrease of the natural logarithm of the error in space when the order of the elements grows by
     1, measured at a torus point."""
     min_interval_ratio: float = 1.2
-    """Smallest ratio of the number of time intervals of the next finer mesh to the number of the present
+    """Smallest ratio of the number of time intervals of the next finer mesh to the number of the current
     mesh."""
     max_interval_ratio: float = 2.0
-    """Largest ratio of the number of time intervals of the next finer mesh to the number of the present mesh.
+    """Largest ratio of the number of time intervals of the next finer mesh to the number of the current mesh.
     """
     time_order_per_stage: float = 1.5
     """Order in time assumed for the error of a special point, divided by the number of stages; the orders
@@ -160,13 +160,13 @@ class RowSpecialPoint:
 
 
 def _are_near(
-    one: SpecialPoint | RowSpecialPoint, other: SpecialPoint | RowSpecialPoint, error: float
+    first: SpecialPoint | RowSpecialPoint, second: SpecialPoint | RowSpecialPoint, error: float
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
     the two parameters."""
-    far = abs(one.at - other.at) - error
+    excess = abs(first.at - second.at) - error
     return (
-        one.kind == other.kind
-        and far <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(one.at)
-        and abs(one.period / other.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
+        first.kind == second.kind
+        and excess <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.at)
+        and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
     )

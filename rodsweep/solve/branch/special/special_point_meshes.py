@@ -18,12 +18,12 @@ def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
     intervals are therefore chosen for the larger error that s stages may have: with the intervals that s
     stages need, the first mesh of a cone had 3.8 times the necessary number, and 2.3 GB of factors.
     """
-    planned = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
-    mesh = calibration.cheapest_mesh_for_parameter(planned)
+    target_accuracy = SPECIAL_POINT_SETTINGS.first_mesh_accuracy_ratio * accuracy
+    mesh = calibration.cheapest_mesh_for_parameter(target_accuracy)
     stages = max(mesh.stage_count, cheapest_stage_count(accuracy))
     if stages == mesh.stage_count:
         return mesh
-    coarser = calibration.cheapest_mesh_for_parameter(planned ** (mesh.stage_count / stages))
+    coarser = calibration.cheapest_mesh_for_parameter(target_accuracy ** (mesh.stage_count / stages))
     return replace(mesh, stage_count=stages, interval_count=min(mesh.interval_count, coarser.interval_count))
 
 
@@ -35,10 +35,12 @@ def next_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:
     growth = min(
         max(growth, SPECIAL_POINT_SETTINGS.min_interval_ratio), SPECIAL_POINT_SETTINGS.max_interval_ratio
     )
-    more = min(
+    order_increase = min(
         max(
             ceil(log(excess) / SPECIAL_POINT_SETTINGS.space_decay), SPECIAL_POINT_SETTINGS.min_order_increase
         ),
         SPECIAL_POINT_SETTINGS.max_order_increase,
     )
-    return replace(mesh.with_order(mesh.order + more), interval_count=ceil(growth * mesh.interval_count))
+    return replace(
+        mesh.with_order(mesh.order + order_increase), interval_count=ceil(growth * mesh.interval_count)
+    )

@@ -68,36 +68,40 @@ def first_asymmetric_cycle(
     `ArcLengthScale`."""
     if breaking.special_point.orbit is None:
         raise Unsolvable("the cycle at which the symmetry breaks is not known")
-    whole = extended_to_whole_period(breaking.special_point.orbit)
-    scale = ArcLengthScale.at_orbit(whole, name, 0.0, min_coordinate_unit)
-    matrix = BorderedMatrix(whole, scale, workspace)
+    full_orbit = extended_to_whole_period(breaking.special_point.orbit)
+    scale = ArcLengthScale.at_orbit(full_orbit, name, 0.0, min_coordinate_unit)
+    matrix = BorderedMatrix(full_orbit, scale, workspace)
     # At the symmetry breaking the linearised equations at a fixed parameter have an asymmetric solution.
     null_vector = matrix.approximate_null_vector()
-    null_vector = null_vector / relative_change(whole, null_vector[:-1])
-    near = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
+    null_vector = null_vector / relative_change(full_orbit, null_vector[:-1])
+    first_distance = ASYMMETRIC_START_SETTINGS.first_cycle_distances[0]
     # The two signs give mirror images. The cycle with the larger y is followed, so that the result does not
     # depend on the sign of the null vector.
-    halves = [_AsymmetricCycles(whole, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
-    chosen = max(halves, key=lambda one: CyclePath(one.predicted_orbit(near)).extrema["tip_y_max"])
+    directions = [_AsymmetricCycles(full_orbit, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
+    cycles = max(
+        directions, key=lambda one: CyclePath(one.predicted_orbit(first_distance)).extrema["tip_y_max"]
+    )
     for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
         try:
-            before_fold = chosen.distance_before_fold(distance)
-            if before_fold < distance:
-                finer = min(accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy_beside_fold)
-                chosen = replace(chosen, accuracy=finer)
-            return chosen.first_cycle(before_fold), chosen.accuracy
+            allowed_distance = cycles.distance_before_fold(distance)
+            if allowed_distance < distance:
+                finer_accuracy = min(accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy_beside_fold)
+                cycles = replace(cycles, accuracy=finer_accuracy)
+            return cycles.first_cycle(allowed_distance), cycles.accuracy
         except Unsolvable as error:
-            why = error
-    raise Unsolvable(f"no cycle is found near the symmetry breaking: {why}") from why
+            reason = error
+    raise Unsolvable(f"no cycle is found near the symmetry breaking: {reason}") from reason
 
 
 def _require_asymmetry(orbit: Orbit, predicted: Orbit) -> None:
     """Raises Unsolvable if the asymmetry of an orbit is far from the asymmetry of its prediction."""
-    expected = asymmetry(predicted)
-    other = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
-    found = float(asymmetry(other) @ expected) / float(expected @ expected)
-    least, largest = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
-    if not least < found < largest:
+    expected_asymmetry = asymmetry(predicted)
+    orbit_on_mesh = orbit.on_mesh(predicted.form.mesh, orbit.interval_count, orbit.stage_count)
+    ratio = float(asymmetry(orbit_on_mesh) @ expected_asymmetry) / float(
+        expected_asymmetry @ expected_asymmetry
+    )
+    min_ratio, max_ratio = BRANCH_END_SETTINGS.allowed_asymmetry_ratios
+    if not min_ratio < ratio < max_ratio:
         raise Unsolvable("Newton's method converged to a cycle whose asymmetry is not the predicted one")
 
 
@@ -124,37 +128,37 @@ class _AsymmetricCycles:
         """The relative distance, or a smaller one if the branch has a fold between the symmetric cycle and
         the cycle at `distance`; raises Unsolvable."""
         # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
-        whole = self._parameter_rate(distance)
+        parameter_rate = self._parameter_rate(distance)
         half = self._parameter_rate(distance / 2)
-        A = (8 * half - whole) / 6
-        B = (whole - 2 * A) / 4
-        if A * whole >= 0:
+        A = (8 * half - parameter_rate) / 6
+        B = (parameter_rate - 2 * A) / 4
+        if A * parameter_rate >= 0:
             return distance
         return distance * ASYMMETRIC_START_SETTINGS.asymmetry_to_fold_ratio * sqrt(-A / (2 * B))
 
     def _parameter_rate(self, distance: float) -> float:
         """Derivative of the scaled parameter coordinate by arc length at the cycle at a relative distance;
         raises Unsolvable."""
-        found = self._condition(distance).solve_cycle(
+        solved = self._condition(distance).solve_cycle(
             self.predicted_orbit(distance), ASYMMETRIC_START_SETTINGS.rate_tolerance, self.matrix.workspace
         )
         scale = self.matrix.scale
-        tangent = tangent_at(found.orbit, scale, self._border(distance), bordered_matrix_of(found))
-        return branch_derivatives(found, scale, tangent).parameter_rate
+        tangent = tangent_at(solved.orbit, scale, self._border(distance), bordered_matrix_of(solved))
+        return branch_derivatives(solved, scale, tangent).parameter_rate
 
     def first_cycle(self, distance: float) -> BranchCycle:
         """The cycle at a relative distance, as the first cycle of a branch; raises Unsolvable."""
         start = self.predicted_orbit(distance)
         condition = self._condition(distance)
-        rough = condition.solve_cycle(
+        solved = condition.solve_cycle(
             start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, self.matrix.workspace
         )
-        near = rough.orbit
-        _require_asymmetry(near, start)
+        near_orbit = solved.orbit
+        _require_asymmetry(near_orbit, start)
         mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
-        mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(self.accuracy))
+        mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
-            mesh, rough, newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
+            mesh, solved, newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
         )
         scale = self.matrix.scale
         arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit

@@ -47,28 +47,33 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
 
 
 def _cycle_beside_hopf_point(
-    hopf: HopfBranchStart, largest: float, accuracy: float, workspace: NewtonWorkspace
+    hopf: HopfBranchStart, max_amplitude: float, accuracy: float, workspace: NewtonWorkspace
 ) -> BranchCycle:
     """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises
-    Unsolvable. largest: upper limit of its amplitude, in L."""
+    Unsolvable. max_amplitude: upper limit of its amplitude, in L."""
     a = abs(hopf.amplitude_coefficient)
     usual = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     # On a coarse mesh the Hopf point is displaced, so that this mesh may have no cycle here.
-    for mesh_accuracy, finer in ((usual, False), (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True)):
-        for share in BRANCH_START_SETTINGS.first_amplitudes:
-            amplitude = min(share, BRANCH_START_SETTINGS.max_amplitude_ratio * a, largest)
+    for mesh_accuracy, is_finer_start in (
+        (usual, False),
+        (REFINEMENT_SETTINGS.min_first_mesh_accuracy, True),
+    ):
+        for fraction in BRANCH_START_SETTINGS.first_amplitudes:
+            amplitude = min(fraction, BRANCH_START_SETTINGS.max_amplitude_ratio * a, max_amplitude)
             try:
-                return _cycle_of_amplitude(hopf, amplitude, mesh_accuracy, finer, accuracy, workspace)
+                return _cycle_of_amplitude(
+                    hopf, amplitude, mesh_accuracy, is_finer_start, accuracy, workspace
+                )
             except Unsolvable as error:
-                why = error
-    raise Unsolvable(f"no cycle is found near the Hopf point: {why}") from why
+                reason = error
+    raise Unsolvable(f"no cycle is found near the Hopf point: {reason}") from reason
 
 
 def _cycle_of_amplitude(
     hopf: HopfBranchStart,
     amplitude: float,
     mesh_accuracy: float,
-    finer: bool,
+    is_finer_start: bool,
     accuracy: float,
     workspace: NewtonWorkspace,
 ) -> BranchCycle:
@@ -76,29 +81,29 @@ def _cycle_of_amplitude(
     L, solved to the relative `accuracy`; raises Unsolvable.
 
     The cycle is solved first on the starting mesh, then on a mesh chosen for the accuracy `mesh_accuracy`.
-    finer: whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh is the
-    coarser mesh of the normal form.
+    is_finer_start: whether the starting mesh is chosen for `mesh_accuracy` too; otherwise the starting mesh
+    is the coarser mesh of the normal form.
     """
     start = predicted_cycle(hopf, amplitude)
-    if finer:
+    if is_finer_start:
         start = mesh_from_tails(start, mesh_accuracy, cheapest_stage_count(mesh_accuracy)).interpolated_orbit(
             start
         )
-    least = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
-    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, least, hopf.min_coordinate_unit)
+    min_unit = abs(deflection_of(start)) * BRANCH_START_SETTINGS.min_deflection_amplitude / amplitude
+    scale = ArcLengthScale.at_orbit(start, hopf.parameter_name, min_unit, hopf.min_coordinate_unit)
     # With the deflection prescribed, not the parameter, the cycle cannot collapse onto the straight rod.
     border = np.sign(deflection_of(start)) * ALONG_DEFLECTION
     condition = BorderCondition.at_arc_length(scale, border, start)
-    rough = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
-    near = rough.orbit
-    y = float(near.form.tip_coordinates(near.start_state)[1])
+    rough_orbit = condition.solve_cycle(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace)
+    near_orbit = rough_orbit.orbit
+    y = float(near_orbit.form.tip_coordinates(near_orbit.start_state)[1])
     # A different cycle with the same deflection would have an amplitude far from the normal form's.
     least_ratio, largest_ratio = BRANCH_START_SETTINGS.allowed_amplitude_ratios
     if not least_ratio < y / amplitude < largest_ratio:
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
-    mesh = mesh_from_tails(near, mesh_accuracy, cheapest_stage_count(accuracy))
+    mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(
-        mesh, rough, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
+        mesh, rough_orbit, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
     )
     arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, arc_from_start, accuracy)

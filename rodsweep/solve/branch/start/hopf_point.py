@@ -52,10 +52,10 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        turned = -1.0 if Path(self.rod, self.parameter_name).is_compliance_path else 1.0
+        sign = -1.0 if Path(self.rod, self.parameter_name).is_compliance_path else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
-        squared = -turned * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
+        squared = -sign * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
         return float(np.copysign(abs(squared) ** 0.5, squared))
 
     @property
@@ -104,17 +104,17 @@ def hopf_branch_start(
     `path`; raises Unsolvable. keeps_omega: whether the angular velocity Omega is an unknown for all cycles of
     the branch. min_coordinate_unit: as in `ArcLengthScale`."""
     w = complex(0.0, crossing.frequency)
-    at = path.rod_at(path.coordinate(crossing.value))
+    rod = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
-    normal = normal_form_by_mesh_rule(at, w, normal_form_accuracy(at))
+    normal = normal_form_by_mesh_rule(rod, w, normal_form_accuracy(rod))
     return HopfBranchStart(
         crossing=crossing,
-        rod=at,
+        rod=rod,
         parameter_name=path.name,
         parameter_coordinate=path.coordinate(crossing.value),
         growth_slope=complex(slope),
         normal_form=normal,
-        coefficients=hopf_coefficients(at, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
+        coefficients=hopf_coefficients(rod, crossing, HOPF_START_SETTINGS.normal_form_accuracy),
         keeps_omega=keeps_omega,
         min_coordinate_unit=min_coordinate_unit,
     )
@@ -123,12 +123,12 @@ def hopf_branch_start(
 def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
     """Relative accuracy of the cycles of a rod with the given Hopf points: the requested `accuracy`, or a
     smaller number if a Hopf point is close to a generalised Hopf point."""
-    largest = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
-    if not largest > BRANCH_START_SETTINGS.max_amplitude_coefficient:
+    max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)
+    if not max_coefficient > BRANCH_START_SETTINGS.max_amplitude_coefficient:
         return accuracy
-    ratio = (BRANCH_START_SETTINGS.max_amplitude_coefficient / largest) ** 2
-    needed = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
-    return min(accuracy, max(needed, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
+    ratio = (BRANCH_START_SETTINGS.max_amplitude_coefficient / max_coefficient) ** 2
+    required_accuracy = BRANCH_START_SETTINGS.max_accuracy_if_degenerate * ratio
+    return min(accuracy, max(required_accuracy, BRANCH_START_SETTINGS.min_accuracy_if_degenerate))
 
 
 def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:

@@ -83,15 +83,15 @@ class AxisModesOfPath:
             and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.max_growing_for_leading_modes
         )
 
-    def modes_at(self, p: float, beside: Complex | None = None) -> AxisModes:
+    def modes_at(self, p: float, guesses: Complex | None = None) -> AxisModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises
         Unsolvable if the eigenvalues or the count cannot be computed.
 
-        beside: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
+        guesses: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
         """
         if p not in self.modes_by_p:
             try:
-                self.modes_by_p[p] = self._compute_modes(p, beside)
+                self.modes_by_p[p] = self._compute_modes(p, guesses)
             except Unsolvable:
                 replacement = self._modes_just_outside(p)
                 if replacement is None:
@@ -109,90 +109,96 @@ class AxisModesOfPath:
         except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
             return None
 
-    def _compute_modes(self, p: float, beside: Complex | None) -> AxisModes:
+    def _compute_modes(self, p: float, guesses: Complex | None) -> AxisModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
-        leading modes; raises Unsolvable. beside: as in `modes_at`."""
+        leading modes; raises Unsolvable. guesses: as in `modes_at`."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
-        near = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
-        growing = 0 if near is None else near.unstable_count
-        found = self._modes_near_axis(p, beside) if self.has_many_modes(p) else None
-        return found or self._leading_modes(p, growing)
+        nearest = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
+        expected_count = 0 if nearest is None else nearest.unstable_count
+        modes = self._modes_near_axis(p, guesses) if self.has_many_modes(p) else None
+        return modes or self._leading_modes(p, expected_count)
 
-    def eigenvalues_near_axis(self, p: float, max_frequency: float, known: Complex) -> Complex:
+    def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
         """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `max_frequency`, (n,),
-        one of each pair. known: some of these eigenvalues, (k,), which come first.
+        one of each pair. known_w: some of these eigenvalues, (k,), which come first.
 
         Raises Unsolvable if no elements resolve the arm.
         """
         try:
-            return self.problem.eigenvalues_near_axis(p, max_frequency, known)
+            return self.problem.eigenvalues_near_axis(p, max_frequency, known_w)
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
-    def _modes_near_axis(self, p: float, beside: Complex | None) -> AxisModes | None:
+    def _modes_near_axis(self, p: float, start_guesses: Complex | None) -> AxisModes | None:
         """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
-        the count is undecided. beside: approximate eigenvalues of these modes, (n,), if available."""
-        guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES) if beside is None else beside
+        the count is undecided. start_guesses: approximate eigenvalues of these modes, (n,), if available."""
+        guesses = (
+            self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES)
+            if start_guesses is None
+            else start_guesses
+        )
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
-        w = np.array([one[0] for one in refined], complex)
-        number = self.problem.counted_unstable_modes(p, w, np.array([one[2] for one in refined]))
-        slopes = np.array([one[1] for one in refined], complex)
-        return None if number is None else AxisModes(p, w, slopes, number)
+        w = np.array([root[0] for root in refined], complex)
+        count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined]))
+        slopes = np.array([root[1] for root in refined], complex)
+        return None if count is None else AxisModes(p, w, slopes, count)
 
-    def _leading_modes(self, p: float, growing: int) -> AxisModes:
+    def _leading_modes(self, p: float, expected_count: int) -> AxisModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
-        if the count fails or too many modes grow. growing: expected number of unstable modes."""
-        modes = max(SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, 2 + growing)
-        found = self.problem.spectrum(
+        if the count fails or too many modes grow. expected_count: expected number of unstable modes."""
+        modes = max(SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, 2 + expected_count)
+        spectrum = self.problem.spectrum(
             p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
         )
-        while modes < _needed_modes(found) <= AXIS_MODE_SETTINGS.max_computed_modes:
-            if self.certify and found.unstable_count < 0:
+        while modes < _needed_modes(spectrum) <= AXIS_MODE_SETTINGS.max_computed_modes:
+            if self.certify and spectrum.unstable_count < 0:
                 break  # more modes do not help a failed count
-            modes = _needed_modes(found)
-            found = self.problem.spectrum(
+            modes = _needed_modes(spectrum)
+            spectrum = self.problem.spectrum(
                 p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
             )
-        if found.unstable_count < 0:
-            decided = found.status != SpectrumStatus.ok  # else only the number of unstable modes is unknown
-            name = found.status.name if decided else SpectrumStatus.undecided.name
-            where = self.problem.path.text_at(p)
-            raise Unsolvable(f"the spectrum at {where} is {name}: {found.message}".rstrip(": "))
-        if _needed_modes(found) > max(modes, AXIS_MODE_SETTINGS.max_computed_modes):
+        if spectrum.unstable_count < 0:
+            is_undecided = (
+                spectrum.status != SpectrumStatus.ok
+            )  # else only the number of unstable modes is unknown
+            name = spectrum.status.name if is_undecided else SpectrumStatus.undecided.name
+            place = self.problem.path.text_at(p)
+            raise Unsolvable(f"the spectrum at {place} is {name}: {spectrum.message}".rstrip(": "))
+        if _needed_modes(spectrum) > max(modes, AXIS_MODE_SETTINGS.max_computed_modes):
             raise Unsolvable(
-                f"{self.problem.path.text_at(p)}: {found.unstable_count} modes grow, but at most "
+                f"{self.problem.path.text_at(p)}: {spectrum.unstable_count} modes grow, but at most "
                 f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed"
             )
-        slopes = found.eigenvalues.copy()
-        for i, w in enumerate(found.eigenvalues.tolist()):
+        slopes = spectrum.eigenvalues.copy()
+        for i, w in enumerate(spectrum.eigenvalues.tolist()):
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-        return AxisModes(p, found.eigenvalues, slopes, found.unstable_count)
+        return AxisModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
 
 
-def _needed_modes(found: Spectrum) -> int:
+def _needed_modes(spectrum: Spectrum) -> int:
     """Number of modes to be computed: two more than the larger of two numbers, the counted unstable modes and
     the growing modes found."""
-    growing = int((found.eigenvalues.real > 0).sum())
-    return 2 + max(found.unstable_count, growing)
+    growing_count = int((spectrum.eigenvalues.real > 0).sum())
+    return 2 + max(spectrum.unstable_count, growing_count)
 
 
 def next_count_position(left: AxisModes, right: AxisModes) -> float:
     """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
     h = right.p - left.p
-    for growing in (False, True):
-        a = left.nearest_pair(growing)
-        b = right.nearest_pair(growing)
+    for grows in (False, True):
+        a = left.nearest_pair(grows)
+        b = right.nearest_pair(grows)
         if a is None and b is None:
             continue
         if a is None or b is None:
             value, slope = a or b or (0.0, 0.0)
             # The slope of a pair known at one end only shows whether the pair came from the axis.
-            towards = slope > 0 if a is None else slope < 0
-            if towards and value < abs(slope) * h:
+            approaches = slope > 0 if a is None else slope < 0
+            if approaches and value < abs(slope) * h:
                 return 0.5
             continue
-        lowest, share = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
-        if lowest < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
-            return share
+        minimum, fraction = minimum_of_cubic(a[0], b[0], h * a[1], h * b[1])
+        if minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * min(a[0], b[0]):
+            return fraction
     return 0.0

@@ -76,8 +76,8 @@ class CrossingSearch:
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
         intervals = IntervalQueue(edges)
-        beside = ARM_CROSSING_SETTINGS.count_distance * intervals.length
-        self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - beside, edges[-1]: edges[-1] + beside}
+        margin = ARM_CROSSING_SETTINGS.count_distance * intervals.length
+        self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - margin, edges[-1]: edges[-1] + margin}
         self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
             if sum(p < a for p in self.crossings_by_p) > max_crossings:
@@ -88,16 +88,16 @@ class CrossingSearch:
                 continue
             try:
                 self._search_interval(a, b, intervals)
-            except Unsolvable as why:
-                intervals.end_within((a, b), str(why))
+            except Unsolvable as reason:
+                intervals.end_within((a, b), str(reason))
                 self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
-        found = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
-        return [one for one in found if self._may_lie_within(one, edges[0], edges[-1])], intervals.end
+        ordered = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
+        return [c for c in ordered if self._may_lie_within(c, edges[0], edges[-1])], intervals.end
 
     def _may_lie_within(self, crossing: Threshold, low: float, high: float) -> bool:
         """Whether path variables from `low` to `high` lie within the error of `crossing`."""
-        near = crossing.value - crossing.error, crossing.value + crossing.error
-        first, last = sorted(map(self.problem.path.coordinate, near))
+        ends = crossing.value - crossing.error, crossing.value + crossing.error
+        first, last = sorted(map(self.problem.path.coordinate, ends))
         return first <= high and last >= low
 
     def _must_be_halved(self, a: float, b: float, max_crossings: float, length: float) -> bool:
@@ -105,27 +105,27 @@ class CrossingSearch:
         the list of `max_crossings` crossings is likely to be full before b. length: length of the path."""
         if b in self.axis_modes.modes_by_p or b - a < ARM_CROSSING_SETTINGS.min_halved_interval * length:
             return False
-        full = ARM_CROSSING_SETTINGS.max_expected_pairs_ratio * 2 * max_crossings
-        return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > full
+        max_pairs = ARM_CROSSING_SETTINGS.max_expected_pairs_ratio * 2 * max_crossings
+        return self.axis_modes.has_many_modes(b) and self.problem.expected_unstable_count(b) > max_pairs
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> None:
         """Searches the interval (a, b) of p: stores the crossings found, or divides the interval, or stores
         the interval as a gap if it is too short to be divided; raises Unsolvable."""
-        left = self.axis_modes.modes_at(a)
-        right = self.axis_modes.modes_at(b)
+        left_modes = self.axis_modes.modes_at(a)
+        right_modes = self.axis_modes.modes_at(b)
         # Equal counts leave room for a pair that crosses and returns.
-        if left.unstable_count == right.unstable_count:
-            share = next_count_position(left, right)
-            if share == 0.0:
+        if left_modes.unstable_count == right_modes.unstable_count:
+            fraction = next_count_position(left_modes, right_modes)
+            if fraction == 0.0:
                 return
             if b - a <= ARM_CROSSING_SETTINGS.smallest_interval * intervals.length:
                 self.gaps.append((a, b))
                 return
         else:
-            share = 0.5
-            crossings = self._crossings_between(left, right)
+            fraction = 0.5
+            crossings = self._crossings_between(left_modes, right_modes)
             parts = (
-                self._intervals_between_crossings(crossings, left, right, intervals.length)
+                self._intervals_between_crossings(crossings, left_modes, right_modes, intervals.length)
                 if crossings
                 else None
             )
@@ -136,9 +136,9 @@ class CrossingSearch:
                 intervals.add_subintervals(*parts)
                 return
             if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
-                where = self.problem.path.text_at(a)
-                raise Unsolvable(f"the crossing of the imaginary axis near {where} could not be located")
-        middle = a + share * (b - a)
+                place = self.problem.path.text_at(a)
+                raise Unsolvable(f"the crossing of the imaginary axis near {place} could not be located")
+        middle = a + fraction * (b - a)
         intervals.add_subintervals((a, middle), (middle, b))
 
     def _intervals_between_crossings(
@@ -154,21 +154,21 @@ class CrossingSearch:
         )
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
-            before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
-            behind = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
-            beside = None
-            if self.axis_modes.has_many_modes(before):
-                beside = self.axis_modes.eigenvalues_near_axis(
+            p_before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
+            p_after = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
+            guesses = None
+            if self.axis_modes.has_many_modes(p_before):
+                guesses = self.axis_modes.eigenvalues_near_axis(
                     p, max_frequency, np.array([1j * crossing.frequency])
                 )
             change = (
-                self.axis_modes.modes_at(behind, beside).unstable_count
-                - self.axis_modes.modes_at(before, beside).unstable_count
+                self.axis_modes.modes_at(p_after, guesses).unstable_count
+                - self.axis_modes.modes_at(p_before, guesses).unstable_count
             )
             if change != (2 if right.unstable_count > left.unstable_count else -2):
                 return None
-            parts.append((start, before))
-            start = behind
+            parts.append((start, p_before))
+            start = p_after
         return [*parts, (start, right.p)]
 
     def _crossings_between(self, left: AxisModes, right: AxisModes) -> list[Threshold]:
@@ -176,14 +176,14 @@ class CrossingSearch:
         explain the change of the number of unstable modes; empty if a crossing is not found or the change is
         too large for one search."""
         change = (right.unstable_count - left.unstable_count) // 2
-        many = self.axis_modes.has_many_modes(right.p)
+        has_many_modes = self.axis_modes.has_many_modes(right.p)
         # Where modes are followed, bisection first separates several crossings.
-        if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if many else 1):
+        if abs(change) > (ARM_CROSSING_SETTINGS.max_pairs_at_once if has_many_modes else 1):
             return []
-        if many:
+        if has_many_modes:
             self.problem.ensure_family(left.p, right.p, max(left.largest_modulus, right.largest_modulus))
         grows = change > 0
-        found: dict[float, Threshold] = {}
+        crossings_by_p: dict[float, Threshold] = {}
         # The pairs that cross are stable on one side and unstable on the other; pairs near the axis are
         # tried first.
         for start, growing in ((left, not grows), (right, grows)):
@@ -191,11 +191,11 @@ class CrossingSearch:
             for i in sorted(pairs, key=lambda i: abs(start.w[i].real)):
                 crossing = self._newton_crossing(start, i, (left.p, right.p), grows)
                 if crossing is not None and not any(
-                    _are_same_crossing(crossing, other) for other in found.values()
+                    _are_same_crossing(crossing, earlier) for earlier in crossings_by_p.values()
                 ):
-                    found[self.problem.path.coordinate(crossing.value)] = crossing
-                if len(found) == abs(change):
-                    return [found[p] for p in sorted(found)]
+                    crossings_by_p[self.problem.path.coordinate(crossing.value)] = crossing
+                if len(crossings_by_p) == abs(change):
+                    return [crossings_by_p[p] for p in sorted(crossings_by_p)]
         return []
 
     def _newton_crossing(
@@ -219,10 +219,10 @@ class CrossingSearch:
             p_error = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
             if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged_step_in_errors * p_error:
                 # With such an error no root of D is resolved.
-                unresolved = self.axis_modes.has_many_modes(
+                has_many_modes = self.axis_modes.has_many_modes(
                     p
                 ) and not p_error <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
-                return None if unresolved else self._crossing_at(p, w, slope, p_error, grows)
+                return None if has_many_modes else self._crossing_at(p, w, slope, p_error, grows)
         return None
 
     def _crossing_at(
@@ -234,17 +234,14 @@ class CrossingSearch:
             return None
         kind = crossing_kind(self.problem.path, grows)
         total_p_error = p_error + abs(w.real / slope.real)
-        at, error = self.problem.path.value(p, total_p_error)
+        value, error = self.problem.path.value(p, total_p_error)
         error_of_w = (abs(slope.real) + abs(slope.imag)) * total_p_error  # at fixed p, and by the error of p
-        return Threshold(at, kind, w.imag, 0.0, error, frequency_error=error_of_w)
+        return Threshold(value, kind, w.imag, 0.0, error, frequency_error=error_of_w)
 
 
-def _are_same_crossing(one: Threshold, other: Threshold) -> bool:
+def _are_same_crossing(first: Threshold, second: Threshold) -> bool:
     """Whether two crossings are equal within the errors of the parameter and of the frequency."""
-    apart = abs(one.value - other.value) <= ARM_CROSSING_SETTINGS.max_distance_in_errors * (
-        one.error + other.error
-    )
-    return (
-        apart
-        and abs(one.frequency - other.frequency) <= ARM_CROSSING_SETTINGS.frequency_tolerance * one.frequency
-    )
+    max_distance = ARM_CROSSING_SETTINGS.max_distance_in_errors * (first.error + second.error)
+    max_difference = ARM_CROSSING_SETTINGS.frequency_tolerance * first.frequency
+    is_near = abs(first.value - second.value) <= max_distance
+    return is_near and abs(first.frequency - second.frequency) <= max_difference

@@ -77,22 +77,24 @@ class ArmPath(PathProblem):
 
     def _family_at(self, p: float) -> ArmFamily | None:
         """The family of arms whose interval contains p; None if there is no family."""
-        made = next((one for one in self._families if one.p_low <= p <= one.p_high), None)
+        family = next(
+            (candidate for candidate in self._families if candidate.p_low <= p <= candidate.p_high), None
+        )
         if (
-            made is None
+            family is None
             and self._followed_arms is not None
             and self.expected_unstable_count(p) <= ARM_PATH_SETTINGS.max_growing_modes
         ):
             return self._followed_arms.family_at(p)
-        return made
+        return family
 
     def ensure_family(self, low: float, high: float, largest_modulus: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
         possible and if no stored family suffices."""
         W = ARM_PATH_SETTINGS.W_reserve_factor * largest_modulus
         if any(
-            one.p_low <= low and high <= one.p_high and largest_modulus * 2 <= one.largest_w
-            for one in self._families
+            stored.p_low <= low and high <= stored.p_high and largest_modulus * 2 <= stored.largest_w
+            for stored in self._families
         ):
             return
         with suppress(ValueError, FloatingPointError):
@@ -122,21 +124,21 @@ class ArmPath(PathProblem):
             or self.expected_unstable_count(p) > ARM_PATH_SETTINGS.max_growing_modes
         ):
             return None
-        found = self._followed_arms.spectrum(p, modes)
-        if found is not None:
-            self._unstable_counts[p] = found.unstable_count
-        return found
+        spectrum = self._followed_arms.spectrum(p, modes)
+        if spectrum is not None:
+            self._unstable_counts[p] = spectrum.unstable_count
+        return spectrum
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
         """The leading eigenvalues at p: followed, taken from an earlier request, or solved."""
         key = p, request
         if key not in self._spectra:
-            followed = self.followed_spectrum(p, request.modes)
-            found = self._spectra[key] = (
-                followed if followed is not None else self._solved_spectrum(p, request)
+            spectrum = self.followed_spectrum(p, request.modes)
+            solved = self._spectra[key] = (
+                spectrum if spectrum is not None else self._solved_spectrum(p, request)
             )
-            if found.certified:
-                self._unstable_counts[p] = found.unstable_count
+            if solved.certified:
+                self._unstable_counts[p] = solved.unstable_count
         return self._spectra[key]
 
     def _solved_spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
@@ -145,73 +147,79 @@ class ArmPath(PathProblem):
         Near a crossing a request for many modes is followed by a request for one more pair; this pair is
         therefore included in the first solve.
         """
-        earlier = self._solved_spectra.get(p)
+        stored = self._solved_spectra.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
-        if earlier is None or len(earlier.eigenvalues) < request.modes or earlier.status != SpectrumStatus.ok:
+        if stored is None or len(stored.eigenvalues) < request.modes or stored.status != SpectrumStatus.ok:
             spare = ARM_PATH_SETTINGS.spare_modes if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
-            earlier = super().spectrum(p, replace(request, modes=request.modes + spare))
+            stored = super().spectrum(p, replace(request, modes=request.modes + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
-            if spare and earlier.status != SpectrumStatus.ok:
-                earlier = super().spectrum(p, request)
-            self._solved_spectra[p] = earlier
+            if spare and stored.status != SpectrumStatus.ok:
+                stored = super().spectrum(p, request)
+            self._solved_spectra[p] = stored
         return replace(
-            earlier,
-            eigenvalues=earlier.eigenvalues[: request.modes],
-            error_estimate=earlier.error_estimate[: request.modes],
+            stored,
+            eigenvalues=stored.eigenvalues[: request.modes],
+            error_estimate=stored.error_estimate[: request.modes],
         )
 
     def known_count_near_middle(self, low: float, high: float) -> int | None:
-        places = [
+        positions = [
             p
             for p in self._unstable_counts
             if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_from_middle * (high - low)
         ]
-        nearest = min(places, key=lambda p: abs(p - (low + high) / 2), default=None)
+        nearest = min(positions, key=lambda p: abs(p - (low + high) / 2), default=None)
         return None if nearest is None else self._unstable_counts[nearest]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
-        known = self._followed_arms.eigenvalue_slope(guess, p) if self._followed_arms is not None else None
-        return self._determinant_along_path.eigenvalue(guess, p) if known is None else (guess, *known)
+        slope_and_error = (
+            self._followed_arms.eigenvalue_slope(guess, p) if self._followed_arms is not None else None
+        )
+        return (
+            self._determinant_along_path.eigenvalue(guess, p)
+            if slope_and_error is None
+            else (guess, *slope_and_error)
+        )
 
-    def double_eigenvalue(self, x: float, p: float, reach: float) -> LocatedZero:
-        return self._determinant_along_path.double_eigenvalue(x, p, reach)
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+        return self._determinant_along_path.double_eigenvalue(x, p, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
-        found = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
-        if found is not None:
-            w = found.eigenvalues
-            error = found.error_estimate
-            clear = (np.abs(w.real - line) > 2 * error).all()
+        spectrum = self.followed_spectrum(p, ARM_PATH_SETTINGS.followed_modes)
+        if spectrum is not None:
+            w = spectrum.eigenvalues
+            error = spectrum.error_estimate
+            are_clear = (np.abs(w.real - line) > 2 * error).all()
             # The followed modes are complete down to the last of them, so counting them is a proof.
-            if clear and w[-1].real < line <= 0:
+            if are_clear and w[-1].real < line <= 0:
                 return EigenvalueCount(int((w.real > line).sum()), 0)
-            if clear and line == 0 and found.unstable_count < ARM_PATH_SETTINGS.followed_modes:
-                return EigenvalueCount(found.unstable_count, 0)
-        known = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
-        return ArmProblem(self.path.rod_at(p)).count(line, known)
+            if are_clear and line == 0 and spectrum.unstable_count < ARM_PATH_SETTINGS.followed_modes:
+                return EigenvalueCount(spectrum.unstable_count, 0)
+        followed_roots = self._followed_arms.followed_roots(p) if self._followed_arms is not None else None
+        return ArmProblem(self.path.rod_at(p)).count(line, followed_roots)
 
-    def counted_unstable_modes(self, p: float, known: Complex, error: Array) -> int | None:
+    def counted_unstable_modes(self, p: float, known_w: Complex, error: Array) -> int | None:
         """Number of unstable modes at p, known already or by a count; None if the count is undecided.
 
-        known: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
+        known_w: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
         error: errors of these eigenvalues, (n,).
         """
         if p not in self._unstable_counts:
-            roots = KnownRoots(np.append(known, known.conj()), np.append(error, error))
+            roots = KnownRoots(np.append(known_w, known_w.conj()), np.append(error, error))
             number = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
             if number is None:
                 return None
             self._unstable_counts[p] = number
         return self._unstable_counts[p]
 
-    def eigenvalues_near_axis(self, p: float, max_frequency: float, known: Complex) -> Complex:
+    def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `max_frequency`, (n,), one of each pair.
 
-        known: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
+        known_w: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
         resolve the arm.
         """
         rod = self.path.rod_at(p)
-        return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known)
+        return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known_w)
 
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
         return 1.0, 0.0

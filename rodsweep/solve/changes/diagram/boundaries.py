@@ -83,21 +83,21 @@ class _StabilityBoundaries:
 
     def curve(self, seed: int) -> BoundaryCurve | None:
         """The curve through the threshold with index `seed`; None if no curve is found."""
-        one = self.seeds[seed]
-        x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, one.values, strict=True))
-        return trace_boundary(one.eigenvalue_sign, self.plane, (x, y), one.eigenvalue)
+        threshold = self.seeds[seed]
+        x, y = (a.coordinate(v) for a, v in zip(self.plane.axes, threshold.values, strict=True))
+        return trace_boundary(threshold.eigenvalue_sign, self.plane, (x, y), threshold.eigenvalue)
 
     def distance(self, curve: BoundaryCurve, seed: int) -> float:
         """Distance of the threshold with index `seed` from `curve` along the first axis, in the scaled
         coordinate of this axis; inf if no point near the threshold has nearly its eigenvalue."""
         return _distance_from_curve(self.plane, curve, self.seeds[seed])
 
-    def are_identical(self, one: BoundaryCurve, other: BoundaryCurve) -> bool:
+    def are_identical(self, first: BoundaryCurve, second: BoundaryCurve) -> bool:
         """Whether two curves are identical: they have the same `eigenvalue_sign` and share an end. The test
         is needed near a crushed rod, where a threshold may not be found on its own curve."""
-        ends = one.scaled_points[[0, -1], None] - other.scaled_points[None, [0, -1]]
+        ends = first.scaled_points[[0, -1], None] - second.scaled_points[None, [0, -1]]
         return (
-            one.eigenvalue_sign == other.eigenvalue_sign
+            first.eigenvalue_sign == second.eigenvalue_sign
             and float(np.abs(ends).max(axis=-1).min()) < BOUNDARY_ASSIGNMENT_SETTINGS.max_end_distance
         )
 
@@ -128,21 +128,21 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
             if abs(side[0]) < BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
             else math.inf
         )
-    best = math.inf
+    distance = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a = points[i]
         b = points[i + 1]
-        beside = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if beside > BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_beyond_chord:
+        chord_distance = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
+        if chord_distance > BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_beyond_chord:
             continue
-        there = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
+        point = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
-            there is not None
-            and abs(there[2] - math.log(abs(seed.eigenvalue)))
+            point is not None
+            and abs(point[2] - math.log(abs(seed.eigenvalue)))
             < BOUNDARY_ASSIGNMENT_SETTINGS.eigenvalue_tolerance
         ):
-            best = min(best, float(abs(there[0] - x)))
-    return best
+            distance = min(distance, float(abs(point[0] - x)))
+    return distance
 
 
 def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
@@ -152,17 +152,17 @@ def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float
     Newton's method starts from the chord. If this guess is too far from the curve, secant steps along the
     curve follow.
     """
-    share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
+    fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
-        guess = a + share * (b - a)
+        guess = a + fraction * (b - a)
         level = guess.copy()
         level[1] = y
-        there = boundary.point_near(level, np.eye(3)[1])
-        if there is not None:
-            return there.v
-        there = boundary.point_near(guess, (b - a) / np.linalg.norm(b - a))
-        if there is None:
+        point = boundary.point_near(level, np.eye(3)[1])
+        if point is not None:
+            return point.v
+        point = boundary.point_near(guess, (b - a) / np.linalg.norm(b - a))
+        if point is None:
             return None
-        a, b = (there.v, b) if (there.v[1] - y) * (b[1] - y) <= 0 else (a, there.v)
-        share = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
+        a, b = (point.v, b) if (point.v[1] - y) * (b[1] - y) <= 0 else (a, point.v)
+        fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     return None

@@ -77,19 +77,21 @@ def trace_boundary(
         first = BoundaryPoint.oriented(curve.boundary_point_near(guess, tangent), tangent)
     except (ValueError, ArithmeticError, Unsolvable):
         return None
-    ahead = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
-    back = ahead
-    passed = ahead.solutions
-    if ahead.end_reason is not CurveStop.closed:
-        back = follow_curve(
+    forward = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
+    backward = forward
+    solutions = forward.solutions
+    if forward.end_reason is not CurveStop.closed:
+        backward = follow_curve(
             curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEP_CONTROL, lambda _: report()
         )
-        passed = [*back.solutions[:0:-1], *passed]
-    points = np.array([point.v for point in passed])
+        solutions = [*backward.solutions[:0:-1], *solutions]
+    points = np.array([point.v for point in solutions])
     # The chord of coincident points, as on an edge, has no direction.
-    apart = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
+    are_distinct = np.abs(np.diff(points, axis=0)).max(axis=1) > BOUNDARY_CURVE_SETTINGS.max_merged_distance
     return _curve_with_folds(
-        curve, points[np.append(apart, True)], (curve.end_reason_of(back), curve.end_reason_of(ahead))
+        curve,
+        points[np.append(are_distinct, True)],
+        (curve.end_reason_of(backward), curve.end_reason_of(forward)),
     )
 
 
@@ -104,10 +106,10 @@ def _curve_with_folds(
         forward = np.diff(points, axis=0, append=points[-1:] + (points[-1:] - points[-2:-1]))
         tangents = np.array([boundary.tangent(v) for v in points])
         tangents *= np.where((tangents * forward).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-        passed = list(map(BoundaryPoint, points, tangents))
+        curve_points = list(map(BoundaryPoint, points, tangents))
         for axis in (0, 1):
             for i in np.flatnonzero(tangents[:-1, axis] * tangents[1:, axis] < 0):
-                fold = _fold_between(curve, passed[i], passed[i + 1], axis)
+                fold = _fold_between(curve, curve_points[i], curve_points[i + 1], axis)
                 if fold is not None:
                     folds.append(fold)
     # One by one: the rounding of NumPy's exp of an array depends on the position of an element in memory.
@@ -121,14 +123,14 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
     """The fold between the points a and b, where the tangent has no component along `axis`; None if not
     found."""
     boundary = curve.boundary
-    noise = _tangent_error(curve.boundary)
+    rounding = _tangent_error(curve.boundary)
     chord = b.v - a.v
-    found = dict[float, BoundarySolution]()
+    solutions = dict[float, BoundarySolution]()
     size = float(np.linalg.norm(chord))
 
     def component(length: float) -> float:
-        found[length] = there = curve.boundary_point_near(a.v + length / size * chord, chord / size)
-        return float(BoundaryPoint.oriented(there, chord).tangent[axis])
+        solutions[length] = solution = curve.boundary_point_near(a.v + length / size * chord, chord / size)
+        return float(BoundaryPoint.oriented(solution, chord).tangent[axis])
 
     ends = float(a.tangent[axis]), float(b.tangent[axis])
     try:
@@ -140,10 +142,10 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
             BOUNDARY_CURVE_SETTINGS.fold_accuracy,
         )
         # Along the chord the component changes by the difference of `ends`: its error moves the fold.
-        along = (abs(component(length)) + noise) * size / abs(ends[1] - ends[0])
+        curve_error = (abs(component(length)) + rounding) * size / abs(ends[1] - ends[0])
     except Unsolvable:
         return None
-    return _fold_at(boundary, found[length], axis, along)
+    return _fold_at(boundary, solutions[length], axis, curve_error)
 
 
 def _tangent_error(boundary: Boundary) -> float:
@@ -157,12 +159,15 @@ def _tangent_error(boundary: Boundary) -> float:
     )
 
 
-def _fold_at(boundary: Boundary, there: BoundarySolution, axis: int, along: float) -> Fold:
-    """The fold of coordinate `axis` at a point of a boundary. along: error of the point along the curve."""
+def _fold_at(boundary: Boundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
+    """The fold of coordinate `axis` at a point of a boundary. curve_error: error of the point along the
+    curve."""
     axes = boundary.plane.axes
-    first, second = (a.value(float(x)) for a, x in zip(axes, there.v[:2], strict=True))
+    first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))
     units = [abs(a.parameter_per_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]
     # Along the curve the extremal coordinate is stationary at the fold, the other coordinate is not.
-    errors = [unit * (there.error if i == axis else there.error + along) for i, unit in enumerate(units)]
-    growth_rate, frequency = boundary.eigenvalue(there.v[2])
+    errors = [
+        unit * (solution.error if i == axis else solution.error + curve_error) for i, unit in enumerate(units)
+    ]
+    growth_rate, frequency = boundary.eigenvalue(solution.v[2])
     return Fold(axis, (first, second), frequency, growth_rate, (errors[0], errors[1]))

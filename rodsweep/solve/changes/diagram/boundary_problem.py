@@ -79,11 +79,11 @@ class BoundaryPoint(NamedTuple):
     tangent: Array
 
     @classmethod
-    def oriented(cls, there: BoundarySolution, way: Array) -> "BoundaryPoint":
-        """The point `there` of a boundary; the tangent is oriented so that its product with `way`, (3,), is
-        positive."""
-        tangent = there.tangent
-        return cls(there.v, tangent if tangent @ way > 0 else -tangent)
+    def oriented(cls, solution: BoundarySolution, direction: Array) -> "BoundaryPoint":
+        """The point `solution` of a boundary; the tangent is oriented so that its product with `direction`,
+        (3,), is positive."""
+        tangent = solution.tangent
+        return cls(solution.v, tangent if tangent @ direction > 0 else -tangent)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,82 +92,77 @@ class BoundaryCurveProblem:
 
     boundary: Boundary
 
-    def step(self, behind: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
+    def step(self, previous: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
         """One continuation step: predicts a point at distance `length` along the last tangent and corrects it
-        to the curve. behind: points so far. Raises Unsolvable."""
-        v, tangent = behind[-1]
-        there = BoundaryPoint.oriented(self.boundary_point_near(v + length * tangent, tangent), tangent)
+        to the curve. previous: points so far. Raises Unsolvable."""
+        v, tangent = previous[-1]
+        point = BoundaryPoint.oriented(self.boundary_point_near(v + length * tangent, tangent), tangent)
         # The turn of the tangent alone controls the step length.
-        return StepResult(there, 0.0, float(there.tangent @ tangent))
+        return StepResult(point, 0.0, float(point.tangent @ tangent))
 
     def boundary_point_near(self, guess: Array, normal: Array) -> BoundarySolution:
         """The point of the boundary near `guess`, in the plane through `guess` with normal `normal`, both
         (3,); raises Unsolvable."""
-        there = self.boundary.point_near(guess, normal)
-        if there is None:
+        solution = self.boundary.point_near(guess, normal)
+        if solution is None:
             raise Unsolvable("no point of the boundary is near")
-        return there
+        return solution
 
     def margins(self, point: BoundaryPoint) -> Array:
         """Distances of a point from the four edges of the plane, and -1 for a crushed rod in the plane, else
         1; (5,)."""
         x, y = map(float, point.v[:2])
-        on_plane = 0 <= x <= 1 and 0 <= y <= 1
+        is_in_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may describe no rod.
-        alive = 1.0 if not on_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
-        return np.array([x, 1 - x, y, 1 - y, alive])
+        uncrushed_sign = 1.0 if not is_in_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
+        return np.array([x, 1 - x, y, 1 - y, uncrushed_sign])
 
     def located_zero(
-        self, behind: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
+        self, previous: Sequence[BoundaryPoint], outer: BoundaryPoint, margin: int
     ) -> BoundaryPoint | None:
-        """The point on the edge `margin` crossed by the step from the last of `behind` to `outer`; None for a
-        crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
+        """The point on the edge `margin` crossed by the step from the last of `previous` to `outer`; None for
+        a crushed rod. Raises Unsolvable if the point is not found or lies beyond a second edge."""
         if margin == CRUSHED_MARGIN:
             return None
         axis, limit = divmod(margin, 2)
-        inner = behind[-1].v
-        share = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
-        found = self.boundary.point_near(inner + share * (outer.v - inner), np.eye(3)[axis])
+        inner = previous[-1].v
+        fraction = (limit - inner[axis]) / (outer.v[axis] - inner[axis])
+        solution = self.boundary.point_near(inner + fraction * (outer.v - inner), np.eye(3)[axis])
         tolerance = BOUNDARY_CURVE_SETTINGS.edge_tolerance
-        if found is None or not -tolerance <= found.v[1 - axis] <= 1 + tolerance:
+        if solution is None or not -tolerance <= solution.v[1 - axis] <= 1 + tolerance:
             raise Unsolvable("no point of the curve was found on the edge")
-        return BoundaryPoint.oriented(found, behind[-1].tangent)
+        return BoundaryPoint.oriented(solution, previous[-1].tangent)
 
-    def is_closed_by(self, behind: Sequence[BoundaryPoint], there: BoundaryPoint) -> bool:
+    def is_closed_by(self, previous: Sequence[BoundaryPoint], point: BoundaryPoint) -> bool:
         """Whether the curve has at least `min_loop_points` points and passes its first point, in the same
-        direction, within the step from the last of `behind` to `there`."""
-        first = behind[0]
-        last = behind[-1]
-        step = float(np.linalg.norm(there.v - last.v))
-        near = float(np.linalg.norm(there.v - first.v)) < step
+        direction, within the step from the last of `previous` to `point`."""
+        first = previous[0]
+        last = previous[-1]
+        step = float(np.linalg.norm(point.v - last.v))
+        is_near = float(np.linalg.norm(point.v - first.v)) < step
         return (
-            len(behind) >= BOUNDARY_CURVE_SETTINGS.min_loop_points
-            and near
-            and float(there.tangent @ first.tangent) > 0
+            len(previous) >= BOUNDARY_CURVE_SETTINGS.min_loop_points
+            and is_near
+            and float(point.tangent @ first.tangent) > 0
         )
 
-    def end_reason_of(self, followed: Curve[BoundaryPoint]) -> BoundaryEndReason:
+    def end_reason_of(self, curve: Curve[BoundaryPoint]) -> BoundaryEndReason:
         """The reason for the end of a followed curve.
 
         If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
         gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
-        if followed.end_reason is CurveStop.closed:
+        if curve.end_reason is CurveStop.closed:
             return BoundaryEndReason.closed
-        if followed.end_reason is CurveStop.max_solutions:
+        if curve.end_reason is CurveStop.max_solutions:
             return BoundaryEndReason.list_full
-        if followed.end_reason is CurveStop.zero_margin:
+        if curve.end_reason is CurveStop.zero_margin:
             return (
-                BoundaryEndReason.crushed
-                if followed.margin_index == CRUSHED_MARGIN
-                else BoundaryEndReason.edge
+                BoundaryEndReason.crushed if curve.margin_index == CRUSHED_MARGIN else BoundaryEndReason.edge
             )
-        v, tangent = followed.solutions[-1]
-        if (
-            self.margins(followed.solutions[-1])[:CRUSHED_MARGIN].min()
-            <= BOUNDARY_CURVE_SETTINGS.edge_tolerance
-        ):
+        v, tangent = curve.solutions[-1]
+        if self.margins(curve.solutions[-1])[:CRUSHED_MARGIN].min() <= BOUNDARY_CURVE_SETTINGS.edge_tolerance:
             return BoundaryEndReason.edge
-        beyond = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
-        is_crushed = self.margins(beyond)[CRUSHED_MARGIN] < 0
+        next_point = BoundaryPoint(v + 2 * BOUNDARY_STEP_CONTROL.min_length * tangent, tangent)
+        is_crushed = self.margins(next_point)[CRUSHED_MARGIN] < 0
         return BoundaryEndReason.crushed if is_crushed else BoundaryEndReason.not_followed

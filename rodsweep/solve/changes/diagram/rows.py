@@ -91,32 +91,32 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    share = rod.build.relative_crushing_force(rod.taper)
-    crushing = k1 * share
-    uncrushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
+    fraction = rod.build.relative_crushing_force(rod.taper)
+    crushing = k1 * fraction
+    is_uncrushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
     crushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
-    nearly_crushed = ~uncrushed & ~crushed
-    if not uncrushed.any():
+    nearly_crushed = ~is_uncrushed & ~crushed
+    if not is_uncrushed.any():
         row = _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
         return replace(row, rod_class=np.where(crushed, RodClass.crushed, RodClass.undecided).astype(np.int8))
-    start = float(values[uncrushed][0])
-    stop = float(values[uncrushed][-1])
+    start = float(values[is_uncrushed][0])
+    stop = float(values[is_uncrushed][-1])
     # Thresholds may lie between the last value that is not crushed and the crushing force.
-    if name == "F" and not uncrushed.all():
+    if name == "F" and not is_uncrushed.all():
         stop = rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin)
-    if name == "k1" and not uncrushed.all():
-        start = rod.F / (share * (1 - CRUSHING_END_SETTINGS.crushing_margin)) if rod.F > 0 else start
-    found = thresholds_of_solvable_part(
+    if name == "k1" and not is_uncrushed.all():
+        start = rod.F / (fraction * (1 - CRUSHING_END_SETTINGS.crushing_margin)) if rod.F > 0 else start
+    result = thresholds_of_solvable_part(
         rod, name, values[(values > start) & (values < stop)], (start, stop), request.certify
     )
-    classes, unstable = classes_and_unstable_counts(found, values)
+    classes, unstable_counts = classes_and_unstable_counts(result, values)
     # Nearly crushed rods lie outside the searched range.
     classes[crushed] = RodClass.crushed
-    unstable[crushed] = -1
+    unstable_counts[crushed] = -1
     classes[nearly_crushed] = RodClass.undecided
-    unstable[nearly_crushed] = -1
-    changes = thresholds_with_status(found, request.accuracy, request.certify, request.max_thresholds)
-    return DiagramRow(rod_class=classes, unstable_count=unstable, thresholds=changes)
+    unstable_counts[nearly_crushed] = -1
+    changes = thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
+    return DiagramRow(rod_class=classes, unstable_count=unstable_counts, thresholds=changes)
 
 
 def _row_of_one_class(
@@ -131,31 +131,31 @@ def _row_of_one_class(
 
 
 def classes_and_unstable_counts(
-    found: ThresholdSearchResult, values: Array
+    result: ThresholdSearchResult, values: Array
 ) -> tuple[NDArray[np.int8], NDArray[np.int32]]:
     """Returns (class, number of unstable modes) at each value of the path's parameter, (values,) each, from
-    the thresholds `found`. The class is undecided and the number is -1 within the error of a threshold, in
+    the thresholds `result`. The class is undecided and the number is -1 within the error of a threshold, in
     the open range, outside the searched part of the range, and where the number is unknown."""
-    oscillates = np.full(len(values), found.oscillates_at_start)
-    unstable = np.full(len(values), found.unstable_at_start, dtype=np.int32)
-    blurred = np.zeros(len(values), dtype=bool)
-    for crossing in found.thresholds:
-        beyond = values > crossing.value
+    oscillates = np.full(len(values), result.oscillates_at_start)
+    unstable_counts = np.full(len(values), result.unstable_at_start, dtype=np.int32)
+    is_undecided = np.zeros(len(values), dtype=bool)
+    for crossing in result.thresholds:
+        is_beyond = values > crossing.value
         if crossing.kind.changes_leading_eigenvalue:
-            oscillates[beyond] = crossing.kind.pair_leads_after
+            oscillates[is_beyond] = crossing.kind.pair_leads_after
         else:
-            unstable[beyond] = crossing.unstable_after
-        blurred |= np.abs(values - crossing.value) <= crossing.error
-    if found.ended_early:
-        blurred |= (values < found.searched_interval[0]) | (values > found.searched_interval[1])
-    low, high = found.open_range
+            unstable_counts[is_beyond] = crossing.unstable_after
+        is_undecided |= np.abs(values - crossing.value) <= crossing.error
+    if result.ended_early:
+        is_undecided |= (values < result.searched_interval[0]) | (values > result.searched_interval[1])
+    low, high = result.open_range
     if not math.isnan(low):
-        blurred |= (values >= low) & (values <= high)
+        is_undecided |= (values >= low) & (values <= high)
         # Crossings in the open range change the number unseen; the count at the end applies behind the range.
-        unstable[values > max([high, *(c.value for c in found.thresholds)])] = found.unstable_at_end
+        unstable_counts[values > max([high, *(c.value for c in result.thresholds)])] = result.unstable_at_end
     classes = np.where(oscillates, RodClass.oscillatory, RodClass.monotone).astype(np.int8)
-    classes[unstable > 0] = RodClass.flutter
-    blurred |= unstable < 0
-    classes[blurred] = RodClass.undecided
-    unstable[blurred] = -1
-    return classes, unstable
+    classes[unstable_counts > 0] = RodClass.flutter
+    is_undecided |= unstable_counts < 0
+    classes[is_undecided] = RodClass.undecided
+    unstable_counts[is_undecided] = -1
+    return classes, unstable_counts

@@ -23,56 +23,61 @@ class Attempt(NamedTuple):
 
 
 def thresholds_of_solvable_part(
-    rod: Rod, name: str, between: Array, ends: tuple[float, float], certify: bool
+    rod: Rod, name: str, inner_values: Array, ends: tuple[float, float], certify: bool
 ) -> ThresholdSearchResult:
     """Thresholds along a row between the values `ends` of the parameter `name`.
 
     If a row along F cannot be searched from its first pull on, the search begins at the first value of the
-    row from which it can, or at F = 0. between: increasing values of the row between its ends, (n,). certify:
-    whether a proof is requested. Raises Unsolvable if the row cannot be searched from F = 0 on either.
+    row from which it can, or at F = 0. inner_values: increasing values of the row between its ends, (n,).
+    certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched from F = 0 on
+    either.
     """
     start, stop = ends
     first = _attempt(rod, name, ends, certify)
     if not first.failure and first.found is not None:
         return first.found
-    later = [*between[between < 0].tolist(), *([0.0] if start < 0 < stop else [])] if name == "F" else []
-    last = _attempt(rod, name, (later[-1], stop), certify) if later else first
+    later_starts = (
+        [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
+        if name == "F"
+        else []
+    )
+    last = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first
     if last.found is None:
         raise Unsolvable(last.failure)
-    if not later:
+    if not later_starts:
         return last.found
     # Bisection for the first value from which the row can be searched; a search from starts[high] succeeds.
-    starts = [start, *later]
+    starts = [start, *later_starts]
     failure = first.failure
-    low = 0
-    high = len(later)
-    while high - low > 1:
-        middle = (low + high) // 2
-        tried = _attempt(rod, name, (starts[middle], stop), certify)
-        if tried.failure:
-            low = middle
-            failure = tried.failure
+    failed_index = 0
+    solved_index = len(later_starts)
+    while solved_index - failed_index > 1:
+        middle_index = (failed_index + solved_index) // 2
+        attempt = _attempt(rod, name, (starts[middle_index], stop), certify)
+        if attempt.failure:
+            failed_index = middle_index
+            failure = attempt.failure
         else:
-            high = middle
-            last = tried
-    return _with_late_start(last.found or first.found, (starts[low], starts[high]), failure)
+            solved_index = middle_index
+            last = attempt
+    return _with_late_start(last.found or first.found, (starts[failed_index], starts[solved_index]), failure)
 
 
 def _attempt(rod: Rod, name: str, ends: tuple[float, float], certify: bool) -> Attempt:
     """Search along a row between `ends`; a row along F must be searched beyond its pulls."""
     try:
-        found = find_thresholds(Path(rod.with_values(**{name: ends[0]}), name), *ends, certify)
+        result = find_thresholds(Path(rod.with_values(**{name: ends[0]}), name), *ends, certify)
     except Unsolvable as failure:
         return Attempt(None, str(failure))
-    ends_at_pull = name == "F" and found.ended_early and found.searched_interval[1] < min(ends[1], 0)
-    return Attempt(found, found.doubt_text if ends_at_pull else "")
+    ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(ends[1], 0)
+    return Attempt(result, result.doubt_text if ends_early else "")
 
 
 def _with_late_start(
-    found: ThresholdSearchResult | None, pulls: tuple[float, float], failure: str
+    result: ThresholdSearchResult | None, forces: tuple[float, float], failure: str
 ) -> ThresholdSearchResult:
-    """The result `found` with the reason for its late start. pulls: last force from which the search failed,
-    first force from which it succeeded. failure: why it failed."""
-    assert found is not None
-    late = f"the search begins at F = {pulls[1]:.12g}: from F = {pulls[0]:.12g} on, {failure}"
-    return replace(found, ended_early=True, doubt_text="; ".join(filter(None, (late, found.doubt_text))))
+    """The result `result` with the reason for its late start. forces: last force from which the search
+    failed, first force from which it succeeded. failure: why it failed."""
+    assert result is not None
+    message = f"the search begins at F = {forces[1]:.12g}: from F = {forces[0]:.12g} on, {failure}"
+    return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))

@@ -19,25 +19,25 @@ MIN_MULTIPLIER_DISTANCE = 2e-16
 """Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
 
 
-def with_amplitude_rounding(errors: CycleErrors, found: ConvergedOrbit, measures: Measures) -> CycleErrors:
+def with_amplitude_rounding(errors: CycleErrors, solved: ConvergedOrbit, measures: Measures) -> CycleErrors:
     """The errors of the extrema, at least the effect of rounding: `rounding_error` divided by the distance of
     the nearest nontrivial multiplier from 1.
 
     Two meshes of a comparison share no rounding errors, but may agree by coincidence.
     """
-    multipliers = found.matrix.multipliers_over_solved_part
+    multipliers = solved.matrix.multipliers_over_solved_part
     if len(multipliers) < 2:
         return errors
     # The nearest multiplier to 1 is the trivial one.
     distance = max(float(np.sort(np.abs(multipliers - 1))[1]), MIN_MULTIPLIER_DISTANCE)
     # A multiplier m over half of the period is m^2 over the period, twice as far from 1.
-    parts = 2 if found.orbit.is_symmetric else 1
-    of_height = CYCLE_ERROR_SETTINGS.rounding_error / (parts * distance)
-    of_extrema = of_height * max(1.0, measures.tip_theta_max / measures.tip_y_max)
+    parts = 2 if solved.orbit.is_symmetric else 1
+    height_error = CYCLE_ERROR_SETTINGS.rounding_error / (parts * distance)
+    extrema_error = height_error * max(1.0, measures.tip_theta_max / measures.tip_y_max)
     return replace(
         errors,
-        amplitude_error=max(errors.amplitude_error, of_height),
-        extrema_error=max(errors.extrema_error, of_extrema),
+        amplitude_error=max(errors.amplitude_error, height_error),
+        extrema_error=max(errors.extrema_error, extrema_error),
     )
 
 

@@ -82,10 +82,12 @@ class Calibration:
         # Errors are relative to the size of the orbit; at a much smaller cycle they are measured again.
         has_shrunk = tails[-1] < CALIBRATION_SETTINGS.min_size_ratio * self.tails_and_size[-1]
         growth = error_growth_factors(self.tails_and_size, tails)
-        in_time, of_extrema = indicator_growth(self.indicators, indicators)
-        growth[1] = max(growth[1], in_time)
-        moved = inf if has_shrunk else self.parameter_change + change
-        return replace(self, error_growth=growth, extrema_growth=of_extrema, parameter_change=moved)
+        time_growth, extrema_growth = indicator_growth(self.indicators, indicators)
+        growth[1] = max(growth[1], time_growth)
+        parameter_change = inf if has_shrunk else self.parameter_change + change
+        return replace(
+            self, error_growth=growth, extrema_growth=extrema_growth, parameter_change=parameter_change
+        )
 
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
@@ -111,51 +113,51 @@ class Calibration:
 
     def min_remeasured_errors(self, orbit: Orbit) -> tuple[Array, Array]:
         """Returns (errors in space, errors in time), (5,): lower limits of errors measured again at `orbit`
-        on this mesh: fractions of the present errors that decrease with the coefficient tails."""
+        on this mesh: fractions of the current errors that decrease with the coefficient tails."""
         shrinkage = np.minimum(squared_tail_growth(self.tails_and_size, tails_and_size(orbit)), 1.0)
-        in_space, in_time = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
-        return in_space * self.space_errors, in_time * self.time_errors
+        space_ratio, time_ratio = CALIBRATION_SETTINGS.min_remeasured_ratio * shrinkage
+        return space_ratio * self.space_errors, time_ratio * self.time_errors
 
     def errors(self, accuracy: float) -> CycleErrors:
         """Error estimates of the orbit to which this calibration is scaled, not below a fraction of the
         requested relative accuracy `accuracy`. For the multiplier and the other extrema, errors in space and
         in time are scaled by the larger of the two growth factors, because an error was once seen to grow 2.7
         times as much as its tail."""
-        in_space, in_time = self.error_growth
-        stated = errors_with_safety_factors(
-            self.space_errors * in_space, self.time_errors * in_time, accuracy
+        space_growth, time_growth = self.error_growth
+        errors = errors_with_safety_factors(
+            self.space_errors * space_growth, self.time_errors * time_growth, accuracy
         )
-        larger = float(self.error_growth.max())
-        stated[2:] = errors_with_safety_factors(
-            self.space_errors * larger, self.time_errors * larger, accuracy
+        max_growth = float(self.error_growth.max())
+        errors[2:] = errors_with_safety_factors(
+            self.space_errors * max_growth, self.time_errors * max_growth, accuracy
         )[2:]
         # Extrema other than the largest y lie between time nodes.
-        stated[2] *= max(self.extrema_growth / larger, 1.0)
-        return CycleErrors(*stated.tolist())
+        errors[2] *= max(self.extrema_growth / max_growth, 1.0)
+        return CycleErrors(*errors.tolist())
 
 
 def calibration_of(
-    mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, before: Calibration | None
+    mesh: OrbitMesh, space: Array, time: Array, orbit: Orbit, nearby: Calibration | None
 ) -> Calibration:
     """Calibration of a mesh from its measured errors in space and in time, (5,) each, with convergence rates.
-    orbit: the measured orbit. before: calibration at a nearby orbit, on any mesh. If the mesh of `before` has
+    orbit: the measured orbit. nearby: calibration at a nearby orbit, on any mesh. If the mesh of `nearby` has
     the same elements but another order, the errors on both meshes give the rate in space; if the number of
-    intervals differs, the order in time. Otherwise the rates of `before` are kept. If `before` is None, the
+    intervals differs, the order in time. Otherwise the rates of `nearby` are kept. If `nearby` is None, the
     rates are estimated from the orbit's coefficients and the number of stages."""
     tails = tails_and_size(orbit)
-    if before is None:
+    if nearby is None:
         decay = CALIBRATION_SETTINGS.error_to_coefficient_decay_ratio * tails_of(orbit).space_decay
-        fall = _limited_space_decay(np.full(ERROR_COUNT, decay))
-        power = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
-        return Calibration(mesh, space, time, fall, power, tails, 0.0)
-    previous = before.mesh
-    fall = before.space_decay
-    power = before.time_order
+        space_decay = _limited_space_decay(np.full(ERROR_COUNT, decay))
+        time_order = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
+        return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
+    previous = nearby.mesh
+    space_decay = nearby.space_decay
+    time_order = nearby.time_order
     if previous.order != mesh.order and previous.has_elements_of(mesh):
-        fall = _measured_space_decay(before.space_errors, space, mesh.order - previous.order)
+        space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous.order)
     if previous.interval_count != mesh.interval_count:
-        power = _measured_time_order(before.time_errors, time, previous, mesh)
-    return Calibration(mesh, space, time, fall, power, tails, 0.0)
+        time_order = _measured_time_order(nearby.time_errors, time, previous, mesh)
+    return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
 
 
 def _measured_space_decay(before: Array, after: Array, orders: int) -> Array:
@@ -167,23 +169,23 @@ def _measured_space_decay(before: Array, after: Array, orders: int) -> Array:
 def _limited_space_decay(decay: Array) -> Array:
     """Decreases `decay` of ln(error) per order, (5,), limited to the allowed range."""
     settings = CALIBRATION_SETTINGS
-    limited: Array = np.clip(decay, settings.min_space_decay, settings.max_space_decay)
-    return limited
+    limited_decay: Array = np.clip(decay, settings.min_space_decay, settings.max_space_decay)
+    return limited_decay
 
 
 def _measured_time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
     """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
     meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
-    least = mesh.stage_count + 1
+    min_order = mesh.stage_count + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
-    most = CALIBRATION_SETTINGS.max_time_order_ratio * least
-    power: Array = np.clip(_log_ratio(before, after) / steps, least, most)
-    return power
+    max_order = CALIBRATION_SETTINGS.max_time_order_ratio * min_order
+    order: Array = np.clip(_log_ratio(before, after) / steps, min_order, max_order)
+    return order
 
 
 def _log_ratio(before: Array, after: Array) -> Array:
     """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
-    least = EXPONENT_SETTINGS.least_divisor
-    quotient: Array = np.log(np.maximum(before, least) / np.maximum(after, least))
+    min_error = EXPONENT_SETTINGS.least_divisor
+    quotient: Array = np.log(np.maximum(before, min_error) / np.maximum(after, min_error))
     return quotient

@@ -42,14 +42,14 @@ class CalibrationSettings:
     max_time_order_ratio: float = 2.0
     """Upper limit of a measured order of convergence in time, divided by the smallest order, stages + 1."""
     max_order_decrease: int = 3
-    """Largest decrease of the order of the elements from the present mesh to a planned mesh."""
+    """Largest decrease of the order of the elements from the current mesh to a planned mesh."""
     min_interval_ratio: float = 0.6
-    """Lower limit of the ratio of the numbers of time intervals, planned mesh to present mesh."""
+    """Lower limit of the ratio of the numbers of time intervals, planned mesh to current mesh."""
     max_order_increase: int = 12
-    """Largest increase of the order of the elements from the present mesh to a planned mesh; the convergence
+    """Largest increase of the order of the elements from the current mesh to a planned mesh; the convergence
     rates are not known for finer meshes."""
     max_interval_ratio: int = 4
-    """Upper limit of the ratio of the numbers of time intervals, planned mesh to present mesh; the
+    """Upper limit of the ratio of the numbers of time intervals, planned mesh to current mesh; the
     convergence rates are not known for finer meshes."""
     max_parameter_change: float = 0.2
     """The errors are measured again if the summed relative changes of the parameter exceed this number."""

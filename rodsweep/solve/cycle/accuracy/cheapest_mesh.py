@@ -18,29 +18,31 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     """The cheapest mesh with the elements and stages of a calibrated mesh, for which the convergence rates
     predict errors within a fraction of the relative accuracy; the next finer mesh if no such mesh is allowed.
     """
-    present = calibration.mesh
+    calibrated = calibration.mesh
     allowed = ORBIT_MESH_SETTINGS
-    lowest = max(allowed.min_order, present.order - CALIBRATION_SETTINGS.max_order_decrease)
-    highest = min(RESOLUTION_SETTINGS.max_order, present.order + CALIBRATION_SETTINGS.max_order_increase)
-    orders = np.arange(lowest, highest + 1)
+    min_order = max(allowed.min_order, calibrated.order - CALIBRATION_SETTINGS.max_order_decrease)
+    max_order = min(RESOLUTION_SETTINGS.max_order, calibrated.order + CALIBRATION_SETTINGS.max_order_increase)
+    orders = np.arange(min_order, max_order + 1)
     fewest = max(
-        allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * present.interval_count)
+        allowed.min_intervals, ceil(CALIBRATION_SETTINGS.min_interval_ratio * calibrated.interval_count)
     )
-    most = min(CALIBRATION_SETTINGS.max_interval_ratio * present.interval_count, allowed.max_intervals)
-    intervals = np.arange(fewest, most + 1)
-    # Rates are measured up to the present mesh. On finer meshes errors in space may decrease no faster
+    max_intervals = min(
+        CALIBRATION_SETTINGS.max_interval_ratio * calibrated.interval_count, allowed.max_intervals
+    )
+    intervals = np.arange(fewest, max_intervals + 1)
+    # Rates are measured up to the current mesh. On finer meshes errors in space may decrease no faster
     # than the distance of the tip's paths, and errors in time with the smallest order.
-    least = np.minimum(calibration.space_decay, calibration.space_decay[PATH_INDEX])
-    fall = np.where(orders < present.order, calibration.space_decay[:, None], least[:, None])
-    space = calibration.space_errors[:, None] * np.exp(fall * (present.order - orders))
-    power = np.where(
-        intervals < present.interval_count, calibration.time_order[:, None], present.stage_count + 1
+    min_decay = np.minimum(calibration.space_decay, calibration.space_decay[PATH_INDEX])
+    decay = np.where(orders < calibrated.order, calibration.space_decay[:, None], min_decay[:, None])
+    space = calibration.space_errors[:, None] * np.exp(decay * (calibrated.order - orders))
+    time_order = np.where(
+        intervals < calibrated.interval_count, calibration.time_order[:, None], calibrated.stage_count + 1
     )
-    time = calibration.time_errors[:, None] * (present.full_intervals / (intervals - 1)) ** power
+    time = calibration.time_errors[:, None] * (calibrated.full_intervals / (intervals - 1)) ** time_order
     errors = errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-    enough = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
+    is_accurate = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
     meshes = [
-        replace(present, order=int(orders[i]), interval_count=int(intervals[np.argmax(enough[i])]))
-        for i in np.flatnonzero(enough.any(axis=1))
+        replace(calibrated, order=int(orders[i]), interval_count=int(intervals[np.argmax(is_accurate[i])]))
+        for i in np.flatnonzero(is_accurate.any(axis=1))
     ]
-    return min(meshes, key=lambda mesh: mesh.cost, default=present.finer)
+    return min(meshes, key=lambda mesh: mesh.cost, default=calibrated.finer)

@@ -59,10 +59,10 @@ class CoarserMeshes:
     """The cycle on a coarse mesh, on meshes finer only in space and on meshes finer only in time, from which
     the cycle on a fine mesh is predicted."""
 
-    def __init__(self, mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
-        """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. near: an orbit near
+    def __init__(self, mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace) -> None:
+        """Solves the cycle on the coarse mesh; raises Unsolvable. mesh: the fine mesh. start: an orbit near
         the cycle, on any mesh. accuracy: requested relative accuracy."""
-        fewer = _order_difference(near)
+        fewer = _order_difference(start)
         order = max(
             mesh.order - fewer, ORBIT_MESH_SETTINGS.min_order - COARSER_MESH_SETTINGS.min_order_difference
         )
@@ -72,18 +72,18 @@ class CoarserMeshes:
         self.coarse_mesh = replace(mesh.with_order(order), interval_count=intervals)
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
-        self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, near)
+        self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, start)
         self._cycles_on_finer_meshes: dict[OrbitMesh, ComparedCycle] = {}
 
     def can_predict(self, mesh: OrbitMesh) -> bool:
         """Whether the cycle on `mesh` can be predicted: `mesh` has the elements and stages of the coarse
         mesh, and its order and its number of time intervals are not too large."""
-        near = (
+        is_near = (
             mesh.order <= self._max_predicted_order
             and self._interval_ratio(mesh) <= COARSER_MESH_SETTINGS.max_interval_ratio
         )
         return (
-            near
+            is_near
             and mesh.has_elements_of(self._fine_mesh)
             and mesh.stage_count == self.coarse_mesh.stage_count
         )
@@ -95,24 +95,26 @@ class CoarserMeshes:
         time = self._cycle_on_mesh(replace(self.coarse_mesh, interval_count=mesh.interval_count))
         fine_in_space = mesh.interpolated_orbit(space.orbit)
         fine_in_time = mesh.interpolated_orbit(time.orbit)
-        coarse = mesh.interpolated_orbit(self._coarse_cycle.orbit)
-        orbit = replace(fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse.values)
-        by_orders = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
-        by_intervals = self._interval_ratio(mesh) ** (mesh.stage_count + 1)
+        coarse_orbit = mesh.interpolated_orbit(self._coarse_cycle.orbit)
+        orbit = replace(
+            fine_in_space, values=fine_in_space.values + fine_in_time.values - coarse_orbit.values
+        )
+        order_factor = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
+        interval_factor = self._interval_ratio(mesh) ** (mesh.stage_count + 1)
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.
-        of_multipliers = largest_multiplier_difference(space.multipliers, time.multipliers)
-        in_space = np.append(self._errors_of_finer_mesh(space, by_orders), 0.0)
-        in_time = np.append(self._errors_of_finer_mesh(time, by_intervals), of_multipliers)
-        return orbit, calibration_of(mesh, in_space, in_time, orbit, None)
+        multiplier_error = largest_multiplier_difference(space.multipliers, time.multipliers)
+        space_errors = np.append(self._errors_of_finer_mesh(space, order_factor), 0.0)
+        time_errors = np.append(self._errors_of_finer_mesh(time, interval_factor), multiplier_error)
+        return orbit, calibration_of(mesh, space_errors, time_errors, orbit, None)
 
     def _cycle_on_mesh(self, mesh: OrbitMesh) -> ComparedCycle:
         if mesh not in self._cycles_on_finer_meshes:
             self._cycles_on_finer_meshes[mesh] = self._solve_on_mesh(mesh, self._coarse_cycle.orbit)
         return self._cycles_on_finer_meshes[mesh]
 
-    def _solve_on_mesh(self, mesh: OrbitMesh, near: Orbit) -> ComparedCycle:
-        return ComparedCycle(newton(mesh.interpolated_orbit(near), self._tolerance, self._workspace))
+    def _solve_on_mesh(self, mesh: OrbitMesh, start: Orbit) -> ComparedCycle:
+        return ComparedCycle(newton(mesh.interpolated_orbit(start), self._tolerance, self._workspace))
 
     def _errors_of_finer_mesh(self, finer: ComparedCycle, factor: float) -> Array:
         """Errors of a finer mesh, (4,), in the order of `path_differences`, from the difference between the
@@ -130,13 +132,15 @@ class CoarserMeshes:
 
 def _pessimistic_space_decay(orbit: Orbit) -> float:
     """Pessimistic decrease of ln(error) in space per order, from the coefficients of an orbit."""
-    slowest = COARSER_MESH_SETTINGS.pessimistic_decay_ratio * tails_of(orbit).space_decay
-    return min(max(slowest, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
+    min_decay = COARSER_MESH_SETTINGS.pessimistic_decay_ratio * tails_of(orbit).space_decay
+    return min(max(min_decay, CALIBRATION_SETTINGS.min_space_decay), CALIBRATION_SETTINGS.max_space_decay)
 
 
-def _order_difference(near: Orbit) -> int:
-    """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit `near`."""
-    needed = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(near))
+def _order_difference(orbit: Orbit) -> int:
+    """Difference between the orders of a fine mesh and its coarse mesh, for a cycle near the orbit
+    `orbit`."""
+    order_count = ceil(COARSER_MESH_SETTINGS.min_log_error_decrease / _pessimistic_space_decay(orbit))
     return min(
-        max(needed, COARSER_MESH_SETTINGS.min_order_difference), COARSER_MESH_SETTINGS.max_order_difference
+        max(order_count, COARSER_MESH_SETTINGS.min_order_difference),
+        COARSER_MESH_SETTINGS.max_order_difference,
     )

@@ -73,42 +73,42 @@ def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Ar
     """The four errors of `CycleErrors`, (4, ...), from errors in space and in time, (5, ...) each:
     those of `path_differences`, then of the multiplier. Safety factors and lower limits are applied.
     accuracy: requested relative accuracy, for a lower limit."""
-    whole = CALIBRATION_SETTINGS.safety_factor * (space + time)
-    apart = space[PATH_INDEX] + time[PATH_INDEX]
-    in_time = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
+    scaled_errors = CALIBRATION_SETTINGS.safety_factor * (space + time)
+    path_error = space[PATH_INDEX] + time[PATH_INDEX]
+    time_path_error = CALIBRATION_SETTINGS.time_path_error_factor * time[PATH_INDEX]
     parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
-    either = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
-    of_period = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + in_time
-    of_height = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + in_time
-    stated = [
-        np.maximum(np.maximum(whole[PERIOD_INDEX], of_period), either),
-        np.maximum(np.maximum(whole[Y_INDEX], of_height), either),
-        np.maximum(whole[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * apart),
-        whole[MULTIPLIER_INDEX],
+    min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
+    min_period_error = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + time_path_error
+    min_height_error = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + time_path_error
+    stated_errors = [
+        np.maximum(np.maximum(scaled_errors[PERIOD_INDEX], min_period_error), min_errors),
+        np.maximum(np.maximum(scaled_errors[Y_INDEX], min_height_error), min_errors),
+        np.maximum(scaled_errors[EXTREMUM_INDEX], CALIBRATION_SETTINGS.min_extrema_error_ratio * path_error),
+        scaled_errors[MULTIPLIER_INDEX],
     ]
-    least = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
-    errors: Array = np.maximum(np.array(stated), least)
+    min_error = max(CYCLE_ERROR_SETTINGS.min_error_ratio * accuracy, CYCLE_ERROR_SETTINGS.rounding_error)
+    errors: Array = np.maximum(np.array(stated_errors), min_error)
     return errors
 
 
 UNKNOWN_ERRORS = CycleErrors(nan, nan, nan, nan)
 
 
-def errors_of_two_integrations(one: CyclePath, other: CyclePath, distance: float) -> CycleErrors:
-    """Error estimates from the differences between the cycles `one` and `other` of two time integrations,
-    relative to the largest y and the period of `other`; NaN for the multiplier. distance: relative distance
+def errors_of_two_integrations(first: CyclePath, second: CyclePath, distance: float) -> CycleErrors:
+    """Error estimates from the differences between the cycles `first` and `second` of two time integrations,
+    relative to the largest y and the period of `second`; NaN for the multiplier. distance: relative distance
     of the settled motions from the cycle, which is added to the error estimates."""
-    a = one.extrema
-    b = other.extrema
+    a = first.extrema
+    b = second.extrema
     size = abs(b["tip_y_max"])
-    period = abs(one.orbit.period / other.orbit.period - 1)
+    period = abs(first.orbit.period / second.orbit.period - 1)
     height = abs(a["tip_y_max"] - b["tip_y_max"]) / size
-    worst = max(abs(a[name] - b[name]) for name in a) / size
+    max_extremum_difference = max(abs(a[name] - b[name]) for name in a) / size
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
-    left = distance * max(1.0, abs(b["tip_theta_max"]) / size)
+    remaining_error = distance * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
         float(MARCHING_SETTINGS.difference_safety_factor * period + distance),
         float(MARCHING_SETTINGS.difference_safety_factor * height + distance),
-        float(MARCHING_SETTINGS.difference_safety_factor * worst + left),
+        float(MARCHING_SETTINGS.difference_safety_factor * max_extremum_difference + remaining_error),
         nan,
     )

@@ -56,8 +56,8 @@ class RefinedCycle:
     def stable(self) -> bool | None:
         """Whether all nontrivial multipliers lie inside the unit circle; None if the largest modulus is 1
         within its error."""
-        beyond = self.largest_multiplier - 1
-        return None if abs(beyond) <= self.largest_modulus_error else beyond < 0
+        excess = self.largest_multiplier - 1
+        return None if abs(excess) <= self.largest_modulus_error else excess < 0
 
     def verdict(self, accuracy: float) -> tuple[CycleStatus, str]:
         """Returns (status, message) of the cycle for a requested relative accuracy; the message is "" for a
@@ -74,11 +74,11 @@ class RefinedCycle:
                 f"the cycle's errors, up to {error:.1e}, exceed the requested accuracy",
             )
         if self.possible_period_divisor != 1:
-            several = (
+            is_multiple = (
                 f"the period found may be {self.possible_period_divisor} times the minimal period: the "
                 "harmonics that distinguish the two are within their errors"
             )
-            return CycleStatus.not_settled, several
+            return CycleStatus.not_settled, is_multiple
         if self.stable is None:
             return (
                 CycleStatus.not_settled,

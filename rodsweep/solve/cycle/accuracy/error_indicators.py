@@ -25,10 +25,10 @@ LAST_HARMONIC_COUNT = 3
 and theta; only the slopes determine the very last harmonic."""
 
 
-def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
+def error_indicators(solved: ConvergedOrbit, path: CyclePath) -> Array:
     """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
     amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
-    `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `found`.
+    `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `solved`.
 
     w: energy lost by the collocation in the solved part of the period. E: energy of the motion. E is
     proportional to the squared amplitude, so the loss w changes the amplitude by the fraction w/(2 E). A
@@ -36,22 +36,24 @@ def error_indicators(found: ConvergedOrbit, path: CyclePath) -> Array:
     decay over the solved part. If w is lost at a constant rate, the amplitude has the error w/(2 E |ln h|).
     Near a fold or a Hopf point, where h = 1, this error is large.
     """
-    orbit = found.orbit
+    orbit = solved.orbit
     mean = orbit.means
     loss = abs(mean.injection_mean - mean.dissipation_mean) * orbit.solved_duration
     # The squared energy norm is twice the elastic energy.
     twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
-    in_one_part = loss / twice_energy
-    of_amplitude = in_one_part / _decay_in_one_part(found.matrix.multipliers_over_solved_part)
+    relative_loss = loss / twice_energy
+    amplitude_error = relative_loss / _decay_in_one_part(solved.matrix.multipliers_over_solved_part)
     harmonics = float(np.linalg.norm(path.tip_coefficients[-LAST_HARMONIC_COUNT:]))
-    indicators = np.array([in_one_part, of_amplitude, harmonics / abs(path.extrema["tip_y_max"])])
+    indicators = np.array([relative_loss, amplitude_error, harmonics / abs(path.extrema["tip_y_max"])])
     return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
 
 
-def _decay_in_one_part(partial: Complex) -> float:
-    """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. partial:
+def _decay_in_one_part(multipliers: Complex) -> float:
+    """Smallest |ln h| of the nontrivial multipliers h; 1 without a nontrivial multiplier. multipliers:
     multipliers over the solved part of the period, with the trivial multiplier, (rank,)."""
-    exponents = np.sort(np.abs(np.log(partial[partial != 0])))[1:]  # the exponent of the trivial one is 0
+    exponents = np.sort(np.abs(np.log(multipliers[multipliers != 0])))[
+        1:
+    ]  # the exponent of the trivial one is 0
     return float(exponents[0]) if len(exponents) else 1.0
 
 
@@ -60,36 +62,36 @@ def tails_and_size(orbit: Orbit) -> Array:
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
 
 
-def error_growth_factors(before: Array, after: Array) -> Array:
+def error_growth_factors(earlier: Array, later: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    before, after: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
+    earlier, later: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
     `indicator_growth` includes this factor for the errors in time. A predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
-    growth = np.maximum(squared_tail_growth(before, after), 1.0)
-    growth[0] *= max((before[2] / after[2]) ** 2, 1.0)
+    growth = np.maximum(squared_tail_growth(earlier, later), 1.0)
+    growth[0] *= max((earlier[2] / later[2]) ** 2, 1.0)
     return growth
 
 
-def squared_tail_growth(before: Array, after: Array) -> Array:
+def squared_tail_growth(earlier: Array, later: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    after: relative tails and size, (3,) each."""
-    change: Array = ((after * after[2] / (before * before[2])) ** 2)[:2]
+    later: relative tails and size, (3,) each."""
+    change: Array = ((later * later[2] / (earlier * earlier[2])) ** 2)[:2]
     return change
 
 
-def indicator_growth(before: Array, after: Array) -> tuple[float, float]:
+def indicator_growth(earlier: Array, later: Array) -> tuple[float, float]:
     """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
 
-    before, after: `error_indicators` of both orbits, (3,) each. Errors in time grow with the lost energy or
+    earlier, later: `error_indicators` of both orbits, (3,) each. Errors in time grow with the lost energy or
     with the amplitude error due to this loss, whichever grows more; errors of extrema between the time nodes
     grow with the last harmonics of the path. The lost energy is the sum over all fields and intervals. The
     tail in time is not used, because the largest tail may belong to a field on which the cycle hardly
     depends.
     """
-    growth = after / before
+    growth = later / earlier
     return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])

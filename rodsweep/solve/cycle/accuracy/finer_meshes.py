@@ -46,49 +46,53 @@ FINER_MESH_SETTINGS = FinerMeshSettings()
 
 
 def finer_meshes(mesh: OrbitMesh) -> tuple[tuple[OrbitMesh, OrbitMesh], float]:
-    """Returns ((space, time), share): the mesh finer in space, the mesh finer in time, and the fraction of
+    """Returns ((space, time), fraction): the mesh finer in space, the mesh finer in time, and the fraction of
     the error in time that the mesh finer in time removes."""
-    longer = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
+    interval_count = ceil((1 + FINER_MESH_SETTINGS.added_interval_fraction) * mesh.interval_count)
     # Errors in time fall with this power of the full intervals; the last two intervals have half the length.
-    share = 1 - (mesh.full_intervals / (longer - 1)) ** (mesh.stage_count + 1)
+    fraction = 1 - (mesh.full_intervals / (interval_count - 1)) ** (mesh.stage_count + 1)
     return (
         mesh.with_order(mesh.order + FINER_MESH_SETTINGS.order_increase),
-        replace(mesh, interval_count=longer),
-    ), share
+        replace(mesh, interval_count=interval_count),
+    ), fraction
 
 
-def measured_calibration(found: ConvergedOrbit, accuracy: float, before: Calibration | None) -> Calibration:
-    """Calibration of the mesh of the orbit `found`, with errors measured on two finer meshes; raises
+def measured_calibration(
+    solved: ConvergedOrbit, accuracy: float, previous: Calibration | None
+) -> Calibration:
+    """Calibration of the mesh of the orbit `solved`, with errors measured on two finer meshes; raises
     Unsolvable.
 
-    accuracy: requested relative accuracy. before: calibration at a nearby orbit, on any mesh, for the
+    accuracy: requested relative accuracy. previous: calibration at a nearby orbit, on any mesh, for the
     convergence rates (`calibration_of`) and lower limits of errors on the same mesh; None if the rates are
     estimated from the coefficients of the orbit and the number of stages.
     """
-    mesh = mesh_of(found.orbit)
-    measured = ComparedCycle(found)
-    finer, share = finer_meshes(mesh)
+    mesh = mesh_of(solved.orbit)
+    measured = ComparedCycle(solved)
+    finer, fraction = finer_meshes(mesh)
     tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
-    others = (newton(target.interpolated_orbit(found.orbit), tolerance, found.workspace) for target in finer)
-    space, time = (measured.differences_from(ComparedCycle(other)) for other in others)
-    time = time / share
-    if before is not None and before.mesh == mesh:
+    finer_orbits = (
+        newton(target.interpolated_orbit(solved.orbit), tolerance, solved.workspace) for target in finer
+    )
+    space, time = (measured.differences_from(ComparedCycle(finer_orbit)) for finer_orbit in finer_orbits)
+    time = time / fraction
+    if previous is not None and previous.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
-        space, time = map(np.maximum, (space, time), before.min_remeasured_errors(found.orbit))
+        space, time = map(np.maximum, (space, time), previous.min_remeasured_errors(solved.orbit))
     # The error of the largest y may be small only because it changes its sign near this cycle.
-    indicators = error_indicators(found, measured.path)
-    by_energy = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
-    time[Y_INDEX] = max(time[Y_INDEX], by_energy)
-    return replace(calibration_of(mesh, space, time, found.orbit, before), indicators=indicators)
+    indicators = error_indicators(solved, measured.path)
+    energy_error = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
+    time[Y_INDEX] = max(time[Y_INDEX], energy_error)
+    return replace(calibration_of(mesh, space, time, solved.orbit, previous), indicators=indicators)
 
 
 class ComparedCycle:
     """A cycle solved on one of several meshes, with the quantities that are compared between the meshes."""
 
-    def __init__(self, found: ConvergedOrbit) -> None:
-        self._converged_orbit = found
-        self.orbit = found.orbit
-        self.path = CyclePath(found.orbit)
+    def __init__(self, solved: ConvergedOrbit) -> None:
+        self._converged_orbit = solved
+        self.orbit = solved.orbit
+        self.path = CyclePath(solved.orbit)
 
     @cached_property
     def multipliers(self) -> Complex:

@@ -42,13 +42,13 @@ def common_harmonic_divisor(path: CyclePath, min_ratio: float) -> int:
 
 
 @compiled
-def _divisor_from_harmonic_sizes(sizes: Array, present: float) -> int:
+def _divisor_from_harmonic_sizes(sizes: Array, min_ratio: float) -> int:
     """`common_harmonic_divisor` for sizes of the harmonics 1, 2, ..., (harmonics,), and the same limit
-    `present`."""
+    `min_ratio`."""
     divisor = 0
-    least = present * sizes.max()
+    min_size = min_ratio * sizes.max()
     for k in range(len(sizes)):
-        if sizes[k] > least:
+        if sizes[k] > min_size:
             # A motion whose nonzero harmonics are all multiples of g repeats g times within the period.
             divisor = gcd(divisor, k + 1)
     return divisor

@@ -35,25 +35,25 @@ from .refinement_settings import REFINEMENT_SETTINGS
 
 
 def cycle_with_calibrated_errors(
-    calibration: Calibration, found: ConvergedOrbit, accuracy: float, path: CyclePath | None = None
+    calibration: Calibration, solved: ConvergedOrbit, accuracy: float, path: CyclePath | None = None
 ) -> RefinedCycle:
-    """The solved orbit `found` as a cycle, with measures, multipliers and the errors of a calibration that is
-    scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled at
-    a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf point
-    or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
+    """The solved orbit `solved` as a cycle, with measures, multipliers and the errors of a calibration that
+    is scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled
+    at a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf
+    point or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
 
-    path = path or CyclePath(found.orbit)
+    path = path or CyclePath(solved.orbit)
     measures = path.measures
-    errors = with_amplitude_rounding(calibration.errors(accuracy), found, measures)
-    multipliers, trivial_error = multipliers_and_trivial_error(found)
-    largest = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
+    errors = with_amplitude_rounding(calibration.errors(accuracy), solved, measures)
+    multipliers, trivial_error = multipliers_and_trivial_error(solved)
+    max_modulus = max(float(np.abs(multipliers[0])), 1.0) if len(multipliers) else 1.0
     # The matrix was assembled at a nearby orbit; the error of the trivial multiplier shows the effect.
-    by_matrix = (
-        REFINEMENT_SETTINGS.multiplier_error_factor * largest * (found.matrix_distance + trivial_error)
+    matrix_error = (
+        REFINEMENT_SETTINGS.multiplier_error_factor * max_modulus * (solved.matrix_distance + trivial_error)
     )
-    by_exponent = 2 * errors.amplitude_error * multiplier_per_relative_exponent(multipliers)
-    errors = replace(errors, multiplier_error=max(errors.multiplier_error, by_exponent) + by_matrix)
-    return RefinedCycle(found, calibration, path, measures, multipliers, trivial_error, errors)
+    exponent_error = 2 * errors.amplitude_error * multiplier_per_relative_exponent(multipliers)
+    errors = replace(errors, multiplier_error=max(errors.multiplier_error, exponent_error) + matrix_error)
+    return RefinedCycle(solved, calibration, path, measures, multipliers, trivial_error, errors)
 
 
 def refined_cycle_of_any_period(
@@ -68,17 +68,19 @@ def refined_cycle_of_any_period(
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
     are then tried.
     """
-    aim = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
+    mesh_accuracy = max(accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
     start = orbit
     while True:
         try:
-            rough = require_similar_size(
+            rough_orbit = require_similar_size(
                 newton(start, REFINEMENT_SETTINGS.nearby_orbit_tolerance, workspace), orbit.max_energy_norm
             )
-            near = rough.orbit
+            near_orbit = rough_orbit.orbit
             stages = cheapest_stage_count(accuracy)
             if parameter is None:
-                first = mesh_from_tails(near, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * aim, stages)
+                first = mesh_from_tails(
+                    near_orbit, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * mesh_accuracy, stages
+                )
                 first = replace(
                     first,
                     interval_count=max(
@@ -86,113 +88,120 @@ def refined_cycle_of_any_period(
                     ),
                 )
                 with suppress(Unsolvable):
-                    return _predicted_cycle(first, near, accuracy, workspace)
-            found = _solve_on_mesh(mesh_from_tails(near, aim, stages), rough, aim, parameter)
-            return cycle_with_measured_errors(found, None, accuracy, parameter)
+                    return _predicted_cycle(first, near_orbit, accuracy, workspace)
+            solved = _solve_on_mesh(
+                mesh_from_tails(near_orbit, mesh_accuracy, stages), rough_orbit, mesh_accuracy, parameter
+            )
+            return cycle_with_measured_errors(solved, None, accuracy, parameter)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
-            if aim <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
+            if mesh_accuracy <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
                 raise
-            aim = max(REFINEMENT_SETTINGS.retry_accuracy_factor * aim, REFINEMENT_SETTINGS.finest_accuracy)
-            mesh = mesh_from_tails(orbit, aim, orbit.stage_count)
+            mesh_accuracy = max(
+                REFINEMENT_SETTINGS.retry_accuracy_factor * mesh_accuracy, REFINEMENT_SETTINGS.finest_accuracy
+            )
+            mesh = mesh_from_tails(orbit, mesh_accuracy, orbit.stage_count)
             if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_cost:
                 raise
             start = mesh.interpolated_orbit(orbit)
 
 
 def _predicted_cycle(
-    mesh: OrbitMesh, near: Orbit, accuracy: float, workspace: NewtonWorkspace
+    mesh: OrbitMesh, start: Orbit, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
-    """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. near: an
+    """A single cycle with errors predicted from coarser meshes, on the mesh `mesh` or a finer mesh. start: an
     orbit near the cycle.
 
     The most accurate cycle is returned if no allowed mesh reaches the accuracy. Raises Unsolvable if
-    there is no cycle near `near` on a coarser or on the last mesh, if the errors do not decrease, or if the
+    there is no cycle near `start` on a coarser or on the last mesh, if the errors do not decrease, or if the
     cycle is far from its prediction.
     """
-    coarser = CoarserMeshes(mesh, near, accuracy, workspace)
+    coarser = CoarserMeshes(mesh, start, accuracy, workspace)
     last = inf
-    orbit, known = best = coarser.predicted_orbit_and_errors(mesh)
+    orbit, calibration = best = coarser.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
-        error = known.errors(accuracy).largest_weighted_error
+        error = calibration.errors(accuracy).largest_weighted_error
         if error < best[1].errors(accuracy).largest_weighted_error:
-            best = orbit, known
+            best = orbit, calibration
         if error <= accuracy:
             break
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
         if error > last:
             raise Unsolvable("the errors do not decrease on finer meshes")
-        mesh = finer_mesh(mesh, cheapest_mesh(known, accuracy))
+        mesh = finer_mesh(mesh, cheapest_mesh(calibration, accuracy))
         last = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.is_allowed:
             break
         if not coarser.can_predict(mesh):
             coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
-        orbit, known = coarser.predicted_orbit_and_errors(mesh)
-    orbit, known = best
-    found = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), near.max_energy_norm)
-    if found.matrix_distance > max(
+        orbit, calibration = coarser.predicted_orbit_and_errors(mesh)
+    orbit, calibration = best
+    solved = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), start.max_energy_norm)
+    if solved.matrix_distance > max(
         REFINEMENT_SETTINGS.max_prediction_distance_ratio * accuracy,
         REFINEMENT_SETTINGS.min_prediction_distance,
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     return cycle_with_calibrated_errors(
-        known,
-        with_matrix_within_distance(found, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)),
+        calibration,
+        with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)),
         accuracy,
     )
 
 
 def cycle_with_measured_errors(
-    found: ConvergedOrbit, before: Calibration | None, accuracy: float, parameter: str | None
+    solved: ConvergedOrbit, calibration: Calibration | None, accuracy: float, parameter: str | None
 ) -> RefinedCycle:
-    """The solved orbit `found` as a cycle with measured errors, solved again on finer meshes if necessary;
+    """The solved orbit `solved` as a cycle with measured errors, solved again on finer meshes if necessary;
     raises Unsolvable.
 
-    before: calibration at a nearby cycle, or None. parameter: parameter along which the tangent of the cycle
-    is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the accuracy.
+    calibration: calibration at a nearby cycle, or None. parameter: parameter along which the tangent of the
+    cycle is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the accuracy.
     """
-    best = None
+    best_cycle = None
     last = inf
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
-        before = measured_calibration(found, accuracy, before)
-        cycle = cycle_with_calibrated_errors(before, found, accuracy)
-        if best is None or cycle.errors.largest_weighted_error < best.errors.largest_weighted_error:
-            best = cycle
+        calibration = measured_calibration(solved, accuracy, calibration)
+        cycle = cycle_with_calibrated_errors(calibration, solved, accuracy)
+        if (
+            best_cycle is None
+            or cycle.errors.largest_weighted_error < best_cycle.errors.largest_weighted_error
+        ):
+            best_cycle = cycle
         if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > last:
             break
         last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
-        finer = finer_mesh(before.mesh, cheapest_mesh(before, accuracy))
+        finer = finer_mesh(calibration.mesh, cheapest_mesh(calibration, accuracy))
         if not finer.is_allowed:
             break
-        found = _solve_on_mesh(finer, found, accuracy, parameter)
-    if best is None:
+        solved = _solve_on_mesh(finer, solved, accuracy, parameter)
+    if best_cycle is None:
         raise mesh_limit()
-    return best
+    return best_cycle
 
 
 def _solve_on_mesh(
-    mesh: OrbitMesh, found: ConvergedOrbit, accuracy: float, parameter: str | None
+    mesh: OrbitMesh, solved: ConvergedOrbit, accuracy: float, parameter: str | None
 ) -> ConvergedOrbit:
-    """The orbit `found` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that its
-    multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
+    """The orbit `solved` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that
+    its multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
     last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
-    solution = newton(mesh.interpolated_orbit(found.orbit), last, found.workspace)
-    return newton_step(require_similar_size(solution, found.orbit.max_energy_norm), parameter)
+    solution = newton(mesh.interpolated_orbit(solved.orbit), last, solved.workspace)
+    return newton_step(require_similar_size(solution, solved.orbit.max_energy_norm), parameter)
 
 
-def require_similar_size(found: ConvergedOrbit, size: float) -> ConvergedOrbit:
-    """The solved orbit `found`; raises Unsolvable if its size divided by `size`, the size of the start, is
+def require_similar_size(solved: ConvergedOrbit, size: float) -> ConvergedOrbit:
+    """The solved orbit `solved`; raises Unsolvable if its size divided by `size`, the size of the start, is
     not between `min_size_ratio` and `max_size_ratio`."""
     if (
         not REFINEMENT_SETTINGS.min_size_ratio * size
-        < found.orbit.max_energy_norm
+        < solved.orbit.max_energy_norm
         < REFINEMENT_SETTINGS.max_size_ratio * size
     ):
         raise Unsolvable("the orbit found by Newton's method is far larger or smaller than its start")
-    return found
+    return solved
 
 
 def refined_cycle(
@@ -204,22 +213,22 @@ def refined_cycle(
     computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
     accuracy.
     """
-    found = refined_cycle_of_any_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
-    if common_harmonic_divisor(found.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
-        found = refined_cycle_of_any_period(
-            restricted_to_minimal_period(found.orbit), accuracy, workspace, parameter
+    cycle = refined_cycle_of_any_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
+    if common_harmonic_divisor(cycle.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
+        cycle = refined_cycle_of_any_period(
+            restricted_to_minimal_period(cycle.orbit), accuracy, workspace, parameter
         )
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
-    if found.stable is None:
-        found = refined_cycle_of_any_period(
-            found.orbit,
+    if cycle.stable is None:
+        cycle = refined_cycle_of_any_period(
+            cycle.orbit,
             max(
                 accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy
             ),
             workspace,
             parameter,
         )
-    return found
+    return cycle
 
 
 def newton_tolerance(accuracy: float) -> float:

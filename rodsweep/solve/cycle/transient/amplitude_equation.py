@@ -86,25 +86,27 @@ class AmplitudeEquation:
         linear growth, within tolerance and noise. times: (k,); states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
-        margin = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
-        falls = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
+        tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
+        decreases = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
         # Where higher powers of |z| cancel c |z|^2, the rates agree although a cycle may lie at smaller |z|.
-        alike = isnan(self.cubic_coefficient) and bool(falls.all()) and abs(growth - linear) < margin
-        # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
-        small = (
-            abs(self.cubic_coefficient) * sizes[-1] ** 2 < margin
-            and growth - linear < margin + self.growth_noise
+        is_linear = (
+            isnan(self.cubic_coefficient) and bool(decreases.all()) and abs(growth - linear) < tolerance
         )
-        return linear < 0 and (alike or small) and self._has_period_of_mode(times)
+        # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
+        is_small = (
+            abs(self.cubic_coefficient) * sizes[-1] ** 2 < tolerance
+            and growth - linear < tolerance + self.growth_noise
+        )
+        return linear < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_noise`. times: (k,);
         states: (k, unknowns)."""
         growth, linear = self.growth_and_linear_growth(times, states)
-        known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
+        is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
-            self.growth_noise if known else 0
+            self.growth_noise if is_known else 0
         )
 
     def factor_to_cycle(self, times: Array, states: Array) -> float | None:
@@ -119,12 +121,12 @@ class AmplitudeEquation:
             return None
         size = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
-        measured = (linear - growth) / size**2
+        cubic_coefficient = (linear - growth) / size**2
         if abs(linear - growth) > self.growth_noise * (
             1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
         ):
-            self.cubic_coefficient = measured
-        coefficient = measured if isnan(self.cubic_coefficient) else self.cubic_coefficient
+            self.cubic_coefficient = cubic_coefficient
+        coefficient = cubic_coefficient if isnan(self.cubic_coefficient) else self.cubic_coefficient
         if isnan(self.cubic_coefficient) and linear > 0:
             factor = (
                 AMPLITUDE_EQUATION_SETTINGS.max_jump_factor

@@ -62,14 +62,14 @@ MOTION_MESH_SETTINGS = MotionMeshSettings()
 
 def motion_mesh(rod: Rod, accuracy: float) -> Mesh:
     """The first mesh for the integration of the motion of `rod` to the relative accuracy `accuracy`."""
-    by_force = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
+    wave_number = MOTION_MESH_SETTINGS.wave_number_per_root_force * abs(rod.F) ** 0.5
     if not rod.is_uniform_and_linear:
         modal = arm_mesh(rod, MOTION_MESH_SETTINGS.expected_modes, accuracy)
-        bent = arm_elements(rod, by_force, accuracy)
-        finest = max(modal, bent, key=lambda each: each.node_count)
+        mesh = arm_elements(rod, wave_number, accuracy)
+        finest = max(modal, mesh, key=lambda each: each.node_count)
         return mesh_with_edges(finest.edges, finest.order)
     wave = max(
-        expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), by_force
+        expected_wave_number(MOTION_MESH_SETTINGS.expected_modes, most_amplified_wave(rod)[1]), wave_number
     )
     resolution = resolution_for(wave, accuracy)
     return uniform_mesh(resolution.element_count, resolution.order)

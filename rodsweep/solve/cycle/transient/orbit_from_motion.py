@@ -30,36 +30,38 @@ class NewtonFromMotionSettings:
 NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
 
 
-def orbit_from_motion(beam: Beam, form: StressForm, run: Trajectory, period: float, turns: int) -> Orbit:
+def orbit_from_motion(
+    beam: Beam, form: StressForm, run: Trajectory, period: float, return_count: int
+) -> Orbit:
     """Approximate orbit of the rod in `form` from the last period of the motion `run` of `beam`, on the mesh
     of `beam`. The orbit starts at the largest y of the tip, and is symmetric if the `relative_asymmetry` of
     the motion is small.
 
-    period: in tau2. turns: number of returns of the tip to theta = 0 per period. If the rod in `form` is a
-    limiting rod, for example an inextensible rod, `beam` is a nearby rod.
+    period: in tau2. return_count: number of returns of the tip to theta = 0 per period. If the rod in `form`
+    is a limiting rod, for example an inextensible rod, `beam` is a nearby rod.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
     spline = CubicSpline(run.times, run.states)
-    begin = float(run.times[-1]) - period
+    start_time = float(run.times[-1]) - period
     times = (
-        begin
+        start_time
         + period
         * np.arange(NEWTON_FROM_MOTION_SETTINGS.peak_search_times)
         / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
     )
-    whole = spline(times)
-    top = float(times[int(np.argmax(beam.tip_coordinates(whole)[1]))])
+    period_states = spline(times)
+    top = float(times[int(np.argmax(beam.tip_coordinates(period_states)[1]))])
     symmetry = (
         REFLECTION
-        if relative_asymmetry(beam, whole) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
+        if relative_asymmetry(beam, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
-    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * turns // symmetry.period_parts
+    intervals = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
     duration = period / symmetry.period_parts
-    at = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
-    at = np.where(at > run.times[-1], at - period, at)
-    states = collocation_states(beam, form, spline(at))
+    times_of_nodes = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
+    times_of_nodes = np.where(times_of_nodes > run.times[-1], times_of_nodes - period, times_of_nodes)
+    states = collocation_states(beam, form, spline(times_of_nodes))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 

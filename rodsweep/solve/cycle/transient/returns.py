@@ -79,18 +79,18 @@ def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
         return None
     if run.ending == RunEnding.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
-        where = f"at a point of the rod after {counted(returns, 'return')} of the tip"
-        return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {where}")
+        place = f"at a point of the rod after {counted(returns, 'return')} of the tip"
+        return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
     if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.searched_last_states :]):
-        why = (
+        reason = (
             f"after {counted(returns, 'return')} of the tip a section has lost its stiffness: its strain "
             "energy is not convex"
         )
-        return RunFailure(True, why)
-    why = "the integrator finds no time step with an acceptable error"
+        return RunFailure(True, reason)
+    reason = "the integrator finds no time step with an acceptable error"
     if run.ending == RunEnding.too_many_steps:
-        why = "the integrator reached the maximum number of time steps of one run"
-    return RunFailure(False, run.message or why)
+        reason = "the integrator reached the maximum number of time steps of one run"
+    return RunFailure(False, run.message or reason)
 
 
 def _loses_convexity(beam: Beam, states: Array) -> bool:
@@ -129,9 +129,9 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:
     """Weights of (value at 0, value at 1, slope at 0, slope at 1) in the value at x of the cubic Hermite
     polynomial."""
-    rest = 1 - x
+    y = 1 - x
     # Cubic Hermite basis on [0, 1].
-    return rest * rest * (1 + 2 * x), x * x * (3 - 2 * x), x * rest * rest, -x * x * rest
+    return y * y * (1 + 2 * x), x * x * (3 - 2 * x), x * y * y, -x * x * y
 
 
 def repetition(moments: Sequence[Array]) -> tuple[int, float]:
@@ -146,10 +146,12 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     size = np.linalg.norm(moments[-1])
     if size < RETURN_SETTINGS.straight_norm:  # moments of this size are rounding errors, which do not repeat
         return 1, inf
-    found = [(float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))]
+    distances = [
+        (float(np.linalg.norm(moments[-1] - moments[-1 - m]) / size), m) for m in range(1, len(moments))
+    ]
     # The smallest m with a distance near the minimum: multiples of a period repeat as well.
-    enough = max(2 * min(found)[0], RETURN_SETTINGS.max_equal_return_distance)
-    return next((m, distance) for distance, m in found if distance <= enough)
+    tolerance = max(2 * min(distances)[0], RETURN_SETTINGS.max_equal_return_distance)
+    return next((m, distance) for distance, m in distances if distance <= tolerance)
 
 
 def not_settled_text(waited: int, returns: int, last: float) -> str:

@@ -77,10 +77,10 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     """Time schemes of a motion. growth: linear growth per period of the leading mode. is_stored: whether the
     path of the motion is stored."""
     if abs(growth) < TIME_SCHEME_SETTINGS.max_growth_for_accurate_scheme or is_stored:
-        careful = TIME_SCHEME_SETTINGS.accurate_scheme
+        accurate_scheme = TIME_SCHEME_SETTINGS.accurate_scheme
         return TransientSchemes(
-            careful,
-            careful,
+            accurate_scheme,
+            accurate_scheme,
             TIME_SCHEME_SETTINGS.accurate_growth_noise,
             TIME_SCHEME_SETTINGS.accurate_max_steps_per_return,
         )

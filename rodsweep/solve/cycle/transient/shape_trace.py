@@ -48,7 +48,7 @@ class ShapeTrace:
 
     def needs_more_motion(self, z: Array) -> bool:
         """Whether the motion is integrated further even if its outcome is known: the arm is not at rest, and
-        the record is not full. z: present state, (unknowns,)."""
+        the record is not full. z: current state, (unknowns,)."""
         return (
             not self.is_full
             and abs(float(self.beam.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
@@ -83,16 +83,18 @@ class ShapeTrace:
         step = (
             float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE_SETTINGS.min_returns else period
         ) / frames
-        due = step * np.arange(
+        shape_times = step * np.arange(
             min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
         )
-        run_of = np.searchsorted([times[0] for times in self.run_times], due, side="right") - 1
-        states = np.empty((len(due), self.beam.unknown_count))
+        run_of = np.searchsorted([times[0] for times in self.run_times], shape_times, side="right") - 1
+        states = np.empty((len(shape_times), self.beam.unknown_count))
         for number, (times, steps) in enumerate(zip(self.run_times, self.run_states, strict=True)):
-            within = run_of == number
-            if within.any():
-                states[within] = CubicSpline(times, steps)(due[within]) if len(times) > 1 else steps[:1]
+            is_in_run = run_of == number
+            if is_in_run.any():
+                states[is_in_run] = (
+                    CubicSpline(times, steps)(shape_times[is_in_run]) if len(times) > 1 else steps[:1]
+                )
         shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation_matrix(lobatto_points(nodes)).T
-        is_whole = not self.is_full and len(due) < SHAPE_TRACE_SETTINGS.max_stored_shapes
-        swings = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
-        return MotionShapes(step, shapes[:, : int(swings.max(initial=0)) + 2], is_whole)
+        is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
+        moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
+        return MotionShapes(step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

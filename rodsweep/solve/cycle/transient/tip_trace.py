@@ -64,12 +64,14 @@ class TipTrace:
         runs = np.searchsorted(starts, times, side="right") - 1
         out = np.empty((4, count))
         out[0] = times
-        for number, (at, tips) in enumerate(zip(self.run_times, self.run_tip_motions, strict=True)):
-            within = runs == number
-            if len(at) > 1 and within.any():
-                out[1:, within] = interpolated_between_steps(at, tips[:3], tips[3:], times[within])
+        for number, (step_times, tips) in enumerate(zip(self.run_times, self.run_tip_motions, strict=True)):
+            is_in_run = runs == number
+            if len(step_times) > 1 and is_in_run.any():
+                out[1:, is_in_run] = interpolated_between_steps(
+                    step_times, tips[:3], tips[3:], times[is_in_run]
+                )
             else:
-                out[1:, within] = tips[:3, :1]
+                out[1:, is_in_run] = tips[:3, :1]
         return out
 
 
@@ -81,39 +83,49 @@ def interpolated_between_steps(steps: Array, values: Array, rates: Array, times:
     steps: times of the ends of the steps, increasing, (n,), n >= 2. values, rates: at these times, (m, n).
     times: from the first to the last of `steps`, (k,).
     """
-    left = np.clip(np.searchsorted(steps, times, side="right") - 1, 0, len(steps) - 2)
-    h = steps[left + 1] - steps[left]
-    x = (times - steps[left]) / h
-    ends = (values[:, left], values[:, left + 1], h * rates[:, left], h * rates[:, left + 1])
+    left_steps = np.clip(np.searchsorted(steps, times, side="right") - 1, 0, len(steps) - 2)
+    h = steps[left_steps + 1] - steps[left_steps]
+    x = (times - steps[left_steps]) / h
+    ends = (
+        values[:, left_steps],
+        values[:, left_steps + 1],
+        h * rates[:, left_steps],
+        h * rates[:, left_steps + 1],
+    )
     to_end = x**2 * (3 - 2 * x)
     cubic: Array = (1 - to_end) * ends[0] + to_end * ends[1] + x * (1 - x) * ((1 - x) * ends[2] - x * ends[3])
     if len(steps) < 3:
         return cubic
-    used, where = np.unique(np.concatenate((left, left + 1)), return_inverse=True)
-    second = _second_derivatives(steps, values, rates, used)[:, where] * np.tile(h, 2) ** 2
-    rise = 6 * (ends[1] - ends[0])
+    step_indices, inverse = np.unique(np.concatenate((left_steps, left_steps + 1)), return_inverse=True)
+    second_derivatives = (
+        _second_derivatives(steps, values, rates, step_indices)[:, inverse] * np.tile(h, 2) ** 2
+    )
+    increment = 6 * (ends[1] - ends[0])
     # The cubic polynomial lacks these parts of the second derivatives at the two ends.
-    lacking_left = second[:, : len(times)] - (rise - 4 * ends[2] - 2 * ends[3])
-    lacking_right = second[:, len(times) :] - (2 * ends[2] + 4 * ends[3] - rise)
-    quintic = cubic + (x * (1 - x)) ** 2 / 2 * ((1 - x) * lacking_left + x * lacking_right)
-    near = np.clip(np.stack((left, left + 1)), 1, len(steps) - 2)
-    shortest = np.minimum(steps[near] - steps[near - 1], steps[near + 1] - steps[near]).min(axis=0)
+    left_defect = second_derivatives[:, : len(times)] - (increment - 4 * ends[2] - 2 * ends[3])
+    right_defect = second_derivatives[:, len(times) :] - (2 * ends[2] + 4 * ends[3] - increment)
+    quintic = cubic + (x * (1 - x)) ** 2 / 2 * ((1 - x) * left_defect + x * right_defect)
+    inner_steps = np.clip(np.stack((left_steps, left_steps + 1)), 1, len(steps) - 2)
+    shortest = np.minimum(
+        steps[inner_steps] - steps[inner_steps - 1], steps[inner_steps + 1] - steps[inner_steps]
+    ).min(axis=0)
     return np.where(h <= MAX_STEP_RATIO * shortest, quintic, cubic)
 
 
-def _second_derivatives(steps: Array, values: Array, rates: Array, used: Array) -> Array:
-    """Second derivatives at the times steps[used], (m, used), of the quintic polynomials through values and
-    rates at each of these times and its two neighbours (at an end of the run, the two nearest times).
+def _second_derivatives(steps: Array, values: Array, rates: Array, step_indices: Array) -> Array:
+    """Second derivatives at the times steps[step_indices], (m, used), of the quintic polynomials through
+    values and rates at each of these times and its two neighbours (at an end of the run, the two nearest
+    times).
 
-    steps: (n,), n >= 3. values, rates: (m, n). used: indices, (used,).
+    steps: (n,), n >= 3. values, rates: (m, n). step_indices: indices, (used,).
     """
-    near = np.clip(used, 1, len(steps) - 2)[:, None] + np.array([-1, 0, 1])
-    x = steps[near] - steps[used][:, None]
+    neighbours = np.clip(step_indices, 1, len(steps) - 2)[:, None] + np.array([-1, 0, 1])
+    x = steps[neighbours] - steps[step_indices][:, None]
     scale = np.abs(x).max(axis=1)
     x = (x / scale[:, None])[..., None]
-    powers = np.arange(6)
-    matrices = np.concatenate((x**powers, powers * x ** np.maximum(powers - 1, 0)), axis=1)
-    data = np.concatenate((values[:, near], rates[:, near] * scale[:, None]), axis=2)
+    exponents = np.arange(6)
+    matrices = np.concatenate((x**exponents, exponents * x ** np.maximum(exponents - 1, 0)), axis=1)
+    data = np.concatenate((values[:, neighbours], rates[:, neighbours] * scale[:, None]), axis=2)
     coefficients = np.linalg.solve(matrices, data.transpose(1, 2, 0))
-    second: Array = 2 * coefficients[:, 2].T / scale**2
-    return second
+    second_derivatives: Array = 2 * coefficients[:, 2].T / scale**2
+    return second_derivatives

@@ -72,27 +72,27 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     if end.status != CycleStatus.not_settled or end.cycle is not None:
         return end
     # Only the last returns are stored, so some or all of the returns to skip may be missing already.
-    skipped = max(
+    skipped_count = max(
         0,
         int(TORUS_TEST_SETTINGS.skipped_fraction * transient.returns)
         - (transient.returns - len(transient.past_returns)),
     )
-    past = list(transient.past_returns)[skipped:]
-    if len(past) < 2 * TORUS_TEST_SETTINGS.min_distinct_returns:
+    past_returns = list(transient.past_returns)[skipped_count:]
+    if len(past_returns) < 2 * TORUS_TEST_SETTINGS.min_distinct_returns:
         return end
-    times = np.array([time for time, _ in past])
-    moments = np.array([moment for _, moment in past])
+    times = np.array([time for time, _ in past_returns])
+    moments = np.array([moment for _, moment in past_returns])
     for cycle in _unstable_cycles(transient):
-        near = (
+        is_near = (
             abs(np.ptp(times) / (len(times) - 1) / cycle.orbit.period - 1)
             <= TORUS_TEST_SETTINGS.max_period_difference
         )
         angle = unstable_pair_angle(cycle)
-        modulation = modulation_of(moments, angle) if near and angle else None
+        modulation = modulation_of(moments, angle) if is_near and angle else None
         if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
-            turns = modulation.angle_per_return / (2 * np.pi)
+            ratio = modulation.angle_per_return / (2 * np.pi)
             message = (
-                f"the motion is modulated at {turns:.3f} times the frequency of its oscillation; the "
+                f"the motion is modulated at {ratio:.3f} times the frequency of its oscillation; the "
                 "unstable cycle inside the torus has a Floquet multiplier of modulus "
                 f"{cycle.largest_multiplier:.3g}"
             )
@@ -131,19 +131,20 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     """
     half = len(returns) // 2
     numbers = np.arange(len(returns))
-    fitted = returns[:half]
-    later = returns[half:]
-    best = fitted_angle(fitted, angle)
-    size = float(np.linalg.norm(later - later.mean(axis=0)))
+    first_half = returns[:half]
+    second_half = returns[half:]
+    best_angle = fitted_angle(first_half, angle)
+    size = float(np.linalg.norm(second_half - second_half.mean(axis=0)))
     if (
         size == 0
-        or largest_phase_gap(best * numbers[:half]) > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
+        or largest_phase_gap(best_angle * numbers[:half])
+        > 2 * np.pi / TORUS_TEST_SETTINGS.min_distinct_returns
     ):
         return None
-    basis = fourier_basis(best * numbers, TORUS_TEST_SETTINGS.harmonics)
+    basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
-    series = np.linalg.lstsq(basis[:half], fitted, rcond=None)[0]
-    return Modulation(best, float(np.linalg.norm(later - basis[half:] @ series)) / size)
+    series = np.linalg.lstsq(basis[:half], first_half, rcond=None)[0]
+    return Modulation(best_angle, float(np.linalg.norm(second_half - basis[half:] @ series)) / size)
 
 
 def fitted_angle(returns: Array, angle: float) -> float:
@@ -153,12 +154,12 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     numbers = np.arange(len(returns))
 
-    def residual(at: float, harmonics: int) -> float:
-        basis = fourier_basis(at * numbers, harmonics)
+    def residual(trial_angle: float, harmonics: int) -> float:
+        basis = fourier_basis(trial_angle * numbers, harmonics)
         return float(np.linalg.norm(returns - basis @ np.linalg.lstsq(basis, returns, rcond=None)[0]))
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
-    tried = np.linspace(
+    trial_angles = np.linspace(
         angle - TORUS_TEST_SETTINGS.max_angle_difference,
         angle + TORUS_TEST_SETTINGS.max_angle_difference,
         int(
@@ -168,19 +169,19 @@ def fitted_angle(returns: Array, angle: float) -> float:
         )
         + 1,
     )
-    best = min(map(float, tried), key=lambda at: residual(at, 1))
+    best_angle = min(map(float, trial_angles), key=lambda at: residual(at, 1))
     for harmonics in range(1, TORUS_TEST_SETTINGS.harmonics + 1):
-        reach = np.pi / (len(returns) * harmonics)
-        bounds = (best - reach, best + reach)
-        found = minimize_scalar(
+        half_width = np.pi / (len(returns) * harmonics)
+        bounds = (best_angle - half_width, best_angle + half_width)
+        minimum = minimize_scalar(
             residual,
             bounds=bounds,
             args=(harmonics,),
             method="bounded",
-            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_share * reach},
+            options={"xatol": TORUS_TEST_SETTINGS.angle_tolerance_share * half_width},
         )
-        best = float(found.x)
-    return best
+        best_angle = float(minimum.x)
+    return best_angle
 
 
 def fourier_basis(phases: Array, harmonics: int) -> Array:
@@ -192,5 +193,5 @@ def fourier_basis(phases: Array, harmonics: int) -> Array:
 
 def largest_phase_gap(phases: Array) -> float:
     """Largest distance, in rad, between neighbouring phases on the unit circle. phases: (k,), in rad."""
-    around = np.sort(phases % (2 * np.pi))
-    return float(np.diff(around, append=around[0] + 2 * np.pi).max())
+    sorted_phases = np.sort(phases % (2 * np.pi))
+    return float(np.diff(sorted_phases, append=sorted_phases[0] + 2 * np.pi).max())

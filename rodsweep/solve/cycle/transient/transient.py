@@ -52,14 +52,14 @@ class Transient:
         form: StressForm,
         straight: StraightRodStability,
         request: CycleRequest,
-        along: str | None,
+        parameter: str | None,
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
         self.beam = Beam(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
-        self.tangent_parameter = along
+        self.tangent_parameter = parameter
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.max_returns = request.most_periods
@@ -112,14 +112,14 @@ class Transient:
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
                 z = self._state_after_jump(TRANSIENT_SETTINGS.restart_deflection * self.leading_mode.z.real)
                 continue
-            early = first
+            outcome = first
             first = False
-            if len(times) < 3 or (early and self.amplitude_equation.is_slow_mode(times, states)):
+            if len(times) < 3 or (outcome and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
             shown = self.record is not None and self.record.needs_more_motion(z)
-            if not early and not shown and self.amplitude_equation.decays_at_linear_rate(times, states):
+            if not outcome and not shown and self.amplitude_equation.decays_at_linear_rate(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not early and self.jump_count < TRANSIENT_SETTINGS.max_jumps
+            jumps = not outcome and self.jump_count < TRANSIENT_SETTINGS.max_jumps
             factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
             if factor is not None:
                 if self.record and not self.record.is_full:
@@ -155,11 +155,11 @@ class Transient:
         if self.unsolved_message:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
-            work = f", at the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
-            return f"no periodic motion within {counted(self.returns, 'return')} of the tip{work}"
-        unstable = self.straight.stable is False
-        why = "the straight rod is unstable" if unstable else "the stretch of the rod has not relaxed"
-        return f"the deflection has decayed after {self.returns} returns, but {why}"
+            limit = f", at the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
+            return f"no periodic motion within {counted(self.returns, 'return')} of the tip{limit}"
+        is_unstable = self.straight.stable is False
+        reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
+        return f"the deflection has decayed after {self.returns} returns, but {reason}"
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
@@ -184,8 +184,8 @@ class Transient:
             self.record.begin_with_relaxation(z, after, self.elapsed_time)
         return after
 
-    def _result(self, status: CycleStatus, why: str, found: RefinedCycle | None = None) -> TransientOutcome:
-        return TransientOutcome(status, why, self.returns, found)
+    def _result(self, status: CycleStatus, text: str, cycle: RefinedCycle | None = None) -> TransientOutcome:
+        return TransientOutcome(status, text, self.returns, cycle)
 
     def _run_of_returns(self, z: Array, first: bool) -> Trajectory:
         """A run from the state z, (unknowns,), over `returns_per_run` returns, or `returns_in_first_run` in
@@ -208,7 +208,7 @@ class Transient:
         None, also until the next attempt is due: the returns between attempts double with each attempt. After
         too many failures of Newton's method near a periodic motion, sets `unsolved_message`."""
         states = [state for _, state in self.past_returns]
-        turns, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
+        count, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
             self.unsolved_message = (
@@ -220,31 +220,31 @@ class Transient:
             return None
         self.next_attempt = self.returns + TRANSIENT_SETTINGS.returns_per_run * 2**self.attempts
         self.attempts = min(self.attempts + 1, TRANSIENT_SETTINGS.max_counted_attempts)
-        return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - turns][0], turns)
+        return self._cycle_near(run, self.past_returns[-1][0] - self.past_returns[-1 - count][0], count)
 
     def _newton_start_distance(self) -> float:
         """The relative distance between two returns below which Newton's method starts."""
         distance = TRANSIENT_SETTINGS.max_newton_distance / TRANSIENT_SETTINGS.newton_divisor**self.attempts
-        settles = self.record and self.returns < self.max_returns // 2
-        return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if settles else distance
+        may_settle = self.record and self.returns < self.max_returns // 2
+        return min(distance, TRANSIENT_SETTINGS.max_newton_distance_with_path) if may_settle else distance
 
-    def _cycle_near(self, run: Trajectory, period: float, turns: int) -> RefinedCycle | None:
+    def _cycle_near(self, run: Trajectory, period: float, return_count: int) -> RefinedCycle | None:
         """The stable cycle near the end of a run, by Newton's method; None if not found. period: approximate
-        period, in tau2. turns: number of returns of the tip per period."""
+        period, in tau2. return_count: number of returns of the tip per period."""
         # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
             if run.ending != RunEnding.reached:
                 return None
-        orbit = orbit_from_motion(self.beam, self.form, run, period, turns)
+        orbit = orbit_from_motion(self.beam, self.form, run, period, return_count)
         try:
-            found = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
+            cycle = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
         except Unsolvable:
             self.successive_failures += 1
             return None
         self.successive_failures = 0
-        if found.stable is False:
-            self.unstable_cycle = found
+        if cycle.stable is False:
+            self.unstable_cycle = cycle
         # If the largest multiplier is 1 to rounding error, periodic orbits of any amplitude form a family.
-        is_isolated = 1 - found.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
-        return found if found.stable and is_isolated else None
+        is_isolated = 1 - cycle.largest_multiplier >= TRANSIENT_SETTINGS.min_unit_circle_distance
+        return cycle if cycle.stable and is_isolated else None

@@ -47,7 +47,7 @@ def eliminate_newton_matrix(
     s = columns.shape[1]
     n = columns.shape[3]
     tip = np.empty((3, n))
-    right = np.empty((s, n, n))
+    right_matrices = np.empty((s, n, n))
     parts = np.empty((5, n, n))
     # M times the product of the maps so far, which is the identity before the first interval.
     so_far = np.diag(p.mass)
@@ -64,11 +64,11 @@ def eliminate_newton_matrix(
                     # has the column i + 1.
                     diagonal[r, q] *= -h
                 diagonal[r, r] += p.stage_differentiation[i, i + 1] * p.mass[r]
-        _eliminate_interval(B, right, parts, p)
+        _eliminate_interval(B, right_matrices, parts, p)
         # The effect of the start on the end and on the later stages is stored for `substitute_stages`.
-        square_product(B[stage_block(s - 1, s - 1, s)], right[s - 1], B[INTERVAL_MAP], 1.0, 0.0)
+        square_product(B[stage_block(s - 1, s - 1, s)], right_matrices[s - 1], B[INTERVAL_MAP], 1.0, 0.0)
         for a in range(2, s - 1):
-            B[start_block(a)] = right[a]
+            B[start_block(a)] = right_matrices[a]
         reduce_right_sides(B, columns[k], p)
         map_start_to_end(B, columns[k], p, ends)
         # `right` was computed for x_0 = M^-1, so that B[INTERVAL_MAP] acts on M x_0: M is between the maps of
@@ -81,13 +81,13 @@ def eliminate_newton_matrix(
 
 
 @compiled_for_vectors
-def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
+def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: SemidiscreteEquations) -> None:
     """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given. p: equations.
 
-    right: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand side of the
-    stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
+    right_matrices: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand
+    side of the stage when it multiplies M x_0, x_0: state at the start. parts: work array, (5, n, n).
     """
-    s = len(right)
+    s = len(right_matrices)
     n = B.shape[2]
     pivots = np.empty(n, np.int64)
     rows = np.empty((n, INVERSION_SETTINGS.panel_width))
@@ -104,7 +104,7 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEqu
             Z[r, q] = mass[r] * B[FIRST_STAGE, r, q]
             B[SECOND_STAGE, r, q] -= factor * Z[r, q] * mass[q]
     invert_matrix(B[SECOND_STAGE], pivots, rows)
-    _eliminate_first_two_stages(B, right, parts, p)
+    _eliminate_first_two_stages(B, right_matrices, parts, p)
     for a in range(2, s):
         pivot = B[stage_block(a, a, s)]
         invert_matrix(pivot, pivots, rows)
@@ -113,18 +113,20 @@ def _eliminate_interval(B: Array, right: Array, parts: Array, p: SemidiscreteEqu
             B[stage_block(i, a, s)] = end
             for j in range(a + 1, s):
                 square_product(end, B[stage_block(a, j, s)], B[stage_block(i, j, s)], -1.0, 1.0)
-            square_product(end, right[a], right[i], -1.0, 1.0)
+            square_product(end, right_matrices[a], right_matrices[i], -1.0, 1.0)
 
 
 @compiled_for_vectors
-def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: SemidiscreteEquations) -> None:
+def _eliminate_first_two_stages(
+    B: Array, right_matrices: Array, parts: Array, p: SemidiscreteEquations
+) -> None:
     """Eliminates the first two stages: computes the blocks of all later stages in B, (blocks, n, n), and
-    their matrices in `right` (see `_eliminate_interval`). p: equations.
+    their matrices in `right_matrices` (see `_eliminate_interval`). p: equations.
 
     parts: Z, W, Z W, W Z and Z W Z of the module docstring, (5, n, n); Z is given, the remaining products are
     computed.
     """
-    s = len(right)
+    s = len(right_matrices)
     n = B.shape[2]
     d = p.stage_differentiation
     mass = p.mass
@@ -140,21 +142,21 @@ def _eliminate_first_two_stages(B: Array, right: Array, parts: Array, p: Semidis
     square_product(W, Z, parts[3], 1.0, 0.0)
     square_product(ZW, Z, parts[4], 1.0, 0.0)
     for i in range(2, s):
-        right[i] = 0.0
+        right_matrices[i] = 0.0
         for j in range(2, s):
             if i != j:
                 B[stage_block(i, j, s)] = 0.0
     for first in range(0, n, INVERSION_SETTINGS.rows_in_cache):
         last = min(n, first + INVERSION_SETTINGS.rows_in_cache)
         for i in range(2, s):
-            _subtract_first_stage_terms(right[i], parts, (i, 0), (first, last), d, minus)
+            _subtract_first_stage_terms(right_matrices[i], parts, (i, 0), (first, last), d, minus)
             for j in range(2, s):
                 _subtract_first_stage_terms(
                     B[stage_block(i, j, s)], parts, (i, j + 1), (first, last), d, mass
                 )
     for i in range(2, s):
         for r in range(n):
-            right[i, r, r] -= d[i, 0]
+            right_matrices[i, r, r] -= d[i, 0]
             for j in range(2, s):
                 B[stage_block(i, j, s), r, r] += d[i, j + 1] * mass[r] if i != j else 0.0
 

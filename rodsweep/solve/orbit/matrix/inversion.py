@@ -76,15 +76,15 @@ def _sweep_panel(A: Array, first: int, last: int, pivots: Any) -> None:
     n = len(A)
     for k in range(first, last):
         row = A[k]
-        largest = 0.0
+        max_entry = 0.0
         p = k
         for i in range(k, n):
-            largest = max(largest, abs(row[i]))
+            max_entry = max(max_entry, abs(row[i]))
         # Threshold pivoting: an exchange costs a pass over A, and a pivot ten times smaller loses one digit
         # at most.
-        if abs(row[k]) < INVERSION_SETTINGS.min_pivot * largest:
+        if abs(row[k]) < INVERSION_SETTINGS.min_pivot * max_entry:
             for i in range(k, n):
-                if abs(row[i]) == largest:
+                if abs(row[i]) == max_entry:
                     p = i
         pivots[k] = p
         if p != k:

@@ -42,13 +42,13 @@ class Linearisation:
         )
         p = orbit.semidiscrete_equations
         factors = self._memory.factors
-        along = (
+        derivatives = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
             if parameter is None
             else parameter_derivatives(orbit.form, parameter)
         )
         count = 2 if parameter is None else 3
-        steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, along, p, factors)
+        steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, derivatives, p, factors)
         self.step = steps[0]
         self.tangent = None if parameter is None else steps[1]
 
@@ -79,13 +79,17 @@ def parameter_derivatives(form: StressForm, name: str) -> ParameterDerivatives:
 
 @compiled_for_vectors
 def eliminate_at_orbit(
-    values: Array, count: int, along: ParameterDerivatives, p: SemidiscreteEquations, factors: NewtonFactors
+    values: Array,
+    count: int,
+    derivatives: ParameterDerivatives,
+    p: SemidiscreteEquations,
+    factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
 
-    Returns (steps, by_period). steps: Newton's step and, if count = 3, the derivative of the orbit values
-    along the parameter of `along`, (count - 1, N). by_period: reduced derivative of the stage residuals with
-    respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
+    Returns (steps, period_derivative). steps: Newton's step and, if count = 3, the derivative of the orbit
+    values along the parameter of `derivatives`, (count - 1, N). period_derivative: reduced derivative of the
+    stage residuals with respect to the period, (K, s, n). count: 2 or 3. p: equations of the orbit.
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)
@@ -94,7 +98,7 @@ def eliminate_at_orbit(
     duration = values[-1] / p.period_parts
     V = np.empty((K, s, PLANE_COMPONENT_COUNT, len(p.node_matrices.weights)))
     columns = np.empty((K, s, count, n))
-    write_right_sides(points, duration, p, along, V, columns)
+    write_right_sides(points, duration, p, derivatives, V, columns)
     ends = eliminate_newton_matrix(points, V, duration, p, factors, columns)
     inverse = factors.closing_inverse
     inverse[:, :] = 0.0
@@ -106,17 +110,17 @@ def eliminate_at_orbit(
             inverse[i, j] -= p.symmetry[i, j]
     write_phase_row(points[0], p.rod, p.node_matrices, inverse[n, :n])
     invert_matrix(inverse, np.empty(n + 1, np.int64), np.empty((n + 1, INVERSION_SETTINGS.panel_width)))
-    rights = np.zeros((count - 1, n + 1))
+    right_sides = np.zeros((count - 1, n + 1))
     for m in range(1, count):
         for i in range(n):
-            rights[m - 1, i] = -ends[m, i]
-    rights[0, :n] += closing_residual(points, p)
-    rights[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
+            right_sides[m - 1, i] = -ends[m, i]
+    right_sides[0, :n] += closing_residual(points, p)
+    right_sides[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
     if count > 2:
-        rights[1, n] = phase_right_side(points[0], along.change, p.rod, p.node_matrices)
+        right_sides[1, n] = phase_right_side(points[0], derivatives.change, p.rod, p.node_matrices)
     # A contiguous copy: later corrections at nearby orbits need only this column.
-    by_period = columns[:, :, 0].copy()
-    return orbit_changes(rights, by_period, columns[:, :, 1:], p, factors), by_period
+    period_derivative = columns[:, :, 0].copy()
+    return orbit_changes(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
 
 
 @compiled_for_vectors
@@ -131,31 +135,38 @@ def closing_residual(points: Array, p: SemidiscreteEquations) -> Array:
 
 @compiled_for_vectors
 def orbit_changes(
-    rights: Array, by_period: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors
+    right_sides: Array,
+    period_derivative: Array,
+    columns: Array,
+    p: SemidiscreteEquations,
+    factors: NewtonFactors,
 ) -> Array:
     """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
-    rights: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand sides of
-    the stages, (K, s, k, n). by_period: reduced period derivative of the stage residuals, (K, s, n)."""
+    right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand
+    sides of the stages, (K, s, k, n). period_derivative: reduced period derivative of the stage residuals,
+    (K, s, n)."""
     K, s, count, n = columns.shape
-    found = np.zeros((count, n + 1))
+    increments = np.zeros((count, n + 1))
     for m in range(count):
         for i in range(n + 1):
             total = 0.0
             for j in range(n + 1):
-                total += factors.closing_inverse[i, j] * rights[m, j]
-            found[m, i] = total
-    whole = np.empty((K, s, count, n))
+                total += factors.closing_inverse[i, j] * right_sides[m, j]
+            increments[m, i] = total
+    end_increments = np.empty((K, s, count, n))
     out = np.empty((K, s, count, n))
     for k in range(K):
         for i in range(s):
             for m in range(count):
                 for r in range(n):
-                    whole[k, i, m, r] = columns[k, i, m, r] + found[m, n] * by_period[k, i, r]
-    substitute_stages(found[:, :n].copy(), whole, p, factors, out)
+                    end_increments[k, i, m, r] = (
+                        columns[k, i, m, r] + increments[m, n] * period_derivative[k, i, r]
+                    )
+    substitute_stages(increments[:, :n].copy(), end_increments, p, factors, out)
     steps = np.empty((count, (1 + K * s) * n + 1))
     for m in range(count):
-        steps[m, :n] = found[m, :n]
-        steps[m, -1] = found[m, n]
+        steps[m, :n] = increments[m, :n]
+        steps[m, -1] = increments[m, n]
         for k in range(K):
             for i in range(s):
                 first = (1 + k * s + i) * n
@@ -194,7 +205,7 @@ def reduced_residuals(
 def reduced_variation_sides(
     values: Array,
     rod: SemidiscreteEquations,
-    along: ParameterDerivatives,
+    derivatives: ParameterDerivatives,
     variations: Array,
     p: SemidiscreteEquations,
     factors: NewtonFactors,
@@ -211,7 +222,7 @@ def reduced_variation_sides(
     m = len(variations)
     columns = np.empty((K, s, m, n))
     ends = np.zeros((m, n))
-    write_variation_sides(values, rod, along, variations, columns)
+    write_variation_sides(values, rod, derivatives, variations, columns)
     for k in range(K):
         reduce_right_sides(factors.eliminated_blocks[k], columns[k], p)
         map_start_to_end(factors.eliminated_blocks[k], columns[k], p, ends)
@@ -220,16 +231,16 @@ def reduced_variation_sides(
 
 @compiled_for_vectors
 def newton_step_with_factors(
-    values: Array, by_period: Array, p: SemidiscreteEquations, factors: NewtonFactors
+    values: Array, period_derivative: Array, p: SemidiscreteEquations, factors: NewtonFactors
 ) -> Array:
-    """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors, by_period:
-    from `eliminate_at_orbit` at a nearby orbit."""
-    K, s, n = by_period.shape
+    """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors,
+    period_derivative: from `eliminate_at_orbit` at a nearby orbit."""
+    K, s, n = period_derivative.shape
     points = values[:-1].reshape(1 + K * s, n)
     duration = values[-1] / p.period_parts
     columns, ends = reduced_residuals(points, duration, p, p, factors)
-    rights = np.empty((1, n + 1))
+    right_sides = np.empty((1, n + 1))
     # The residuals of the stages move the end, too; this change is subtracted from the jump.
-    rights[0, :n] = closing_residual(points, p) - ends[0]
-    rights[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
-    return orbit_changes(rights, by_period, columns, p, factors)[0]
+    right_sides[0, :n] = closing_residual(points, p) - ends[0]
+    right_sides[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
+    return orbit_changes(right_sides, period_derivative, columns, p, factors)[0]

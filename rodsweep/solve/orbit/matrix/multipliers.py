@@ -40,7 +40,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
         np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column
     )
     if not len(values):
-        raise np.linalg.LinAlgError("the derivative of the flow is not finite")
+        raise np.linalg.LinAlgError("the flow derivative of the cycle overflows")
     return values
 
 
@@ -50,9 +50,10 @@ def multipliers_over_solved_part(propagator: Array, orbit: Orbit) -> Complex:
     return nonzero_eigenvalues(orbit.symmetry.apply_inverse_to_flow(propagator, orbit.form.layout))
 
 
-def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
-    """Floquet multipliers, (m,), by descending modulus. partial: multipliers over the solved part, (m,)."""
-    values: Complex = partial**orbit.symmetry.period_parts
+def multipliers_over_period(solved_multipliers: Complex, orbit: Orbit) -> Complex:
+    """Floquet multipliers, (m,), by descending modulus. solved_multipliers: multipliers over the solved part,
+    (m,)."""
+    values: Complex = solved_multipliers**orbit.symmetry.period_parts
     return values[np.argsort(-np.abs(values), kind="stable")]
 
 
@@ -60,11 +61,11 @@ def multipliers_over_period(partial: Complex, orbit: Orbit) -> Complex:
 def _eigenvalues_by_rank(A: Array, negligible: float) -> Complex:
     """Eigenvalues of `compressed_matrix(A, negligible)`, (rank,); empty, (0,), if A has entries that are not
     finite."""
-    small = compressed_matrix(A, negligible)
-    for value in small.flat:
+    compressed = compressed_matrix(A, negligible)
+    for value in compressed.flat:
         if not np.isfinite(value):
             return np.empty(0, np.complex128)
-    return small_matrix_eigenvalues(small)
+    return small_matrix_eigenvalues(compressed)
 
 
 @compiled_for_vectors
@@ -82,12 +83,12 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
     # The rows q and r of A = sum q r^T: rows are contiguous.
     Q = np.empty((n, n))
     R = np.zeros((n, n))
-    least = negligible * norms.max()
+    min_norm = negligible * norms.max()
     rank = 0
     while rank < n:
         p = np.argmax(norms)
         size = norms[p]
-        if rank > 0 and size <= least:
+        if rank > 0 and size <= min_norm:
             break
         q = Q[rank]
         r = R[rank]
@@ -95,33 +96,33 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
         # avoids a division by 0 for a zero matrix.
         q[:] = columns[p] / max(size, EXPONENT_SETTINGS.least_divisor)
         for j in range(n):
-            if norms[j] > least:
+            if norms[j] > min_norm:
                 norms[j] = _subtract_projection(columns[j], q, r, j)
         # The rest of the pivot column is rounding error: its norm is set to 0.
         r[p] = size
         norms[p] = 0.0
         rank += 1
-    small = np.zeros((rank, rank))
+    product = np.zeros((rank, rank))
     for a in range(rank):
         for b in range(rank):
             total = 0.0
             for j in range(n):
                 # A = Q R has the nonzero eigenvalues of R Q, a matrix of the size of the rank.
                 total += R[a, j] * Q[b, j]
-            small[a, b] = total
-    return small
+            product[a, b] = total
+    return product
 
 
 @compiled_for_vectors
 def _subtract_projection(column: Array, q: Array, r: Array, j: int) -> float:
     """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
     component in r[j], and returns the norm of the remaining column. j: index of the column."""
-    along = 0.0
-    left = 0.0
+    projection = 0.0
+    remaining = 0.0
     for i in range(len(q)):
-        along += q[i] * column[i]
+        projection += q[i] * column[i]
     for i in range(len(q)):
-        column[i] -= along * q[i]
-        left += column[i] ** 2
-    r[j] = along
-    return np.sqrt(left)
+        column[i] -= projection * q[i]
+        remaining += column[i] ** 2
+    r[j] = projection
+    return np.sqrt(remaining)

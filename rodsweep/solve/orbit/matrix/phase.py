@@ -25,10 +25,10 @@ def phase_right_side(start: Array, change: NodalRodDerivative, c: NodalRod, m: N
     write_balance(start, V, G, c, m)
     write_balance_derivative(start, V, changes, change, c, m)
     theta = tip_angle(start, c.compliance, m)
-    turned = tip_angle(start, change.compliance, m)
-    by_angle = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
+    angle_change = tip_angle(start, change.compliance, m)
+    angle_factor = np.cos(theta) * G[0, -1] - np.sin(theta) * G[1, -1]
     # With the minus sign of a right-hand side.
-    return by_angle * turned - lateral_velocity(changes[2], theta)
+    return angle_factor * angle_change - lateral_velocity(changes[2], theta)
 
 
 @compiled_for_vectors
@@ -80,5 +80,5 @@ def write_phase_row(start: Array, c: NodalRod, m: NodeMatrices, row: Array) -> N
         row[i] = -(sin * tip[0, i] + cos * tip[1, i])
     for i in range(nodes):
         # theta is the integral of the curvature C m3, C: bending compliance.
-        turn = m.weights[i] * c.compliance[BENDING_INDEX, i]
-        row[stress_index(BENDING_INDEX, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * turn
+        bending_weight = m.weights[i] * c.compliance[BENDING_INDEX, i]
+        row[stress_index(BENDING_INDEX, i, nodes)] += (sin * G[1, nodes] - cos * G[0, nodes]) * bending_weight

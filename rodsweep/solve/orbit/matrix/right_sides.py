@@ -93,7 +93,7 @@ def write_right_sides(
     points: Array,
     duration: float,
     p: SemidiscreteEquations,
-    along: ParameterDerivatives,
+    derivatives: ParameterDerivatives,
     V: Array,
     columns: Array,
 ) -> None:
@@ -101,8 +101,8 @@ def write_right_sides(
     stages into V, (K, s, 3, nodes + 1).
 
     Column 0: derivative of the residuals with respect to the period. Column 1: the `write_stage_residuals`.
-    Column 2, if present: derivative of the residuals along the parameter of `along`. points, duration, p: as
-    in `write_stage_residuals`."""
+    Column 2, if present: derivative of the residuals along the parameter of `derivatives`. points, duration,
+    p: as in `write_stage_residuals`."""
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
     changes = np.empty((3, *V.shape[2:]))
@@ -120,20 +120,20 @@ def write_right_sides(
                 sides[1, r] = duration * length * sides[0, r] - p.mass[r] * slopes[r]
                 sides[0, r] *= length / p.period_parts
             if count > 2:
-                write_rate_derivatives(x, sides[2], V[k, i], changes, along.change, p)
+                write_rate_derivatives(x, sides[2], V[k, i], changes, derivatives.change, p)
                 for r in range(n):
-                    sides[2, r] = duration * length * sides[2, r] - along.mass[r] * slopes[r]
+                    sides[2, r] = duration * length * sides[2, r] - derivatives.mass[r] * slopes[r]
 
 
 @compiled_for_vectors
 def write_variation_sides(
-    values: Array, p: SemidiscreteEquations, along: ParameterDerivatives, variations: Array, columns: Array
+    values: Array, p: SemidiscreteEquations, partials: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
     """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
     (K, s, k, n).
 
     values: values of the orbit, (N,). p: equations of the orbit. variations: changes of the values and of the
-    parameter of `along`, (k, N + 1).
+    parameter of `partials`, (k, N + 1).
     """
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)
@@ -145,12 +145,12 @@ def write_variation_sides(
     out = np.empty((3, *p.rod.drag.shape))
     F = np.empty(n)
     slopes = np.empty(n)
-    by_parameter = np.zeros(n)
+    by_p = np.zeros(n)
     J = np.empty((n, n))
     tip = np.empty((len(V), n))
     v = np.empty((count, n))
     # Eigenvectors of the flow do not change the parameter: derivatives along the parameter are not needed.
-    moving = np.any(variations[:, -1] != 0.0)
+    has_change = np.any(variations[:, -1] != 0.0)
     columns[:] = 0.0
     for k in range(K):
         h = duration * p.interval_lengths[k]
@@ -158,19 +158,19 @@ def write_variation_sides(
             x = points[1 + k * s + i]
             write_rates_of_state(x, F, V, G, p)
             write_jacobian(x, V, J, tip, p.rod, p.node_matrices)
-            if moving:
-                write_rate_derivatives(x, by_parameter, V, out, along.change, p)
+            if has_change:
+                write_rate_derivatives(x, by_p, V, out, partials.change, p)
                 _write_stage_slope(points[k * s : (k + 1) * s + 1], i, p.stage_differentiation, slopes)
                 for r in range(n):
-                    by_parameter[r] = h * by_parameter[r] - along.mass[r] * slopes[r]
+                    by_p[r] = h * by_p[r] - partials.mass[r] * slopes[r]
             v[:] = changes[:, 1 + k * s + i]
             add_products(J, v, columns[k, i], h)
             for m in range(count):
                 _write_stage_slope(changes[m, k * s : (k + 1) * s + 1], i, p.stage_differentiation, slopes)
                 # h is T/p times the relative length of the interval, so that dh/dT is this length over p.
-                by_period = variations[m, -2] * p.interval_lengths[k] / p.period_parts
+                change = variations[m, -2] * p.interval_lengths[k] / p.period_parts
                 for r in range(n):
-                    rates = by_period * F[r] + variations[m, -1] * by_parameter[r]
+                    rates = change * F[r] + variations[m, -1] * by_p[r]
                     columns[k, i, m, r] += rates - p.mass[r] * slopes[r]
 
 

@@ -47,18 +47,18 @@ class ShootingIntervals:
     flow_maps: Array
 
     def end_changes(
-        self, factors: NewtonFactors, columns: Array, whole: Array, p: SemidiscreteEquations
+        self, factors: NewtonFactors, columns: Array, end_increments: Array, p: SemidiscreteEquations
     ) -> Array:
         """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
         the shooting intervals, (m, k, n).
 
-        columns: reduced right-hand sides, (K, s, k, n). whole: changes of the end of the last time interval
-        for a fixed start of the first time interval, (k, n), the result for a single shooting interval.
-        factors: eliminated matrix. p: equations of the orbit.
+        columns: reduced right-hand sides, (K, s, k, n). end_increments: changes of the end of the last time
+        interval for a fixed start of the first time interval, (k, n), the result for a single shooting
+        interval. factors: eliminated matrix. p: equations of the orbit.
         """
-        ends = np.zeros((len(self.flow_maps), *whole.shape))
+        ends = np.zeros((len(self.flow_maps), *end_increments.shape))
         if len(ends) == 1:
-            return whole[None]
+            return end_increments[None]
         columns = np.ascontiguousarray(columns)
         for end, (first, last) in zip(ends, pairwise(self.edges), strict=True):
             for k in range(first, last):
@@ -84,32 +84,32 @@ class ShootingIntervals:
         P itself is not formed, because multipliers far below its norm would lose all digits. Orthogonal
         iteration gives a triangular matrix whose rows are ordered by their growth.
         """
-        *others, last = self.flow_maps
-        ahead = triangle = np.eye(len(last))
+        *earlier_maps, last_map = self.flow_maps
+        basis = triangle = np.eye(len(last_map))
         for _ in range(SHOOTING_INTERVAL_SETTINGS.sweep_count):
             # Directions that decay to nothing over a period are dropped, to save time.
-            lasting = np.flatnonzero(
+            kept_columns = np.flatnonzero(
                 np.abs(np.diag(triangle)) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier
             )
-            start = ahead = ahead[:, : lasting[-1] + 1] if len(lasting) else ahead
+            start = basis = basis[:, : kept_columns[-1] + 1] if len(kept_columns) else basis
             triangle = np.eye(start.shape[1])
-            for A in (*others, orbit.symmetry.apply_inverse_to_flow(last, orbit.form.layout)):
-                ahead, R = np.linalg.qr(A @ ahead)
+            for A in (*earlier_maps, orbit.symmetry.apply_inverse_to_flow(last_map, orbit.form.layout)):
+                basis, R = np.linalg.qr(A @ basis)
                 triangle = R @ triangle
         # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.
-        graded = triangle @ (start.T @ ahead)
-        if not np.isfinite(graded).all():
-            raise np.linalg.LinAlgError("the derivative of the flow is not finite")
+        triangular_map = triangle @ (start.T @ basis)
+        if not np.isfinite(triangular_map).all():
+            raise np.linalg.LinAlgError("the flow derivative of the cycle overflows")
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
-        values = np.diag(schur(graded, output="complex")[0])
+        values = np.diag(schur(triangular_map, output="complex")[0])
         return values[np.abs(values) > SHOOTING_INTERVAL_SETTINGS.negligible_multiplier]
 
 
 def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingIntervals:
     """The shooting intervals of an orbit, from its eliminated matrix: a single shooting interval unless the
     norm of P exceeds `SHOOTING_INTERVAL_SETTINGS.max_growth`. Otherwise a time interval is joined to the
-    present shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
+    current shooting interval if the norm of the joined map is at most this number. mass: diagonal of M,
     (n,)."""
     blocks = factors.eliminated_blocks
     if not np.linalg.norm(factors.propagator) > SHOOTING_INTERVAL_SETTINGS.max_growth:  # also true for nan
@@ -117,9 +117,9 @@ def shooting_intervals_of(factors: NewtonFactors, mass: Array) -> ShootingInterv
     firsts = [0]
     maps = [blocks[0, INTERVAL_MAP] * mass]
     for k in range(1, len(blocks)):
-        longer = blocks[k, INTERVAL_MAP] @ (mass[:, None] * maps[-1])
-        if np.linalg.norm(longer) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
-            maps[-1] = longer
+        next_map = blocks[k, INTERVAL_MAP] @ (mass[:, None] * maps[-1])
+        if np.linalg.norm(next_map) <= SHOOTING_INTERVAL_SETTINGS.max_growth:
+            maps[-1] = next_map
         else:
             firsts.append(k)
             maps.append(blocks[k, INTERVAL_MAP] * mass)

@@ -49,9 +49,9 @@ def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: A
     interval. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
     # The map of an interval acts on M x_0, as in `eliminate_newton_matrix`.
-    scaled = ends * p.mass
+    scaled_ends = ends * p.mass
     ends[:] = columns[-1]
-    add_products(B[INTERVAL_MAP], scaled, ends, 1.0)
+    add_products(B[INTERVAL_MAP], scaled_ends, ends, 1.0)
 
 
 @compiled_for_vectors
@@ -101,26 +101,26 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute_stages(
-    start: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors, out: Array
+    initial_increment: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors, out: Array
 ) -> None:
-    """Writes the changes of all stages into `out`, (K, s, k, n). start: changes of the start, (k, n).
-    columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
+    """Writes the changes of all stages into `out`, (K, s, k, n). initial_increment: changes of the start, (k,
+    n). columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
-    first = start.copy()
-    scaled = np.empty((count, n))
+    first = initial_increment.copy()
+    scaled_increment = np.empty((count, n))
     d = p.stage_differentiation
     mass = p.mass
     for k in range(K):
         B = factors.eliminated_blocks[k]
         for m in range(count):
             for r in range(n):
-                scaled[m, r] = mass[r] * first[m, r]
+                scaled_increment[m, r] = mass[r] * first[m, r]
                 for i in range(2):
-                    y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled[m, r]
+                    y[i, m, r] = columns[k, i, m, r] - d[i, 0] * scaled_increment[m, r]
         # In reverse order, because a stage depends on the later stages.
         for a in range(s - 1, 1, -1):
-            _substitute_stage(B, a, columns[k], scaled, out[k])
+            _substitute_stage(B, a, columns[k], scaled_increment, out[k])
             for m in range(count):
                 for r in range(n):
                     for i in range(2):
@@ -130,19 +130,19 @@ def substitute_stages(
 
 
 @compiled_for_vectors
-def _substitute_stage(B: Array, a: int, columns: Array, scaled: Array, out: Array) -> None:
+def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array, out: Array) -> None:
     """Writes the changes of stage a >= 2 into out[a]. B: eliminated blocks, (blocks, n, n). columns: reduced
-    right-hand sides, (s, k, n). scaled: M times the changes of the start, (k, n). out: changes of all stages,
-    (s, k, n), in which the changes of later stages are known."""
+    right-hand sides, (s, k, n). scaled_increment: M times the changes of the start, (k, n). out: changes of
+    all stages, (s, k, n), in which the changes of later stages are known."""
     s = len(columns)
     out[a] = 0.0
     # `reduce_right_sides` has solved the last stage for a fixed start; the effect of the start is added.
     if a == s - 1:
         out[a] = columns[a]
-        add_products(B[INTERVAL_MAP], scaled, out[a], 1.0)
+        add_products(B[INTERVAL_MAP], scaled_increment, out[a], 1.0)
         return
     side = columns[a].copy()
-    add_products(B[start_block(a)], scaled, side, 1.0)
+    add_products(B[start_block(a)], scaled_increment, side, 1.0)
     for j in range(a + 1, s):
         add_products(B[stage_block(a, j, s)], out[j], side, -1.0)
     add_products(B[stage_block(a, a, s)], side, out[a], 1.0)

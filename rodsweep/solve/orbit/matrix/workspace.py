@@ -125,10 +125,12 @@ class NewtonWorkspace:
         new reservation. size: required size of the buffer. Raises MeshLimitReached beyond
         `max_buffer_size`."""
         if size > WORKSPACE_SETTINGS.max_buffer_size:
-            needed, allowed = (8e-9 * each for each in (size, WORKSPACE_SETTINGS.max_buffer_size))
+            required_GB, allowed_GB = (
+                8e-9 * entries for entries in (size, WORKSPACE_SETTINGS.max_buffer_size)
+            )
             raise MeshLimitReached(
-                f"Newton's matrix on a mesh that is fine enough needs {needed:.1f} GB, more than the "
-                f"{allowed:.1f} GB allowed"
+                f"Newton's matrix on a mesh that is fine enough needs {required_GB:.1f} GB, more than the "
+                f"{allowed_GB:.1f} GB allowed"
             )
         if len(self._buffer) < size:
             self._buffer = np.empty(0)  # frees the old buffer before the new one is allocated

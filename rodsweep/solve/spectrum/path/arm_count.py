@@ -16,20 +16,20 @@ from .carried_count import leading_eigenvalues
 from .prediction import Track
 
 
-def confirmed_count_at(path: Path, found: ArmInterval, p: float, modes: int, here: Track) -> int:
+def confirmed_count_at(path: Path, interval: ArmInterval, p: float, modes: int, point_track: Track) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this.
 
-    found: an interval that contains p. here: a track with the eigenvalues at p only.
+    interval: an interval that contains p. point_track: a track with the eigenvalues at p only.
     """
-    w, error = leading_eigenvalues(here, here.w.shape[1])
-    line = confirmed_line(path, found, p, (w[0], error[0]), modes)
+    w, error = leading_eigenvalues(point_track, point_track.w.shape[1])
+    line = confirmed_line(path, interval, p, (w[0], error[0]), modes)
     return 0 if line is None else int((w[0].real > line).sum())
 
 
 def confirmed_line(
     path: Path,
-    found: ArmInterval,
+    interval: ArmInterval,
     p: float,
     followed: tuple[Complex, Array],
     modes: int,
@@ -38,18 +38,18 @@ def confirmed_line(
     """Real part, at most `rightmost`, of a line for which a count at path variable p confirms that all
     eigenvalues to its right are followed; None if no count confirms this.
 
-    found: an interval that contains p. followed: eigenvalues at p by descending real part, and their errors,
-    (m,) each. modes: number of requested modes, which lie to the right of the line.
+    interval: an interval that contains p. followed: eigenvalues at p by descending real part, and their
+    errors, (m,) each. modes: number of requested modes, which lie to the right of the line.
     """
     w, error = followed
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
-    determinant = ArmDeterminant(path.rod_at(p), propagators_at(found.family, p))
-    hull = hull_at(found.hulls, p)
+    determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.family, p))
+    hull = hull_at(interval.hulls, p)
     lines = [line for line in lines_for_count(w.tolist(), modes) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:
         number = count_right_of(line, determinant, hull, w, error).number
         if number is not None:
-            clear = (np.abs(w.real - line) > 2 * error).all()
-            return line if clear and number == (w.real > line).sum() else None
+            are_clear = (np.abs(w.real - line) > 2 * error).all()
+            return line if are_clear and number == (w.real > line).sum() else None
     return None

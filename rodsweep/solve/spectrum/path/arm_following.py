@@ -61,16 +61,16 @@ def _converged_step_and_error(
     below the rounding error, and the error must contain rounding and interpolation along the whole arm.
     level: propagators of the arm. The error is inf without convergence.
     """
-    here = first
+    step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
-        error = converged_error(here, crowding, exact)
+        error = converged_error(step, crowding, exact)
         if error < math.inf:
             if exact:
-                of_D = error_of_interpolated_chain(here.w, level[0], level[1], here.S, level[3])
-                error = max(error, of_D / here.D_slope)
-            return here, error
-        here = correct_eigenvalue_of_arm(here.w, level)
-    return here, math.inf
+                error_of_D = error_of_interpolated_chain(step.w, level[0], level[1], step.S, level[3])
+                error = max(error, error_of_D / step.D_slope)
+            return step, error
+        step = correct_eigenvalue_of_arm(step.w, level)
+    return step, math.inf
 
 
 @compiled
@@ -78,10 +78,10 @@ def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) 
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
     D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
     h = DETERMINANT_SETTINGS.second_difference_step * abs(middle)
-    after = determinant_along_chain(middle + h, level[0], level[1])
-    before = determinant_along_chain(middle - h, level[0], level[1])
-    second = second_difference(after, before, S, h)
-    return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(second.real, 0.0))
+    value_after = determinant_along_chain(middle + h, level[0], level[1])
+    value_before = determinant_along_chain(middle - h, level[0], level[1])
+    D_ww = second_difference(value_after, value_before, S, h)
+    return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(D_ww.real, 0.0))
 
 
 @compiled
@@ -97,21 +97,21 @@ def _refine_all_eigenvalues(
     error = track.error[i]
     order = track.descending_order[i]
     m = len(w)
-    mate = np.empty(m, np.int64)
-    find_conjugates(guess, mate)
+    conjugate_index = np.empty(m, np.int64)
+    find_conjugates(guess, conjugate_index)
     w[:] = guess
     sort_descending(w, order)
     for rank in range(m):
         k = order[rank]
-        if guess[k].imag != 0 and mate[k] < 0:
+        if guess[k].imag != 0 and conjugate_index[k] < 0:
             return False
         if guess[k].imag >= 0:
             first = correct_eigenvalue_of_arm(guess[k], level)
             w[k] = first.w
-            if mate[k] >= 0:
-                w[mate[k]] = w[k].conjugate()
+            if conjugate_index[k] >= 0:
+                w[conjugate_index[k]] = w[k].conjugate()
             last, error[k] = _converged_step_and_error(first, curvature_estimate(w, k), rank <= modes, level)
-            if not store_root(track, i, k, mate[k], last):
+            if not store_root(track, i, k, conjugate_index[k], last):
                 return False
     sort_descending(w, order)
     return are_distinct_roots(w, error) and np.abs(w).max() <= level[0]
@@ -136,47 +136,47 @@ def proved_count_right_of_line(
         - CANDIDATE_SETTINGS.proof_line_distance * abs(w[k]),
         0.0,
     )
-    here = 0
+    count = 0
     for j in range(len(w)):
         if abs(w[j].real - line) <= 2 * error[j]:
             return 0
-        here += w[j].real > line
-    for power in COMPLETENESS_SETTINGS.point_counts:
-        points = points_right_of_hull(line, hull.a, hull.c, power)
+        count += w[j].real > line
+    for point_count in COMPLETENESS_SETTINGS.point_counts:
+        points = points_right_of_hull(line, hull.a, hull.c, point_count)
         if len(points) == 0 or points[-1] > level[0]:
             continue
         if proves_completeness(remainder_of_sum(line, w, error, hull, points, (level[0], level[1]))):
-            return here
+            return count
     return 0
 
 
 @compiled
 def follow_eigenvalues_of_arms(
-    track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, known: NDArray
+    track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, proved_counts: NDArray
 ) -> int:
     """Follows eigenvalues of arms along the path variables p, (points,), and returns the number of points
     reached.
 
     track: `w` and `descending_order` of the first point are given, the remaining points are filled. family:
     family of arms that contains all p. hulls: regions that contain the spectra of all arms of the family.
-    known: output, the number from `proved_count_right_of_line` at each point, (points,).
+    proved_counts: output, the number from `proved_count_right_of_line` at each point, (points,).
     """
     shape = family.coefficients.shape[1:]
     polynomials = np.empty(shape)
     changes = np.empty(shape)
     level = (family.largest_w, polynomials, changes, family.entry_sizes)
     guess = track.w[0].copy()
-    decided = np.empty(len(guess), np.int64)
+    partner = np.empty(len(guess), np.int64)
     for i in range(len(p)):
         write_propagators(family, p[i], polynomials, changes)
         if i > 0:
-            predict_eigenvalues(track, i, p, guess, decided)
+            predict_eigenvalues(track, i, p, guess, partner)
             for k in range(len(guess)):
-                if decided[k] >= 0:
-                    two = (k, decided[k])
+                if partner[k] >= 0:
+                    two = (k, partner[k])
                     set_two_guesses(track.w[i - 1], two, taylor_parabola_roots_of_arm(guess[k], level), guess)
             track.descending_order[i] = track.descending_order[i - 1]
         if not _refine_all_eigenvalues(track, i, guess, modes, level):
             return i
-        known[i] = proved_count_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
+        proved_counts[i] = proved_count_right_of_line(track, i, modes, hull_at(hulls, p[i]), level)
     return len(p)

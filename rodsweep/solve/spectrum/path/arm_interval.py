@@ -61,121 +61,123 @@ def follow_interval(
     path: Path,
     p: Array,
     request: SpectrumRequest,
-    before: ArmInterval | None = None,
+    previous: ArmInterval | None = None,
     counts_follow: bool = False,
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached with one family of arms; None if the first point fails,
     if no family is found, or if n is below `ARM_FOLLOWING_SETTINGS.min_points`.
 
     If not all growing modes can be proved complete, more eigenvalues are followed; also if too few points are
-    proved complete, unless counts follow at these points. before: the previous interval of the path, whose
+    proved complete, unless counts follow at these points. previous: the previous interval of the path, whose
     family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
-    for further in (
+    for added_modes in (
         number
         for number in ARM_FOLLOWING_SETTINGS.further_modes
-        if before is None or number >= before.further_modes
+        if previous is None or number >= previous.further_modes
     ):
         if best is not None and not (
             _follows_too_few_modes(best)
-            or (not counts_follow and _more_modes_prove_middle(path, best, request, further))
+            or (not counts_follow and _more_modes_prove_middle(path, best, request, added_modes))
         ):
             break
-        found = (
-            _follow_with_further_modes(path, p, request, further, before)
+        interval = (
+            _follow_with_further_modes(path, p, request, added_modes, previous)
             if len(p) >= ARM_FOLLOWING_SETTINGS.min_points
             else None
         )
-        if found is not None and (best is None or _is_better_interval(found, best, request.modes)):
-            best = found
-        enough = best is not None and best.proved_points(
+        if interval is not None and (best is None or _is_better_interval(interval, best, request.modes)):
+            best = interval
+        is_proved = best is not None and best.proved_points(
             request.modes
         ) >= ARM_FOLLOWING_SETTINGS.min_proved_fraction * len(best.p)
-        if best is not None and enough and not _follows_too_few_modes(best):
+        if best is not None and is_proved and not _follows_too_few_modes(best):
             break
     return best
 
 
-def _follows_too_few_modes(found: ArmInterval) -> bool:
+def _follows_too_few_modes(interval: ArmInterval) -> bool:
     """Whether too few modes are followed to prove all growing modes complete at every point."""
-    growing = (found.track.w.real > 0).sum(axis=1).max()
-    return bool(growing + ARM_FOLLOWING_SETTINGS.modes_beyond_growing > found.track.w.shape[1])
+    growing_count = (interval.track.w.real > 0).sum(axis=1).max()
+    return bool(growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing > interval.track.w.shape[1])
 
 
-def _is_better_interval(found: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether `found` has more proved points than `other`, or equally many while `other` follows too few
+def _is_better_interval(interval: ArmInterval, other: ArmInterval, modes: int) -> bool:
+    """Whether `interval` has more proved points than `other`, or equally many while `other` follows too few
     modes.
     """
-    here = found.proved_points(modes)
-    there = other.proved_points(modes)
-    return here > there or (here == there and _follows_too_few_modes(other))
+    proved = interval.proved_points(modes)
+    other_proved = other.proved_points(modes)
+    return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
 
 
-def _more_modes_prove_middle(path: Path, found: ArmInterval, request: SpectrumRequest, further: int) -> bool:
-    """Whether following `further` additional modes would prove completeness at the middle point among the
+def _more_modes_prove_middle(path: Path, interval: ArmInterval, request: SpectrumRequest, added: int) -> bool:
+    """Whether following `added` additional modes would prove completeness at the middle point among the
     points without a proof."""
-    left = np.flatnonzero(found.proved_modes < request.modes)
-    return _more_modes_prove_point(path, found, float(found.p[left[len(left) // 2]]), request, further)
+    unproved = np.flatnonzero(interval.proved_modes < request.modes)
+    return _more_modes_prove_point(
+        path, interval, float(interval.p[unproved[len(unproved) // 2]]), request, added
+    )
 
 
 def _more_modes_prove_point(
-    path: Path, found: ArmInterval, p: float, request: SpectrumRequest, further: int
+    path: Path, interval: ArmInterval, p: float, request: SpectrumRequest, added_modes: int
 ) -> bool:
-    """Whether the wanted modes at path variable p, inside the interval `found`, would be proved complete if
-    `further` modes were followed in addition."""
-    roots = _leading_roots(path, p, request, further)
+    """Whether the wanted modes at path variable p, inside the interval `interval`, would be proved complete
+    if `added_modes` modes were followed in addition."""
+    roots = _leading_roots(path, p, request, added_modes)
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.rod_at(p))
     line = line_for_proof(complex(roots.w[request.modes - 1]), float(roots.error[request.modes - 1]))
     try:
-        return prove_complete(line, roots.w, roots.error, arm, hull_at(found.hulls, p))[0]
+        return prove_complete(line, roots.w, roots.error, arm, hull_at(interval.hulls, p))[0]
     except FloatingPointError:
         return False
 
 
 def _follow_with_further_modes(
-    path: Path, p: Array, request: SpectrumRequest, further: int, before: ArmInterval | None
+    path: Path, p: Array, request: SpectrumRequest, added_modes: int, previous: ArmInterval | None
 ) -> ArmInterval | None:
-    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `further` modes
+    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_modes` modes
     followed in addition to the wanted modes; None if the first point fails or no family is found."""
-    first = _eigenvalues_of_previous_interval(before, float(p[0]), request, further)
+    first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_modes)
     if first is None:
-        first = first_eigenvalues(path, float(p[0]), request, further)
+        first = first_eigenvalues(path, float(p[0]), request, added_modes)
     n = len(p)
-    made = None
-    if first is not None and before is not None:
-        inside = int(((p >= before.family.p_low) & (p <= before.family.p_high)).sum())
+    family_data = None
+    if first is not None and previous is not None:
+        inside_count = int(((p >= previous.family.p_low) & (p <= previous.family.p_high)).sum())
         if (
-            inside >= ARM_FOLLOWING_SETTINGS.min_points
-            and ARM_FOLLOWING_SETTINGS.min_reused_W_factor * np.abs(first).max() <= before.family.largest_w
+            inside_count >= ARM_FOLLOWING_SETTINGS.min_points
+            and ARM_FOLLOWING_SETTINGS.min_reused_W_factor * np.abs(first).max() <= previous.family.largest_w
         ):
-            made = (before.family, before.hulls)
-            n = inside
+            family_data = (previous.family, previous.hulls)
+            n = inside_count
         else:
             n = min(
                 n,
                 max(
-                    ARM_FOLLOWING_SETTINGS.max_points_growth * len(before.p),
+                    ARM_FOLLOWING_SETTINGS.max_points_growth * len(previous.p),
                     ARM_FOLLOWING_SETTINGS.min_points,
                 ),
             )
-    while first is not None and made is None and n >= ARM_FOLLOWING_SETTINGS.min_points:
-        made = family_and_hulls(path, p[:n], first, request.modes)
+    while first is not None and family_data is None and n >= ARM_FOLLOWING_SETTINGS.min_points:
+        family_data = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
-        n = n if made is not None else n // 2
-    if first is None or made is None:
+        n = n if family_data is not None else n // 2
+    if first is None or family_data is None:
         return None
-    family, hulls = made
+    family, hulls = family_data
     track = start_track(first, n)
-    known = np.zeros(n, np.int64)
-    reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, known)
+    proved_counts = np.zeros(n, np.int64)
+    reached = follow_eigenvalues_of_arms(track, family, hulls, p[:n], request.modes, proved_counts)
     if reached == 0:
         return None
-    arms = before.arm_count if before is not None and family is before.family else n
+    arms = previous.arm_count if previous is not None and family is previous.family else n
     return ArmInterval(
-        p[:reached], slice_track(track, 0, reached), known[:reached], family, hulls, arms, further
+        p[:reached], slice_track(track, 0, reached), proved_counts[:reached], family, hulls, arms, added_modes
     )
 
 
@@ -192,8 +194,8 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        places = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
-        hulls = hulls_along([path.rod_at(x) for x in places.tolist()], places)
+        hull_positions = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
+        hulls = hulls_along([path.rod_at(x) for x in hull_positions.tolist()], hull_positions)
         W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first).max())
         line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
@@ -202,40 +204,40 @@ def family_and_hulls(path: Path, p: Array, first: Complex, modes: int) -> tuple[
             for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.W_reserve_factor * W]
-        family = interpolated_family(path, low, high, max([W, *near]))
+        near_ends = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.W_reserve_factor * W]
+        family = interpolated_family(path, low, high, max([W, *near_ends]))
     except (ValueError, FloatingPointError):
         return None
     return None if family is None else (family, hulls)
 
 
 def _eigenvalues_of_previous_interval(
-    before: ArmInterval | None, p: float, request: SpectrumRequest, further: int
+    previous: ArmInterval | None, p: float, request: SpectrumRequest, added_modes: int
 ) -> Complex | None:
-    """Eigenvalues, (m,), at p, from the previous interval `before`; None unless p is the last point of this
-    interval, `further` modes were followed there, and all its points are proved complete.
+    """Eigenvalues, (m,), at p, from the previous interval `previous`; None unless p is the last point of this
+    interval, `added_modes` modes were followed there, and all its points are proved complete.
     """
-    if before is None or before.further_modes != further or before.p[-1] != p:
+    if previous is None or previous.further_modes != added_modes or previous.p[-1] != p:
         return None
-    if before.proved_points(request.modes) < len(before.p):
+    if previous.proved_points(request.modes) < len(previous.p):
         return None
-    return before.track.w[-1][before.track.descending_order[-1]]
+    return previous.track.w[-1][previous.track.descending_order[-1]]
 
 
-def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, further: int) -> Complex | None:
+def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, added_modes: int) -> Complex | None:
     """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
     solve fails.
     """
-    found = _leading_roots(path, p, request, further)
-    return None if found is None else found.w[has_conjugate(found.w)]
+    roots = _leading_roots(path, p, request, added_modes)
+    return None if roots is None else roots.w[has_conjugate(roots.w)]
 
 
-def _leading_roots(path: Path, p: float, request: SpectrumRequest, further: int) -> Roots | None:
-    """The leading eigenvalues at path variable p, without a proof: the wanted modes and `further` more modes;
-    None if the solve fails.
+def _leading_roots(path: Path, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:
+    """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_modes` more
+    modes; None if the solve fails.
     """
     try:
-        modes = request.modes + further
+        modes = request.modes + added_modes
         search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
         with np.errstate(all="ignore"):
             search.outcome()

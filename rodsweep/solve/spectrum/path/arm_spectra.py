@@ -21,22 +21,28 @@ from .prediction import slice_track
 def follow_spectra_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
     """Spectra of the arms at the path variables p, (n,), from the first point to the last point reached; None
     if no point is reached."""
-    found = follow_interval(path, p, request, counts_follow=True)
-    if found is None:
+    interval = follow_interval(path, p, request, counts_follow=True)
+    if interval is None:
         return None
-    if (found.proved_modes < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
-        found = _with_finer_hulls(path, found)
-    carry_counts(path, found, request.modes)
-    for i in np.flatnonzero(found.proved_modes < request.modes).tolist():
-        here = slice_track(found.track, i, i + 1)
-        found.proved_modes[i] = confirmed_count_at(path, found, float(found.p[i]), request.modes, here)
-    good, unstable = assess_points(found.track, found.proved_modes, request.modes, request.accuracy)
-    return FollowedPoints(*leading_eigenvalues(found.track, request.modes), unstable, good)
-
-
-def _with_finer_hulls(path: Path, found: ArmInterval) -> ArmInterval:
-    """The interval `found` with hulls at more arms, hence closer to the hull of each arm."""
-    places = np.linspace(
-        found.family.p_low, found.family.p_high, ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
+    if (interval.proved_modes < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
+        interval = _with_finer_hulls(path, interval)
+    carry_counts(path, interval, request.modes)
+    for i in np.flatnonzero(interval.proved_modes < request.modes).tolist():
+        point_track = slice_track(interval.track, i, i + 1)
+        interval.proved_modes[i] = confirmed_count_at(
+            path, interval, float(interval.p[i]), request.modes, point_track
+        )
+    is_accepted, unstable_counts = assess_points(
+        interval.track, interval.proved_modes, request.modes, request.accuracy
     )
-    return found._replace(hulls=hulls_along([path.rod_at(x) for x in places.tolist()], places))
+    return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
+
+
+def _with_finer_hulls(path: Path, interval: ArmInterval) -> ArmInterval:
+    """The interval `interval` with hulls at more arms, hence closer to the hull of each arm."""
+    hull_positions = np.linspace(
+        interval.family.p_low, interval.family.p_high, ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
+    )
+    return interval._replace(
+        hulls=hulls_along([path.rod_at(x) for x in hull_positions.tolist()], hull_positions)
+    )

@@ -52,91 +52,99 @@ class CarriedCountChain(NamedTuple):
     lines: list[float]
 
 
-def carry_counts(path: Path, found: ArmInterval, modes: int) -> None:
-    """Fills `found.proved_modes` at points without a proof, wherever a count can be carried to them.
+def carry_counts(path: Path, interval: ArmInterval, modes: int) -> None:
+    """Fills `interval.proved_modes` at points without a proof, wherever a count can be carried to them.
 
     modes: number of requested modes.
     """
-    w, error = leading_eigenvalues(found.track, found.track.w.shape[1])
+    w, error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
     last = w[:, modes - 1]
     lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(last)
     followed = FollowedEigenvalues(w, error, lines)
     # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
-    left = np.flatnonzero((found.proved_modes < modes) & (w[:, -1].real <= 0))
-    for run in np.split(left, np.flatnonzero(np.diff(left) > 1) + 1):
+    unproved = np.flatnonzero((interval.proved_modes < modes) & (w[:, -1].real <= 0))
+    for run in np.split(unproved, np.flatnonzero(np.diff(unproved) > 1) + 1):
         first = int(run[0]) if len(run) else 0
         end = first + len(run)
-        patience = 1
+        skipped_count = 1
         while end - first >= NO_CROSSING_SETTINGS.arm_count:
-            chain = _longest_chain(path, found, followed, (first, end - 1), modes)
+            chain = _longest_chain(path, interval, followed, (first, end - 1), modes)
             if not chain.lines:
                 # Further points often fail, too, so every further failure skips twice as many points.
-                first += patience
-                patience *= 2
+                first += skipped_count
+                skipped_count *= 2
                 continue
             end_of_chain = chain.points[-1], chain.lines[-1]
-            if _confirmed_line_at(path, found, followed, end_of_chain, modes) is not None:
-                _store_proved_modes(found, followed, chain)
+            if _confirmed_line_at(path, interval, followed, end_of_chain, modes) is not None:
+                _store_proved_modes(interval, followed, chain)
             first = chain.points[-1] + 1
-            patience = 1
+            skipped_count = 1
 
 
 def _longest_chain(
-    path: Path, found: ArmInterval, followed: FollowedEigenvalues, ends: tuple[int, int], modes: int
+    path: Path, interval: ArmInterval, followed: FollowedEigenvalues, ends: tuple[int, int], modes: int
 ) -> CarriedCountChain:
     """The longest chain of points found from the first to the last index in `ends`; without lines if no count
     can be carried from the first point."""
-    here, last = ends
+    index, last = ends
     shortest = NO_CROSSING_SETTINGS.arm_count - 1
-    chain = CarriedCountChain([here], [])
-    counted = None
-    ahead = last - here
-    while last - here >= shortest:
-        there = min(here + ahead, last)
-        if last - there < shortest:
-            there = last
-        line = float(followed.lines[here : there + 1].min())
-        if counted is None or counted > line:
-            counted = _confirmed_line_at(path, found, followed, (here, line), modes)
-            if counted is None:
+    chain = CarriedCountChain([index], [])
+    confirmed = None
+    stride = last - index
+    while last - index >= shortest:
+        next_index = min(index + stride, last)
+        if last - next_index < shortest:
+            next_index = last
+        line = float(followed.lines[index : next_index + 1].min())
+        if confirmed is None or confirmed > line:
+            confirmed = _confirmed_line_at(path, interval, followed, (index, line), modes)
+            if confirmed is None:
                 break
-        if _is_line_free(path, found, line, (here, there)):
-            chain.points.append(there)
+        if _is_line_free(path, interval, line, (index, next_index)):
+            chain.points.append(next_index)
             chain.lines.append(line)
-            counted = line
-            here = there
-            ahead *= 2
-        elif there - here < 2 * shortest:
+            confirmed = line
+            index = next_index
+            stride *= 2
+        elif next_index - index < 2 * shortest:
             break
         else:
-            ahead = (there - here) // 2
+            stride = (next_index - index) // 2
     return chain
 
 
 def _confirmed_line_at(
-    path: Path, found: ArmInterval, followed: FollowedEigenvalues, at: tuple[int, float], modes: int
+    path: Path,
+    interval: ArmInterval,
+    followed: FollowedEigenvalues,
+    index_and_line: tuple[int, float],
+    modes: int,
 ) -> float | None:
-    """Result of `confirmed_line` at a point, with `rightmost` = real part of the given line. at: (index of
-    the point, real part of the line)."""
-    i, line = at
-    here = followed.w[i], followed.error[i]
-    return confirmed_line(path, found, float(found.p[i]), here, modes, line)
+    """Result of `confirmed_line` at a point, with `rightmost` = real part of the given line. index_and_line:
+    (index of the point, real part of the line)."""
+    i, line = index_and_line
+    eigenvalues_and_errors = followed.w[i], followed.error[i]
+    return confirmed_line(path, interval, float(interval.p[i]), eigenvalues_and_errors, modes, line)
 
 
-def _is_line_free(path: Path, found: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
+def _is_line_free(path: Path, interval: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
     """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
     points = sampled_point_indices(*ends)
-    known = found.track.w[points], found.track.error[points]
-    p = found.p[points]
+    known_w = interval.track.w[points], interval.track.error[points]
+    p = interval.p[points]
     rods = [path.rod_at(value) for value in p.tolist()]
-    return proves_no_crossing(line, rods, p, known, found.family, found.hulls)
+    return proves_no_crossing(line, rods, p, known_w, interval.family, interval.hulls)
 
 
-def _store_proved_modes(found: ArmInterval, followed: FollowedEigenvalues, chain: CarriedCountChain) -> None:
-    """Fills `found.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
+def _store_proved_modes(
+    interval: ArmInterval, followed: FollowedEigenvalues, chain: CarriedCountChain
+) -> None:
+    """Fills `interval.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
     line."""
     for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):
         w = followed.w[first : last + 1]
-        clear = (np.abs(w.real - line) > 2 * followed.error[first : last + 1]).all(axis=1)
-        right = (w.real > line).sum(axis=1)
-        found.proved_modes[first : last + 1] = np.where(clear, right, found.proved_modes[first : last + 1])
+        is_clear = (np.abs(w.real - line) > 2 * followed.error[first : last + 1]).all(axis=1)
+        right_count = (w.real > line).sum(axis=1)
+        interval.proved_modes[first : last + 1] = np.where(
+            is_clear, right_count, interval.proved_modes[first : last + 1]
+        )

@@ -61,14 +61,14 @@ def widest_gap(track: Track, i: int, modes: int) -> int:
 
     The gap lies to the left of the leading `modes` and of the imaginary axis.
     """
-    best = 0
-    widest = CARRIED_COUNT_SETTINGS.min_gap
+    best_gap = 0
+    max_width = CARRIED_COUNT_SETTINGS.min_gap
     for gap in range(modes, track.w.shape[1]):
         width = line_in_gap(track, i, gap)[1]
-        if width >= widest:
-            best = gap
-            widest = width
-    return best
+        if width >= max_width:
+            best_gap = gap
+            max_width = width
+    return best_gap
 
 
 @compiled
@@ -81,32 +81,34 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
     """
     i, j = ends
     for s in range(i, j + 1):
-        share = (p[s] - p[i]) / (p[j] - p[i])
-        line = (1 - share) * lines[0] + share * lines[1]
+        fraction = (p[s] - p[i]) / (p[j] - p[i])
+        line = (1 - fraction) * lines[0] + fraction * lines[1]
         for rank in range(track.w.shape[1]):
             k = track.descending_order[s, rank]
-            away = track.w[s, k].real - line
-            if not (away if rank < gap else -away) > 2 * track.error[s, k]:
+            distance = track.w[s, k].real - line
+            if not (distance if rank < gap else -distance) > 2 * track.error[s, k]:
                 return False
     return True
 
 
 @compiled
-def _widest_open_gap(track: Track, ends: tuple[int, int], modes: int, known: int, p: Array) -> int:
+def _widest_open_gap(track: Track, ends: tuple[int, int], modes: int, proved_count: int, p: Array) -> int:
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
     gap stays open.
 
-    The number is at least `modes` and at most `known`.
+    The number is at least `modes` and at most `proved_count`.
     """
-    best = 0
-    widest = CARRIED_COUNT_SETTINGS.min_gap
-    for gap in range(modes, min(known, track.w.shape[1] - 1) + 1):
-        here, wide = line_in_gap(track, ends[0], gap)
-        there, wide_there = line_in_gap(track, ends[1], gap)
-        if min(wide, wide_there) >= widest and _stays_open(track, ends, gap, (here, there), p):
-            best = gap
-            widest = min(wide, wide_there)
-    return best
+    best_gap = 0
+    max_width = CARRIED_COUNT_SETTINGS.min_gap
+    for gap in range(modes, min(proved_count, track.w.shape[1] - 1) + 1):
+        start_line, start_width = line_in_gap(track, ends[0], gap)
+        end_line, end_width = line_in_gap(track, ends[1], gap)
+        if min(start_width, end_width) >= max_width and _stays_open(
+            track, ends, gap, (start_line, end_line), p
+        ):
+            best_gap = gap
+            max_width = min(start_width, end_width)
+    return best_gap
 
 
 @compiled
@@ -120,20 +122,20 @@ def _interval_end(track: Track, i: int, gap: int, p: Array, coefficients: Array)
 
 @compiled
 def carry_count(
-    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, known: NDArray
+    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, proved_counts: NDArray
 ) -> int:
     """Index of the last point to which the count at the first point can be carried.
 
     coefficients: (F, nu, c2, gamma3) at each point, (points, 4). p: path variables, (points,). direction:
-    d(F, nu, c2, gamma3)/dp. known: number of leading eigenvalues that are all eigenvalues to the right of a
-    line, (points,); given at the first point, filled up to the last point reached.
+    d(F, nu, c2, gamma3)/dp. proved_counts: number of leading eigenvalues that are all eigenvalues to the
+    right of a line, (points,); given at the first point, filled up to the last point reached.
     """
     i = 0
     last = len(p) - 1
-    ahead = last
+    stride = last
     while i < last:
-        j = min(i + ahead, last)
-        gap = _widest_open_gap(track, (i, j), modes, known[i], p)
+        j = min(i + stride, last)
+        gap = _widest_open_gap(track, (i, j), modes, proved_counts[i], p)
         proved = False
         if gap > 0:
             first = _interval_end(track, i, gap, p, coefficients)
@@ -144,42 +146,44 @@ def carry_count(
             proved, _ = proves_no_crossing(first, end, direction, most)
         if proved:
             # The number of eigenvalues to the right of this gap is proved, even if `known` was larger before.
-            known[i + 1 : j + 1] = gap
+            proved_counts[i + 1 : j + 1] = gap
             i = j
             # After a successful proof, a proof over twice as many points often succeeds.
-            ahead = 2 * ahead
+            stride = 2 * stride
         elif j == i + 1:
             return i
         else:
-            ahead = (j - i) // 2
+            stride = (j - i) // 2
     return last
 
 
 @compiled
-def assess_points(track: Track, known: NDArray, modes: int, accuracy: float) -> tuple[NDArray, NDArray]:
-    """Returns (good, unstable), (points,) each. good: whether the point is certified and its leading `modes`
-    are accurate. unstable: number of unstable modes.
+def assess_points(
+    track: Track, proved_counts: NDArray, modes: int, accuracy: float
+) -> tuple[NDArray, NDArray]:
+    """Returns (is_good, unstable_counts), (points,) each. is_good: whether the point is certified and its
+    leading `modes` are accurate. unstable_counts: number of unstable modes.
 
-    known: number of leading eigenvalues proved complete at each point, (points,). A point is not good if an
-    eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.
+    proved_counts: number of leading eigenvalues proved complete at each point, (points,). A point is not good
+    if an eigenvalue may lie on the imaginary axis, or if a nearly double eigenvalue has lost digits.
     """
-    n = len(known)
-    good = np.empty(n, np.bool_)
-    unstable = np.zeros(n, np.int64)
+    n = len(proved_counts)
+    is_good = np.empty(n, np.bool_)
+    unstable_counts = np.zeros(n, np.int64)
     for s in range(n):
-        good[s] = known[s] >= modes
-        for rank in range(known[s]):
+        is_good[s] = proved_counts[s] >= modes
+        for rank in range(proved_counts[s]):
             k = track.descending_order[s, rank]
             w = track.w[s, k]
             error = track.error[s, k]
             if abs(w.real) <= max(
                 ROOT_SETTINGS.axis_tolerance_in_errors * error, ROOT_SETTINGS.axis_tolerance * abs(w)
             ):
-                good[s] = False
+                is_good[s] = False
             if rank < modes and not error <= min(ROOT_SETTINGS.double_root_correction, accuracy / 2) * abs(w):
-                good[s] = False
-            unstable[s] += w.real > 0
-    return good, unstable
+                is_good[s] = False
+            unstable_counts[s] += w.real > 0
+    return is_good, unstable_counts
 
 
 @compiled

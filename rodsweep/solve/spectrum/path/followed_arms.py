@@ -42,30 +42,37 @@ class FollowedArms:
     def _follow_to(self, p: float) -> None:
         """Follows eigenvalues up to the first point at or beyond p."""
         while self._next_point < len(self._p) and (self._next_point == 0 or self._p[self._next_point] < p):
-            before = self.intervals[-1] if self.intervals else None
-            found = follow_interval(self.path, self._p[self._next_point :], self.request, before)
-            if found is not None:
-                self.intervals.append(found)
+            previous = self.intervals[-1] if self.intervals else None
+            interval = follow_interval(self.path, self._p[self._next_point :], self.request, previous)
+            if interval is not None:
+                self.intervals.append(interval)
             # Intervals share their end points. After a failure the next points often fail, too,
             # so every further failure skips twice as many points.
             self._next_point += (
-                max(len(found.p) - 1, 1) if found is not None else self._points_skipped_on_failure
+                max(len(interval.p) - 1, 1) if interval is not None else self._points_skipped_on_failure
             )
-            self._points_skipped_on_failure = 1 if found is not None else 2 * self._points_skipped_on_failure
+            self._points_skipped_on_failure = (
+                1 if interval is not None else 2 * self._points_skipped_on_failure
+            )
 
     def family_at(self, p: float) -> ArmFamily | None:
         """The family of interpolated arms that contains p; None if no interval reached p."""
         self._follow_to(p)
         return next(
-            (one.family for one in self.intervals if one.family.p_low <= p <= one.family.p_high), None
+            (
+                interval.family
+                for interval in self.intervals
+                if interval.family.p_low <= p <= interval.family.p_high
+            ),
+            None,
         )
 
     def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
         """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
         w."""
-        for one in self._proved_by_p.get(p, []):
-            for k in np.flatnonzero(one.track.w[0] == w).tolist():
-                return complex(one.track.slope[0, k]), float(one.track.error[0, k])
+        for eigenvalues in self._proved_by_p.get(p, []):
+            for k in np.flatnonzero(eigenvalues.track.w[0] == w).tolist():
+                return complex(eigenvalues.track.slope[0, k]), float(eigenvalues.track.error[0, k])
         return None
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
@@ -73,20 +80,20 @@ class FollowedArms:
         complete.
         """
         self._follow_to(p)
-        judged = self._proved_by_p.setdefault(p, [])
-        if not any(modes <= one.max_tried_modes for one in judged):
-            judged += self._proved_eigenvalues_at(p, modes)
-        found = (one.spectrum(modes, self.request.accuracy) for one in judged)
-        return next((spectrum for spectrum in found if spectrum is not None), None)
+        proved = self._proved_by_p.setdefault(p, [])
+        if not any(modes <= eigenvalues.max_tried_modes for eigenvalues in proved):
+            proved += self._proved_eigenvalues_at(p, modes)
+        spectra = (eigenvalues.spectrum(modes, self.request.accuracy) for eigenvalues in proved)
+        return next((spectrum for spectrum in spectra if spectrum is not None), None)
 
     def followed_roots(self, p: float) -> KnownRoots | None:
         """Eigenvalues followed to path variable p, not proved complete; None if following fails."""
         self._follow_to(p)
-        for one in self.intervals:
-            if one.p.min() <= p <= one.p.max():
-                here, _ = self._track_from_nearest_point(one, p, self.request.modes)
-                if here is not None:
-                    return KnownRoots(here.w[0], here.error[0])
+        for interval in self.intervals:
+            if interval.p.min() <= p <= interval.p.max():
+                track, _ = self._track_from_nearest_point(interval, p, self.request.modes)
+                if track is not None:
+                    return KnownRoots(track.w[0], track.error[0])
         return None
 
     def _proved_eigenvalues_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
@@ -95,47 +102,56 @@ class FollowedArms:
 
         All growing modes and two more modes are proved at once, because the next requests need these modes.
         """
-        for one in self.intervals:
-            followed = one.track.w.shape[1]
-            if not one.p.min() <= p <= one.p.max() or followed < modes:
+        for interval in self.intervals:
+            followed_count = interval.track.w.shape[1]
+            if not interval.p.min() <= p <= interval.p.max() or followed_count < modes:
                 continue
-            here = None
-            known = 0
+            track = None
+            proved_count = 0
             requested = 0
-            growing = int((one.track.w[np.argmin(np.abs(one.p - p))].real > 0).sum())
+            growing_count = int((interval.track.w[np.argmin(np.abs(interval.p - p))].real > 0).sum())
             # More modes may grow at p than at the nearest point.
             while requested < (
-                needed := min(max(modes, growing + ARM_FOLLOWING_SETTINGS.modes_beyond_growing), followed)
+                needed_modes := min(
+                    max(modes, growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing), followed_count
+                )
             ):
-                requested = needed
-                here, known = self._track_from_nearest_point(one, p, requested)
-                growing = 0 if here is None else int((here.w.real > 0).sum())
-            if here is None:
+                requested = needed_modes
+                track, proved_count = self._track_from_nearest_point(interval, p, requested)
+                growing_count = 0 if track is None else int((track.w.real > 0).sum())
+            if track is None:
                 continue
             for number in sorted({requested, modes}, reverse=True):
-                if known < number:
-                    known = max(known, confirmed_count_at(self.path, one, p, number, here))
-            yield ProvedEigenvalues(max(modes, min(known, requested)), here, known)
-            if known >= modes:
+                if proved_count < number:
+                    proved_count = max(
+                        proved_count, confirmed_count_at(self.path, interval, p, number, track)
+                    )
+            yield ProvedEigenvalues(max(modes, min(proved_count, requested)), track, proved_count)
+            if proved_count >= modes:
                 return
 
-    def _track_from_nearest_point(self, one: ArmInterval, p: float, modes: int) -> tuple[Track | None, int]:
+    def _track_from_nearest_point(
+        self, interval: ArmInterval, p: float, modes: int
+    ) -> tuple[Track | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
-        point nearest to p. one: an interval that contains p. modes: number of leading modes to be proved.
+        point nearest to p. interval: an interval that contains p. modes: number of leading modes to be
+        proved.
 
         The track is None if following fails.
         """
-        i = int(np.argmin(np.abs(one.p - p)))
-        start = float(one.p[i])
+        i = int(np.argmin(np.abs(interval.p - p)))
+        start = float(interval.p[i])
         if p == start and modes <= self.request.modes:
-            return slice_track(one.track, i, i + 1), int(one.proved_modes[i])
+            return slice_track(interval.track, i, i + 1), int(interval.proved_modes[i])
         for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
-            track = start_track(one.track.w[i], len(grid))
-            known = np.zeros(len(grid), np.int64)
-            track.descending_order[0] = one.track.descending_order[i]
-            if follow_eigenvalues_of_arms(track, one.family, one.hulls, grid, modes, known) == len(grid):
-                return slice_track(track, len(grid) - 1, len(grid)), int(known[-1])
+            track = start_track(interval.track.w[i], len(grid))
+            proved_counts = np.zeros(len(grid), np.int64)
+            track.descending_order[0] = interval.track.descending_order[i]
+            if follow_eigenvalues_of_arms(
+                track, interval.family, interval.hulls, grid, modes, proved_counts
+            ) == len(grid):
+                return slice_track(track, len(grid) - 1, len(grid)), int(proved_counts[-1])
         return None, 0
 
 
@@ -154,14 +170,14 @@ class ProvedEigenvalues(NamedTuple):
         are proved complete; else None."""
         if self.track.w.shape[1] < modes:
             return None
-        good, unstable = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)
-        if not good[0]:
+        is_good, unstable_counts = assess_points(self.track, np.array([self.proved_modes]), modes, accuracy)
+        if not is_good[0]:
             return None
         w, error = leading_eigenvalues(self.track, modes)
         return Spectrum(
             status=SpectrumStatus.ok,
             eigenvalues=w[0],
             error_estimate=error[0],
-            unstable_count=int(unstable[0]),
+            unstable_count=int(unstable_counts[0]),
             certified=True,
         )

@@ -98,45 +98,45 @@ def curvature_estimate(w: Complex, k: int) -> float:
 
 
 @compiled
-def converged_error(here: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
+def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
     enough.
 
     crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
     rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|.
     """
-    left = crowding * here.step_length * here.step_length
+    remainder = crowding * step.step_length * step.step_length
     allowed = (
-        max(here.rounding_error, ROUND_OFF * abs(here.w))
+        max(step.rounding_error, ROUND_OFF * abs(step.w))
         if exact
-        else FOLLOWING_SETTINGS.accuracy * abs(here.w)
+        else FOLLOWING_SETTINGS.accuracy * abs(step.w)
     )
     if (
-        left <= allowed
-        or here.step_length <= FOLLOWING_SETTINGS.final_step_over_rounding * here.rounding_error
+        remainder <= allowed
+        or step.step_length <= FOLLOWING_SETTINGS.final_step_over_rounding * step.rounding_error
     ):
-        return max(here.rounding_error, min(left, here.step_length))
+        return max(step.rounding_error, min(remainder, step.step_length))
     return math.inf
 
 
 @compiled
-def store_root(track: Track, i: int, k: int, mate: int, last: CorrectedEigenvalue) -> bool:
-    """Writes the eigenvalue with index k of point i to the track, and its conjugate to index `mate` unless
-    `mate` is negative. last: the last Newton step of the eigenvalue.
+def store_root(track: Track, i: int, k: int, conjugate: int, step: CorrectedEigenvalue) -> bool:
+    """Writes the eigenvalue with index k of point i to the track, and its conjugate to index `conjugate`
+    unless `conjugate` is negative. step: the last Newton step of the eigenvalue.
 
     Returns False if a complex pair has become real. The error of eigenvalue k must already be in the track.
     """
     w = track.w[i]
     slope = track.slope[i]
     error = track.error[i]
-    w[k] = last.w
-    slope[k] = last.slope
-    if mate >= 0:
+    w[k] = step.w
+    slope[k] = step.slope
+    if conjugate >= 0:
         if not w[k].imag > ROOT_NEWTON_SETTINGS.real_tolerance * abs(w[k]):
             return False
-        w[mate] = w[k].conjugate()
-        slope[mate] = slope[k].conjugate()
-        error[mate] = error[k]
+        w[conjugate] = w[k].conjugate()
+        slope[conjugate] = slope[k].conjugate()
+        error[conjugate] = error[k]
     return True
 
 
@@ -150,13 +150,13 @@ def _iterate_to_convergence(
     first: result of the first step. crowding, exact: as in `converged_error`. rod: coefficients of the rod.
     direction: d(F, nu, c2, gamma3)/dp. The error is inf without convergence.
     """
-    here = first
+    step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
-        error = converged_error(here, crowding, exact)
+        error = converged_error(step, crowding, exact)
         if error < math.inf:
-            return here, error
-        here = correct_eigenvalue(here.w, rod, direction)
-    return here, math.inf
+            return step, error
+        step = correct_eigenvalue(step.w, rod, direction)
+    return step, math.inf
 
 
 @compiled
@@ -170,9 +170,11 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
-        least = ROOT_SETTINGS.double_root_correction * abs(w[k])
+        min_distance = ROOT_SETTINGS.double_root_correction * abs(w[k])
         for j in range(k):
-            if not abs(w[k] - w[j]) > max(ROOT_SETTINGS.same_root_distance * (error[k] + error[j]), least):
+            if not abs(w[k] - w[j]) > max(
+                ROOT_SETTINGS.same_root_distance * (error[k] + error[j]), min_distance
+            ):
                 return False
     return True
 
@@ -189,18 +191,18 @@ def _refine_all_eigenvalues(
     error = track.error[i]
     order = track.descending_order[i]
     m = len(w)
-    mate = np.empty(m, np.int64)
-    find_conjugates(guess, mate)
+    conjugate = np.empty(m, np.int64)
+    find_conjugates(guess, conjugate)
     # All eigenvalues take one step before further steps: the crowding of a root needs its neighbours.
     first = [CorrectedEigenvalue(0j, 0j, math.inf, math.inf, 0.0, 0.0) for _ in range(m)]
     for k in range(m):
-        if guess[k].imag != 0 and mate[k] < 0:
+        if guess[k].imag != 0 and conjugate[k] < 0:
             return False
         if guess[k].imag >= 0:
             first[k] = correct_eigenvalue(guess[k], rod, direction)
             w[k] = first[k].w
-            if mate[k] >= 0:
-                w[mate[k]] = w[k].conjugate()
+            if conjugate[k] >= 0:
+                w[conjugate[k]] = w[k].conjugate()
     sort_descending(w, order)
     for rank in range(m):
         k = order[rank]
@@ -208,7 +210,7 @@ def _refine_all_eigenvalues(
             last, error[k] = _iterate_to_convergence(
                 first[k], curvature_estimate(w, k), rank <= modes, rod, direction
             )
-            if not store_root(track, i, k, mate[k], last):
+            if not store_root(track, i, k, conjugate[k], last):
                 return False
     sort_descending(w, order)
     return are_distinct_roots(w, error)
@@ -226,15 +228,15 @@ def follow_eigenvalues(
     leading `modes` eigenvalues converge to rounding error.
     """
     guess = track.w[0].copy()
-    decided = np.empty(len(guess), np.int64)
+    partner = np.empty(len(guess), np.int64)
     for i in range(len(p)):
         F, nu, c2, gamma3 = coefficients[i]
         rod = Coefficients(F, nu, c2, gamma3)
         if i > 0:
-            predict_eigenvalues(track, i, p, guess, decided)
+            predict_eigenvalues(track, i, p, guess, partner)
             for k in range(len(guess)):
-                if decided[k] >= 0:
-                    two = (k, decided[k])
+                if partner[k] >= 0:
+                    two = (k, partner[k])
                     set_two_guesses(track.w[i - 1], two, taylor_parabola_roots(guess[k], rod), guess)
             track.descending_order[i] = track.descending_order[i - 1]
         if not _refine_all_eigenvalues(track, i, guess, modes, rod, direction):

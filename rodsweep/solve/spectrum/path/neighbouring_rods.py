@@ -65,10 +65,10 @@ class NeighbouringRods:
     def coefficients(self) -> Array:
         """(F, nu, c2, gamma3) of every rod, (n, 4), identical to `Rod.coefficients`."""
         columns = coefficients_of({**self.path.rod.values, self.path.name: self.values})
-        table = np.empty((len(self), len(columns)))
+        coefficients = np.empty((len(self), len(columns)))
         for number, column in enumerate(columns):
-            table[:, number] = column
-        return table
+            coefficients[:, number] = column
+        return coefficients
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,42 +85,42 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     """The leading `request.modes` eigenvalues of all rods, as far as eigenvalues can be followed from rod to
     rod and proved complete; `is_solved` is False for every other rod.
     """
-    began = time.perf_counter()
+    start_time = time.perf_counter()
     n = len(rods)
     columns = _unsolved_fields(n, request.modes)
-    solved = np.zeros(n, np.bool_)
+    is_solved = np.zeros(n, np.bool_)
     start = 0
-    patience = 1
+    stride = 1
     while start < n:
-        found = _followed_eigenvalues(rods, start, request)
-        if found is None:
+        followed = _followed_eigenvalues(rods, start, request)
+        if followed is None:
             # If no proof succeeds, for example without a bound, following is tried less and less often.
-            start += patience
-            patience *= 2
+            start += stride
+            stride *= 2
             continue
-        here = slice(start, start + len(found.is_accepted))
-        columns["eigenvalues"][here] = found.w
-        columns["error_estimate"][here] = errors_with_rounding(found.w, found.error, rods.path.rod)
-        columns["unstable_count"][here] = found.unstable_count
-        columns["certified"][here] = True
-        solved[here] = found.is_accepted
-        start = here.stop
-        patience = 1
-    seconds = np.full(n, (time.perf_counter() - began) / max(1, int(solved.sum())))
-    return FollowedSpectra(Spectrum(seconds=seconds, **columns), solved)
+        indices = slice(start, start + len(followed.is_accepted))
+        columns["eigenvalues"][indices] = followed.w
+        columns["error_estimate"][indices] = errors_with_rounding(followed.w, followed.error, rods.path.rod)
+        columns["unstable_count"][indices] = followed.unstable_count
+        columns["certified"][indices] = True
+        is_solved[indices] = followed.is_accepted
+        start = indices.stop
+        stride = 1
+    seconds = np.full(n, (time.perf_counter() - start_time) / max(1, int(is_solved.sum())))
+    return FollowedSpectra(Spectrum(seconds=seconds, **columns), is_solved)
 
 
 def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
     """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
-    whole = np.zeros(n, np.int64)
+    zeros = np.zeros(n, np.int64)
     return {
         "eigenvalues": np.full((n, modes), COMPLEX_NAN),
         "error_estimate": np.full((n, modes), np.nan),
-        "unstable_count": whole - 1,
+        "unstable_count": zeros - 1,
         "certified": np.zeros(n, np.bool_),
-        "elements": whole.copy(),
-        "order": whole.copy(),
-        "status": whole + SpectrumStatus.ok,
+        "elements": zeros.copy(),
+        "order": zeros.copy(),
+        "status": zeros + SpectrumStatus.ok,
         "message": np.full(n, "", object),
     }
 
@@ -131,60 +131,65 @@ def _followed_eigenvalues(
     """Eigenvalues followed from the rod with index `start` as far as possible, with counts; None if the first
     rod fails, or for a uniform rod of nonlinear material, which is solved as an equivalent linear rod."""
     rod = rods.path.rod
-    varies = rods.path.name == "taper"
-    if rod.is_uniform and not (rod.is_uniform_and_linear or varies):
+    has_varying_taper = rods.path.name == "taper"
+    if rod.is_uniform and not (rod.is_uniform_and_linear or has_varying_taper):
         return None  # the linear rod to which uniform rubber is equivalent has the closed form and its proof
-    if varies or not rod.is_uniform_and_linear:
+    if has_varying_taper or not rod.is_uniform_and_linear:
         return follow_spectra_of_arms(rods.path, rods.path_variables[start:], request)
     seed = _first_eigenvalues(rods.rod_at(start), request)
     if seed is None:
         return None
-    first, complete = seed
+    first, proved_count = seed
     modes = request.modes
-    rest = NeighbouringRods(rods.path, rods.values[start:])
-    track = start_track(first, len(rest))
-    n = follow_eigenvalues(track, rest.coefficients, rest.path_variables, rods.path.direction, modes)
+    later_rods = NeighbouringRods(rods.path, rods.values[start:])
+    track = start_track(first, len(later_rods))
+    n = follow_eigenvalues(
+        track, later_rods.coefficients, later_rods.path_variables, rods.path.direction, modes
+    )
     if n == 0:
         return None
     track = slice_track(track, 0, n)
-    known = _proved_counts_along(rest, track, modes, complete)
-    reached = slice_track(track, 0, len(known))
-    good, unstable = assess_points(reached, known, modes, request.accuracy)
-    return FollowedPoints(*leading_eigenvalues(reached, modes), unstable, good)
+    proved_counts = _proved_counts_along(later_rods, track, modes, proved_count)
+    reached = slice_track(track, 0, len(proved_counts))
+    is_good, unstable_counts = assess_points(reached, proved_counts, modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(reached, modes), unstable_counts, is_good)
 
 
 def _proved_counts_along(
-    rods: NeighbouringRods, track: Track, modes: int, complete: int
+    rods: NeighbouringRods, track: Track, modes: int, first_count: int
 ) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
-    modes: number of requested eigenvalues. complete: number of eigenvalues proved complete at the first
+    modes: number of requested eigenvalues. first_count: number of eigenvalues proved complete at the first
     point. If a proof does not carry the number to the next point, a new count there is tried.
     """
     n = len(track.w)
     coefficients = rods.coefficients[:n]
     p = rods.path_variables[:n]
-    known = np.zeros(n, np.int64)
-    known[0] = complete
-    at = 0
+    proved_counts = np.zeros(n, np.int64)
+    proved_counts[0] = first_count
+    index = 0
     while True:
-        rest = slice_track(track, at, n)
-        at += carry_count(rest, coefficients[at:], p[at:], rods.path.direction, modes, known[at:])
-        if at == n - 1:
+        rest_track = slice_track(track, index, n)
+        index += carry_count(
+            rest_track, coefficients[index:], p[index:], rods.path.direction, modes, proved_counts[index:]
+        )
+        if index == n - 1:
             break
-        gap = widest_gap(track, at + 1, modes)
-        line = float(line_in_gap(track, at + 1, gap)[0]) if gap else 0.0
-        if not gap or count_right_of(line, rods.rod_at(at + 1)).number != gap:
+        gap = widest_gap(track, index + 1, modes)
+        line = float(line_in_gap(track, index + 1, gap)[0]) if gap else 0.0
+        if not gap or count_right_of(line, rods.rod_at(index + 1)).number != gap:
             break
-        at += 1
-        known[at] = gap
-    return known[: at + 1]
+        index += 1
+        proved_counts[index] = gap
+    return proved_counts[: index + 1]
 
 
 def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, complete); None after a failure or without a proof. eigenvalues: eigenvalues to
-    follow, (m,), without unpaired complex eigenvalues. complete: number of eigenvalues proved complete.
+    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: eigenvalues
+    to follow, (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved
+    complete.
     """
     try:
         modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
@@ -197,13 +202,13 @@ def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int
     if search.best is None or search.best.comparison is None or not outcome.certified:
         return None
     w = search.best.candidates.roots.w.copy()
-    complete = search.best.comparison.found_count
-    w = w[: complete + 1 + (complete < len(w) and w[complete].imag > 0)]
+    proved_count = search.best.comparison.found_count
+    w = w[: proved_count + 1 + (proved_count < len(w) and w[proved_count].imag > 0)]
     for k in np.flatnonzero(w.imag > 0):
         if k + 1 == len(w):
-            return w[:k], min(complete, int(k))
+            return w[:k], min(proved_count, int(k))
         w[k + 1] = w[k].conjugate()
-    return w, complete
+    return w, proved_count
 
 
 def warm_up() -> None:

@@ -67,46 +67,48 @@ def start_track(first: Complex, points: int) -> Track:
 
 def slice_track(track: Track, start: int, stop: int) -> Track:
     """The points of a track with indices from `start` to `stop` - 1."""
-    here = slice(start, stop)
-    return Track(track.w[here], track.slope[here], track.error[here], track.descending_order[here])
+    indices = slice(start, stop)
+    return Track(
+        track.w[indices], track.slope[indices], track.error[indices], track.descending_order[indices]
+    )
 
 
 @compiled
-def find_conjugates(w: Complex, mate: NDArray) -> None:
-    """Writes the index of the complex conjugate of each eigenvalue w into `mate`, (m,); -1 for real
+def find_conjugates(w: Complex, conjugate: NDArray) -> None:
+    """Writes the index of the complex conjugate of each eigenvalue w into `conjugate`, (m,); -1 for real
     eigenvalues.
     """
     for k in range(len(w)):
-        mate[k] = -1
+        conjugate[k] = -1
         if w[k].imag != 0:
             for j in range(len(w)):
                 if w[j] == w[k].conjugate():
-                    mate[k] = j
+                    conjugate[k] = j
 
 
 @compiled
-def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, mate: NDArray) -> None:
+def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: NDArray) -> None:
     """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of the
-    partner of each paired eigenvalue into `mate`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change
-    of p.
+    partner of each paired eigenvalue into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step:
+    change of p.
     """
     while True:
-        soonest = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
+        min_steps = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1
         b = -1
         for k in range(len(w)):
             for j in range(k + 1, len(w)):
-                if mate[k] < 0 and mate[j] < 0 and w[k].imag == 0 and w[j].imag == 0:
-                    closing = abs((slope[k] - slope[j]).real * step)
+                if partner[k] < 0 and partner[j] < 0 and w[k].imag == 0 and w[j].imag == 0:
+                    approach = abs((slope[k] - slope[j]).real * step)
                     gap = abs(w[k] - w[j])
-                    if gap < soonest * closing:
-                        soonest = gap / closing
+                    if gap < min_steps * approach:
+                        min_steps = gap / approach
                         a = k
                         b = j
         if a < 0:
             return
-        mate[a] = b
-        mate[b] = a
+        partner[a] = b
+        partner[b] = a
 
 
 @compiled
@@ -117,12 +119,12 @@ def extrapolate_hermite(
 
     steps: distance from the first to the second point, and from the second to the third point.
     """
-    h, ahead = steps
-    t = ahead / h
+    h, next_step = steps
+    t = next_step / h
     difference = values[1] - values[0]
-    cube = (slopes[0] + slopes[1]) * h - 2 * difference
+    cubic_term = (slopes[0] + slopes[1]) * h - 2 * difference
     square = (slopes[0] + 2 * slopes[1]) * h - 3 * difference
-    return values[1] + t * (slopes[1] * h + t * (square + t * cube))
+    return values[1] + t * (slopes[1] * h + t * (square + t * cubic_term))
 
 
 @compiled
@@ -138,19 +140,19 @@ def _pair_sum_and_difference(w: Complex, slope: Complex, k: int, j: int) -> tupl
 
 @compiled
 def _predict_pair(
-    track: Track, i: int, two: tuple[int, int], steps: tuple[float, float]
+    track: Track, i: int, pair: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
-    """Returns (guess, guess, undecided) for the two eigenvalues `two` at point i; the guess with the larger
+    """Returns (guess, guess, undecided) for the two eigenvalues `pair` at point i; the guess with the larger
     real part or frequency comes first.
 
     undecided: whether D must show if the two eigenvalues are real or a complex pair. Both guesses are then
     half the sum. steps: as in `extrapolate_hermite`.
     """
-    k, j = two
+    k, j = pair
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
     # difference are smooth.
     middle, square, m1, s1 = _pair_sum_and_difference(track.w[i - 1], track.slope[i - 1], k, j)
-    before = square
+    previous_square = square
     if i >= 2:
         middle_0, square_0, m0, s0 = _pair_sum_and_difference(track.w[i - 2], track.slope[i - 2], k, j)
         middle = extrapolate_hermite((middle_0, middle), (m0, m1), steps)
@@ -158,53 +160,57 @@ def _predict_pair(
     else:
         middle = middle + m1 * steps[1]
         square = square + s1 * steps[1]
-    if square * before <= 0 or abs(square) < EIGENVALUE_PREDICTION_SETTINGS.undecided_fraction * abs(before):
+    if square * previous_square <= 0 or abs(square) < EIGENVALUE_PREDICTION_SETTINGS.undecided_fraction * abs(
+        previous_square
+    ):
         return complex(middle, 0.0), complex(middle, 0.0), True
     root = cmath.sqrt(complex(square, 0.0))
     return middle + root, middle - root, False
 
 
 @compiled
-def set_two_guesses(w: Complex, two: tuple[int, int], roots: tuple[complex, complex], guess: Complex) -> None:
+def set_two_guesses(
+    w: Complex, pair: tuple[int, int], roots: tuple[complex, complex], guess: Complex
+) -> None:
     """Writes `roots` as the guesses for two eigenvalues, in the order of these eigenvalues in w: real part,
     then frequency.
 
-    two: indices of the two eigenvalues in w and `guess`, (m,) each.
+    pair: indices of the two eigenvalues in w and `guess`, (m,) each.
     """
-    k, j = two
-    one, other = roots
-    if (one - other).real < 0 or (one - other).imag < 0:
-        one, other = other, one
+    k, j = pair
+    first_root, second_root = roots
+    if (first_root - second_root).real < 0 or (first_root - second_root).imag < 0:
+        first_root, second_root = second_root, first_root
     first = (w[k] - w[j]).real > 0 or (w[k] - w[j]).imag > 0
-    guess[k], guess[j] = (one, other) if first else (other, one)
+    guess[k], guess[j] = (first_root, second_root) if first else (second_root, first_root)
 
 
 @compiled
-def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, decided: NDArray) -> None:
+def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, partner: NDArray) -> None:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
     (points,).
 
-    decided: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, decided[k] = j,
+    partner: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, partner[k] = j,
     and both guesses are half the sum.
     """
     w = track.w[i - 1]
     slope = track.slope[i - 1]
-    mate = np.empty(len(w), np.int64)
-    find_conjugates(w, mate)
-    ahead = p[i] - p[i - 1]
-    _pair_meeting_eigenvalues(w, slope, ahead, mate)
-    steps = (p[i - 1] - p[i - 2] if i >= 2 else ahead, ahead)
-    decided[:] = -1
+    conjugate = np.empty(len(w), np.int64)
+    find_conjugates(w, conjugate)
+    next_step = p[i] - p[i - 1]
+    _pair_meeting_eigenvalues(w, slope, next_step, conjugate)
+    steps = (p[i - 1] - p[i - 2] if i >= 2 else next_step, next_step)
+    partner[:] = -1
     for k in range(len(w)):
-        j = mate[k]
+        j = conjugate[k]
         if j < 0 and i >= 2:
             values = (track.w[i - 2, k].real, w[k].real)
             slopes = (track.slope[i - 2, k].real, slope[k].real)
             guess[k] = complex(extrapolate_hermite(values, slopes, steps), 0.0)
         elif j < 0:
-            guess[k] = complex(w[k].real + slope[k].real * ahead, 0.0)
+            guess[k] = complex(w[k].real + slope[k].real * next_step, 0.0)
         elif j > k:
-            one, other, undecided = _predict_pair(track, i, (k, j), steps)
-            set_two_guesses(w, (k, j), (one, other), guess)
+            first_guess, second_guess, undecided = _predict_pair(track, i, (k, j), steps)
+            set_two_guesses(w, (k, j), (first_guess, second_guess), guess)
             if undecided:
-                decided[k] = j
+                partner[k] = j

@@ -71,12 +71,12 @@ class FoldFunction:
 
     def value(self, orbit: Orbit) -> float:
         """The test function at an orbit, from the last corrected tangent."""
-        rises = float(self.null_vectors[-1] / self.matrix.scale.coordinate_unit)
+        parameter_rate = float(self.null_vectors[-1] / self.matrix.scale.coordinate_unit)
         # Near a Hopf point the derivative is proportional to the deflection; their ratio stays regular.
         return (
-            rises * self.matrix.scale.deflection_unit / deflection_of(orbit)
+            parameter_rate * self.matrix.scale.deflection_unit / deflection_of(orbit)
             if self.has_small_cycles
-            else rises
+            else parameter_rate
         )
 
     def set_approximate_vectors(self, tangent: Array) -> None:
@@ -92,14 +92,18 @@ class FoldFunction:
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start_state))
         write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
-        along = orbit.form.parameter_derivative(matrix.scale.parameter_name)
-        shift = phase_right_side(orbit.start_state, along, p.rod, p.node_matrices)
-        closing = matrix.matching_right_sides(closing_residual(change.all_states, p), columns, ends)
-        of_phase = shift * tangent[-1] - row @ change.start_state
-        right = np.array(
-            [*closing, of_phase, 1 - self.border @ matrix.scale.directional_derivative(orbit, tangent)]
+        parameter_derivative = orbit.form.parameter_derivative(matrix.scale.parameter_name)
+        phase_derivative = phase_right_side(orbit.start_state, parameter_derivative, p.rod, p.node_matrices)
+        matching_sides = matrix.matching_right_sides(closing_residual(change.all_states, p), columns, ends)
+        phase_side = phase_derivative * tangent[-1] - row @ change.start_state
+        right_side = np.array(
+            [
+                *matching_sides,
+                phase_side,
+                1 - self.border @ matrix.scale.directional_derivative(orbit, tangent),
+            ]
         )
-        self.null_vectors = tangent + matrix.solve(self.border, right, columns[:, :, 0], 1.0)
+        self.null_vectors = tangent + matrix.solve(self.border, right_side, columns[:, :, 0], 1.0)
 
 
 class TorusFunction:
@@ -150,11 +154,11 @@ class TorusFunction:
         start, end = (
             part[0] + 1j * part[1] for part in (self.null_vectors[:, :n], self.null_vectors[:, -2 - n : -2])
         )
-        right = np.append(
+        right_side = np.append(
             self.multiplier * (orbit.semidiscrete_equations.symmetry @ start), 1 - self.border @ start
         )
-        right[:-1] -= end + ends[0] + 1j * ends[1]
-        change = np.linalg.solve(self.bordered_propagator, right)
+        right_side[:-1] -= end + ends[0] + 1j * ends[1]
+        change = np.linalg.solve(self.bordered_propagator, right_side)
         self.multiplier += complex(change[-1])
         self.null_vectors = self.null_vectors + self.matrix.orbit_changes_at_fixed_parameter(
             _real_and_imaginary(change[:-1]), columns
@@ -168,9 +172,9 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
     last = np.inf
     for number in range(AUGMENTED_SETTINGS.max_corrections):
         function.correct_vectors(orbit)
-        before = value
+        previous_value = value
         value = function.value(orbit)
-        change = abs(value - before)
+        change = abs(value - previous_value)
         if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
             change > SPECIAL_POINT_SETTINGS.converging_step_ratio * last
             and change <= AUGMENTED_SETTINGS.rounding_correction

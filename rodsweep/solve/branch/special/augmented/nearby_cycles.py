@@ -55,7 +55,7 @@ class NearbyCycleSolver:
 
     def _assemble_matrix(self, orbit: Orbit) -> None:
         """Assembles and factorises a new matrix at an orbit, with a new test function. Sets
-        `matrix_distance`, the relative distance of the present cycle from this orbit, to 0."""
+        `matrix_distance`, the relative distance of the current cycle from this orbit, to 0."""
         self.matrix = BorderedMatrix(orbit, self.scale, self._family.workspace)
         self.matrix_distance = 0.0
         self.test_function = self._family.test_function(self.matrix)
@@ -78,34 +78,36 @@ class NearbyCycleSolver:
             report()
             orbit, change = self._corrected_orbit(orbit, condition)
             distance = self.matrix_distance
-            before = self.test_function.value(orbit)
+            previous_value = self.test_function.value(orbit)
             self.test_function.correct_vectors(orbit)
             value = self.test_function.value(orbit)
             # The change of the test function, divided by `slope`, is a distance across the curve.
-            off = max(change, abs(value - before) / slope)
+            change_after_step = max(change, abs(value - previous_value) / slope)
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
-            rate = off / last if last else min(1.0, self.contraction_rate * distance)
+            rate = change_after_step / last if last else min(1.0, self.contraction_rate * distance)
             if last and not self._family.has_small_cycles:
-                measured = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
-                self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, measured)
-            if off * min(rate, 1.0) <= max(
+                contraction = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
+                self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, contraction)
+            if change_after_step * min(rate, 1.0) <= max(
                 tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
             if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
-                if off <= AUGMENTED_SETTINGS.rounding_correction:
+                if change_after_step <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
-                off = 0.0
-            last = off
-        raise Unsolvable(f"Newton's corrections of a cycle do not converge; the last step is {change:.0e}")
+                change_after_step = 0.0
+            last = change_after_step
+        raise Unsolvable(
+            f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
+        )
 
     def _corrected_orbit(self, orbit: Orbit, condition: BorderCondition) -> tuple[Orbit, float]:
-        """(orbit after one correction under `condition` with the present matrix, relative change of the
+        """(orbit after one correction under `condition` with the current matrix, relative change of the
         orbit); raises Unsolvable."""
         step = self.matrix.correction(orbit, self.border, condition.residual(orbit))
         change = max(relative_change(orbit, step[:-1]), abs(step[-1]) / self.scale.coordinate_unit)
         if not change <= ORBIT_NEWTON_SETTINGS.max_relative_step:
-            raise Unsolvable("Newton's corrections find no cycle of the branch near their starting point")
+            raise Unsolvable("Newton's method for the cycle finds no cycle of the branch near its start")
         self.matrix_distance += change
         return moved_orbit(orbit, self.scale.parameter_name, step), change
