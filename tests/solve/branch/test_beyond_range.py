@@ -1,7 +1,8 @@
 """Branches that leave the range and come back, and branches that enter it from Hopf points beyond.
 
-Fig. 2c's rod k1 = 200 has Hopf points at F = 49.758 and 155.600, joined by a branch with a fold at 199.160. The
-branch of the rubber rod begins at F = 108.306, turns at a fold at F = 77.690 and is stable from there on.
+Fig. 2c's rod k1 = 200 has Hopf points at F = 49.758 and 155.600, joined by a branch with a fold at F =
+199.160. The branch of the rubber rod begins at F = 108.306, turns at a fold at F = 77.690 and is stable from
+there on.
 """
 
 from dataclasses import replace
@@ -85,7 +86,9 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
         pytest.param([160.0, 170.0, 180.0], [3, 3, 3], id="only below: the straight rod is stable again"),
     ],
 )
-def test_cycles_on_branches_from_hopf_points_beyond_the_range_are_stable_states(values, expected, within_only):
+def test_cycles_on_branches_from_hopf_points_beyond_the_range_are_stable_states(
+    values, expected, within_only
+):
     assert states(FIG_2C, values) == expected
     within_only(True)
     assert 2 not in states(FIG_2C, values)
@@ -109,9 +112,14 @@ def test_branches_that_do_not_come_back_are_the_same_to_the_last_bit(within_only
         within_only(True)
         two = followed(FIG_2C, start, stop)
         assert two.followed_range == (start, stop)
-        assert one.followed_range == (start, pytest.approx(200 * (1 - branches.BRANCH_SETTINGS.crushing_margin)))
+        assert one.followed_range == (
+            start,
+            pytest.approx(200 * (1 - branches.BRANCH_SETTINGS.crushing_margin)),
+        )
         with np.printoptions(floatmode="unique"):
-            assert [repr(curve.points) for curve in one.curves] == [repr(curve.points) for curve in two.curves]
+            assert [repr(curve.points) for curve in one.curves] == [
+                repr(curve.points) for curve in two.curves
+            ]
         for mine, other in zip(one.curves, two.curves, strict=True):
             assert repr(mine.special_points) == repr(other.special_points)
 
@@ -143,8 +151,7 @@ def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
 
 
 def test_a_narrow_diagram_equals_the_part_of_a_wide_one():
-    """Random rods near the first fold of their Hopf curves; three of them have cycles in the narrow range only
-    by branches from beyond."""
+    """Random rods near the first fold of their Hopf curves, with ranges that contain no fold."""
     rng = np.random.default_rng(11)
     for k1, gamma3 in zip(rng.uniform(100, 108, 3), rng.uniform(0.05, 0.08, 3), strict=True):
         rod = Rod(F=0.0, k1=float(k1), k2=6e3, gamma3=float(gamma3))
