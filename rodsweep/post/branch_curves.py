@@ -115,11 +115,9 @@ def branch_ends(view: View) -> ParameterRange:
 
 
 class RodBranches:
-    """Branches of cycles of one rod, and ranges of the parameter in which states of the rod are stable.
-
-    rod: index among the points of the file. curves: branches whose special points are all stored.
-    hidden_count: number of the remaining branches.
-    """
+    """Branches of cycles of one rod, and ranges of the parameter in which states of the rod are stable. rod:
+    index among the points of the file. curves: branches whose special points are all stored. hidden_count:
+    number of the remaining branches."""
 
     def __init__(self, view: View, rod: int = 0):
         self.view = view
@@ -165,9 +163,7 @@ class RodBranches:
 
     def straight_ranges(self, ends: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
         """Returns (stable, unstable): ranges within `ends` in which the straight rod is stable, or unstable.
-
-        Both lists are empty if special points of some branch are not stored.
-        """
+        Both lists are empty if special points of some branch are not stored."""
         intervals = [] if self.hidden_count else self.straight_pieces(ends)
         stable, unstable = ([(a, b) for a, b, value in intervals if value == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)

@@ -42,6 +42,7 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
+from rodsweep.solve.branch import branches
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
@@ -75,6 +76,7 @@ ROUNDING = 1e-11
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
 BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 STRONGLY_UNSTABLE = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
+FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
     ("INTEGRATOR_SETTINGS", "relaxation_duration_ratio"),
@@ -108,6 +110,14 @@ def branch_answer(
     return answer
 
 
+@contextmanager
+def within_range_only() -> Iterator[None]:
+    """Turns the search for branches beyond the range off."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(branches, "regions_beyond", lambda *_: [])
+        yield
+
+
 def small_branches(accuracy: float) -> Answer:
     return branch_answer(WITH_FOLD, 60.0, 110.0, accuracy)
 
@@ -117,8 +127,9 @@ def lopsided_branches(accuracy: float) -> Answer:
 
 
 def branch_of_legs(accuracy: float) -> Answer:
-    """Cycles with multipliers of 1e20, whose orbits are divided into legs."""
-    return branch_answer(STRONGLY_UNSTABLE, 181.0, 182.8, accuracy)
+    """Cycles with multipliers of 1e20, whose orbits are divided into legs; no branches from beyond."""
+    with within_range_only():
+        return branch_answer(STRONGLY_UNSTABLE, 181.0, 182.8, accuracy)
 
 
 @cache
@@ -130,8 +141,14 @@ def fold() -> Any:
 
 
 def detached_branch(accuracy: float) -> Answer:
-    """The branch through a known fold, whose Hopf points lie outside the range."""
-    return branch_answer(WITH_FOLD, 85.3, 85.5, accuracy, (fold(),))
+    """The branch through a known fold, whose Hopf points lie outside the range; not followed from there."""
+    with within_range_only():
+        return branch_answer(WITH_FOLD, 85.3, 85.5, accuracy, (fold(),))
+
+
+def branch_from_beyond(accuracy: float) -> Answer:
+    """The branch between two Hopf points, at F = 49.76 and 155.6, that both lie outside the range."""
+    return branch_answer(FIG_2C, 160.0, 180.0, accuracy)
 
 
 def curve_of_folds(accuracy: float) -> Answer:
@@ -489,6 +506,7 @@ class Case(NamedTuple):
 
 BRANCH = Case(small_branches, 1e-6, 1e-8)
 DETACHED = Case(detached_branch, 1e-6, 1e-8)
+BEYOND = Case(branch_from_beyond, 1e-5, 1e-7)
 LOPSIDED = Case(lopsided_branches, 1e-4, 1e-6)
 CURVE = Case(curve_of_folds, 1e-7, 1e-7)
 HOPF = Case(coefficients, 1e-6, 1e-11)
@@ -525,6 +543,7 @@ CASES = {
     "BRANCH_ERROR_SETTINGS": BRANCH,
     "BRANCH_END_SETTINGS": LOPSIDED,
     "DETACHED_BRANCH_SETTINGS": DETACHED,
+    "BEYOND_RANGE_SETTINGS": BEYOND,
     "ASYMMETRIC_START_SETTINGS": LOPSIDED,
     "BRANCH_START_SETTINGS": BRANCH,
     "BRANCH_SETTINGS": BRANCH,

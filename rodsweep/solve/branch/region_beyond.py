@@ -41,9 +41,11 @@ class BeyondRangeSettings:
     force."""
     max_cycles: int = 200
     """Maximum number of cycles on all branches beyond one end of the range."""
+    work_ratio: float = 1.0
+    """Limit of the work beyond one end of the range, divided by the work on the branches within the range."""
     min_work_limit: float = 100.0
     """Smallest limit of the work beyond one end of the range, in `WORK_UNIT`: some seconds, ten times the
-    work on a usual branch. The limit is larger where the branches within the range needed more work."""
+    work on a usual branch. A range without a Hopf point has no branches of its own."""
 
 
 BEYOND_RANGE_SETTINGS = BeyondRangeSettings()
@@ -69,8 +71,9 @@ class RegionBeyond:
 
     def __post_init__(self) -> None:
         self.followed_to = self.limits.coordinate_range[self.index]
-        work = self.limits.workspace.work
-        self.work_left = max(work, WORK_UNIT * BEYOND_RANGE_SETTINGS.min_work_limit)
+        settings = BEYOND_RANGE_SETTINGS
+        within = settings.work_ratio * self.limits.workspace.work
+        self.work_left = max(within, WORK_UNIT * settings.min_work_limit)
         self._add_hopf_points()
 
     @property

@@ -15,6 +15,8 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
+from rodsweep.post.summary.phase_diagram import phase_diagram_summary
+from rodsweep.results.file.view import read_view
 from rodsweep.results.layouts.phase_diagram import CYCLE_CURVE_ENDS
 from rodsweep.solve.branch import coexistence
 from rodsweep.solve.branch.bordered.condition import BorderCondition
@@ -324,13 +326,61 @@ phase_diagram: {{cycles: true, certify: false}}
 """
 
 
-def test_where_no_stable_state_is_known_is_listed(diagram):
+@pytest.fixture(scope="module")
+def beyond(diagram):
     """Both branches leave the range with unstable cycles, and the first one turns back beyond it."""
     diagram.write("beyond.yaml", BEYOND.format(forces=[100, 110, 120]))
-    assert diagram("run", "beyond.yaml", "-o", "beyond.h5").returncode == 0
-    told = " ".join(diagram("show", "beyond.h5").stdout.split())
-    assert "no stable state known: at grid points of 2 of 2 rows, F = 110, k1 = 322.11 to 322.2" in told
-    diagram.write("wider.yaml", BEYOND.format(forces=[50, 100, 110, 120]))
-    assert diagram("run", "wider.yaml", "-o", "wider.h5").returncode == 0
-    with h5py.File(diagram.directory / "wider.h5") as file:
+    run = diagram("run", "beyond.yaml", "-o", "beyond.h5")
+    assert run.returncode == 0, run.stderr
+    return diagram
+
+
+def test_a_narrow_diagram_has_the_stable_states_of_a_wide_one(beyond):
+    beyond.write("wider.yaml", BEYOND.format(forces=[50, 100, 110, 120]))
+    assert beyond("run", "wider.yaml", "-o", "wider.h5").returncode == 0
+    with h5py.File(beyond.directory / "wider.h5") as file:
         assert file["stable_states"][...].reshape(2, -1)[:, 1:].tolist() == [[3, 2, 3]] * 2
+    with h5py.File(beyond.directory / "beyond.h5") as file:
+        assert file["stable_states"][...].reshape(2, -1).tolist() == [[3, 2, 3]] * 2
+        assert file["cycle_followed_from"][...].ravel().tolist() == [0, 0]
+        assert file["cycle_followed_to"][...].ravel() == pytest.approx([180, 180])
+    told = " ".join(beyond("show", "beyond.h5").stdout.split())
+    assert "branches that may enter the range are followed down to F = 0 and up to 180; cycles are" in told
+
+
+def test_two_ranks_follow_the_same_branches_beyond_the_range(beyond):
+    run = beyond("run", "beyond.yaml", "-o", "two.h5", ranks=2)
+    assert run.returncode == 0, run.stderr
+    assert same(content(beyond.directory / "two.h5"), content(beyond.directory / "beyond.h5"))
+
+
+KILL_BEYOND = """
+import os
+from rodsweep.solve.branch import branch_search
+
+followed = []
+
+def follow_or_die(entry, limits, follow=branch_search.follow_from_range_end):
+    if followed:
+        os._exit(9)
+    followed.append(entry)
+    return follow(entry, limits)
+
+branch_search.follow_from_range_end = follow_or_die
+"""
+
+
+def test_a_run_killed_on_a_branch_from_beyond_resumes_to_the_same_file(beyond):
+    """The first row is kept, the second one is killed."""
+    assert beyond("run", "beyond.yaml", "-o", "killed.h5", patch=KILL_BEYOND).returncode == 9
+    again = beyond("run", "beyond.yaml", "-o", "killed.h5")
+    assert again.returncode == 0, again.stderr
+    assert "1 of 2 points to do, 1 kept" in again.stdout
+    assert same(content(beyond.directory / "killed.h5"), content(beyond.directory / "beyond.h5"))
+
+
+def test_where_no_stable_state_is_known_is_listed(beyond):
+    view = read_view(beyond.directory / "beyond.h5")
+    view.variables["stable_states"][..., 1] = StableStates.neither_known
+    told = phase_diagram_summary(view, view.variables["status"] >= 0).answer
+    assert "no stable state known: at grid points of 2 of 2 rows, F = 110, k1 = 322.11 to 322.2" in told

@@ -1,0 +1,161 @@
+"""Branches that leave the range and come back, and branches that enter it from Hopf points beyond.
+
+Fig. 2c's rod k1 = 200 has Hopf points at F = 49.758 and 155.600, joined by a branch with a fold at F =
+199.160. The branch of the rubber rod begins at F = 108.306, turns at a fold at F = 77.690 and is stable from
+there on.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from rodsweep.model.material.build import Build
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch import branches, region_beyond
+from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branches import solve_branches
+from rodsweep.solve.branch.coexistence import solve_coexistence, stability_intervals
+from rodsweep.solve.branch.special.special_point import SpecialKind
+from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
+from rodsweep.solve.changes.diagram.rows import RowRequest
+
+FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
+RUBBER = Rod(F=0.0, k1=322.11, k2=1e4, gamma3=0.02, build=Build("neo_hookean", "swelling"))
+ACCURACY = 1e-4
+
+
+def followed(rod, start, stop, along="F"):
+    found = solve_branches(rod, BranchRequest(along, start, stop, ACCURACY, False, 500, 50))
+    assert found.status == BranchStatus.ok
+    return found
+
+
+def kinds(curve):
+    return [point.kind.name for point in curve.special_points]
+
+
+def states(rod, values):
+    row = solve_coexistence(rod, RowRequest("F", np.array(values), 1e-8, False, 16, ACCURACY), 64)
+    assert row.status == CoexistenceStatus.ok
+    return row.stable_states.tolist()
+
+
+@pytest.fixture
+def within_only(monkeypatch):
+    """Function that turns the search beyond the range off and on."""
+
+    def switch(off):
+        monkeypatch.undo()
+        if off:
+            monkeypatch.setattr(branches, "regions_beyond", lambda *_: [])
+
+    return switch
+
+
+def at_force(curve, force):
+    """Period and largest tip y of a branch at a force, by interpolation between its cycles."""
+    order = np.argsort([point.at for point in curve.points])
+    at, period, y = np.array([(p.at, p.measures.period, p.measures.tip_y_max) for p in curve.points])[order].T
+    return np.interp(force, at, period), np.interp(force, at, y)
+
+
+def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
+    found = followed(RUBBER, 88.04, 137.56)
+    first, second, back = found.curves
+    assert [kinds(curve) for curve in (first, second)] == [["hopf", "end"]] * 2
+    assert kinds(back) == ["end", "end"]
+    assert [point.at for point in back.special_points] == pytest.approx([88.04, 137.56], rel=1e-12)
+    assert [interval.stability for interval in stability_intervals(back)] == [1]
+    assert found.followed_range == (0.0, pytest.approx(1.5 * 137.56))
+    # On the wide range the same cycles lie beyond the fold of one branch.
+    (wide, *_) = followed(RUBBER, 50.0, 137.56).curves
+    fold = next(i for i, point in enumerate(wide.special_points) if point.kind == SpecialKind.fold)
+    after = wide.special_points[fold].index_of_cycle_before + 1
+    upper = replace(wide, points=wide.points[after:])
+    for force in (100.0, 120.0):
+        assert at_force(back, force) == pytest.approx(at_force(upper, force), rel=3e-3)
+    last, same = back.special_points[-1], wide.special_points[-1]
+    assert abs(last.period / same.period - 1) <= last.period_error + same.period_error
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [
+        pytest.param([60.0, 100.0, 150.0], [2, 2, 2], id="Hopf points on both sides"),
+        pytest.param([160.0, 170.0, 180.0], [3, 3, 3], id="only below: the straight rod is stable again"),
+    ],
+)
+def test_cycles_on_branches_from_hopf_points_beyond_the_range_are_stable_states(
+    values, expected, within_only
+):
+    assert states(FIG_2C, values) == expected
+    within_only(True)
+    assert 2 not in states(FIG_2C, values)
+    assert 3 not in states(FIG_2C, values)
+
+
+def test_a_branch_from_a_hopf_point_close_to_the_range_is_followed_from_the_end_of_the_range():
+    """The first cycle of the branch of a subcritical Hopf point lies within the range."""
+    hopf = 108.306023441
+    above = followed(RUBBER, 80.0, hopf * (1 - 1e-4))
+    assert above.crossings == ()
+    assert sorted(kinds(curve) for curve in above.curves) == [["end", "end"]] * 2
+    stable = [[interval.stability for interval in stability_intervals(curve)] for curve in above.curves]
+    assert sorted(stable) == [[0], [1]]
+
+
+def test_branches_that_do_not_come_back_are_the_same_to_the_last_bit(within_only):
+    for start, stop in ((0.0, 150.0), (0.0, 157.0)):
+        within_only(False)
+        one = followed(FIG_2C, start, stop)
+        within_only(True)
+        two = followed(FIG_2C, start, stop)
+        assert two.followed_range == (start, stop)
+        assert one.followed_range == (
+            start,
+            pytest.approx(200 * (1 - branches.BRANCH_SETTINGS.crushing_margin)),
+        )
+        with np.printoptions(floatmode="unique"):
+            assert [repr(curve.points) for curve in one.curves] == [
+                repr(curve.points) for curve in two.curves
+            ]
+        for mine, other in zip(one.curves, two.curves, strict=True):
+            assert repr(mine.special_points) == repr(other.special_points)
+
+
+def test_branches_enter_a_range_of_a_stiffness_and_of_a_drag():
+    (one,) = followed(replace(FIG_2C, F=85.0), 160.0, 180.0, "k1").curves
+    assert [interval.stability for interval in stability_intervals(one)] == [1]
+    found = followed(Rod(F=60.0, k1=103.0, k2=1e4, gamma3=0.05), 0.04, 0.043, "gamma3")
+    assert found.crossings == ()
+    stable = [[interval.stability for interval in stability_intervals(curve)] for curve in found.curves]
+    assert sorted(stable) == [[0], [1]]
+    assert found.followed_range == pytest.approx((0.04 / 1.5, 0.043 * 1.5))
+
+
+@pytest.mark.parametrize(
+    "limits",
+    [{"min_work_limit": 0.0, "work_ratio": 0.0}, {"max_cycles": 2}],
+    ids=["limit of work", "limit of cycles"],
+)
+def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
+    """The branches within the range are complete; `followed_range` says how far the others were followed."""
+    settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, **limits)
+    monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    found = followed(RUBBER, 88.04, 137.56)
+    assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]] * 2
+    low, high = found.followed_range
+    assert 77.7 < low <= 88.04
+    assert 137.56 <= high < 1.5 * 137.56
+
+
+def test_a_narrow_diagram_equals_the_part_of_a_wide_one():
+    """Random rods near the first fold of their Hopf curves, with ranges that contain no fold."""
+    rng = np.random.default_rng(11)
+    for k1, gamma3 in zip(rng.uniform(100, 108, 3), rng.uniform(0.05, 0.08, 3), strict=True):
+        rod = Rod(F=0.0, k1=float(k1), k2=6e3, gamma3=float(gamma3))
+        wide = states(rod, np.linspace(20.0, 90.0, 29))
+        assert 3 in wide
+        for first, last in ((12, 20), (20, 26)):
+            assert states(rod, np.linspace(20.0, 90.0, 29)[first:last]) == wide[first:last]
