@@ -36,8 +36,7 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
     with team.abort_all_ranks_on_error():
         config, text = team.call_on_first_rank(lambda: load_config(path, request.overrides))
         with refusals_with_file(path):
-            flutter = shared_flutter_forces(config, team, stop)
-            if flutter is None:
+            if (flutter := shared_flutter_forces(config, team, stop)) is None:
                 report_stop(team, stop)
                 return STOPPED_STATUS
             job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
