@@ -23,6 +23,7 @@ from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
 from ..wording import enumeration
 from .answers.answer import Answer
+from .argument_hints import rod_argument_hint
 from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
 from .solving_in_process import solve_in_process
 from .task_keywords import (
@@ -68,12 +69,13 @@ class SoftRod:
     ):
         everything: dict[str, Any] = {**parameters, "arm": arm}
         given = {name: value for name, value in everything.items() if value is not None}
+        material = {"law": law, "section": section, "profile": profile}
         for name in parameters:
             if name not in PARAMETERS:
-                left = [other for other in (*PARAMETERS, "arm") if other not in given]
-                hint = unknown_key_hint(name, left if similar_keys(name, left) else (*PARAMETERS, "arm"))
-                raise InputError(f"a rod has no parameter {name}; {hint}")
-        material = {"law": law, "section": section, "profile": profile}
+                known = (*PARAMETERS, "arm", *material)
+                left = [other for other in known if other not in given]
+                similar = unknown_key_hint(name, left if similar_keys(name, left) else known)
+                raise InputError(f"a rod has no parameter {name}; {rod_argument_hint(name) or similar}")
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")
