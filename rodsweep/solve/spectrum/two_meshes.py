@@ -96,7 +96,22 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
         raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
-    return replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
+    best = replace(best, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best.error_estimate)
+    return replace(best, message=_missed_accuracy_text(problem, request, best))
+
+
+def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, best: Spectrum) -> str:
+    """Which mode misses the requested accuracy by most, by how much, why, and what to change."""
+    sizes = np.abs(best.eigenvalues)
+    relative = best.error_estimate / sizes
+    worst = int(np.argmax(relative))
+    rounding = TWO_MESH_SETTINGS.rounding * (sizes[worst] + _eigenvalue_rounding_scale(problem))
+    cause = "rounding errors" if rounding > request.accuracy * sizes[worst] else "the meshes"
+    reached = float(relative[worst])
+    return (
+        f"mode {worst + 1} has a relative error of {reached:.2e}, limited by {cause}, but the requested "
+        f"accuracy is {request.accuracy:.2e}: use an accuracy above {reached:.2e}, or method: determinant"
+    )
 
 
 def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
