@@ -23,6 +23,7 @@ from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
 from ..wording import enumeration
 from .answers.answer import Answer
+from .argument_hints import rod_argument_hint
 from .keyword_arguments import config_tree, job_of_tree, plain_keyword, plain_value, with_load_in_si
 from .solving_in_process import solve_in_process
 from .task_keywords import (
@@ -68,14 +69,13 @@ class SoftRod:
     ):
         arguments: dict[str, Any] = {**parameters, "arm": arm}
         given_values = {name: value for name, value in arguments.items() if value is not None}
+        material = {"law": law, "section": section, "profile": profile}
         for name in parameters:
             if name not in PARAMETERS:
-                missing = [other for other in (*PARAMETERS, "arm") if other not in given_values]
-                suggestion = unknown_key_hint(
-                    name, missing if similar_keys(name, missing) else (*PARAMETERS, "arm")
-                )
-                raise InputError(f"a rod has no parameter {name}; {suggestion}")
-        material = {"law": law, "section": section, "profile": profile}
+                names = (*PARAMETERS, "arm", *material)
+                missing = [other for other in names if other not in given_values]
+                suggestion = unknown_key_hint(name, missing if similar_keys(name, missing) else names)
+                raise InputError(f"a rod has no parameter {name}; {rod_argument_hint(name) or suggestion}")
         if arm is not None:
             if not isinstance(arm, SlenderArm):
                 raise InputError(f"arm = {short_repr(arm)} is not an arm; write it as in {ARM_EXAMPLE}")

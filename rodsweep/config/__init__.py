@@ -1,6 +1,7 @@
 """Reads a YAML config and validates it into a frozen `Config`. Knows the names of parameters, no physics."""
 
 from .base_config import Config
+from .document.parsing import refusals_with_file
 from .document.reading import load_config
 
-__all__ = ["Config", "load_config"]
+__all__ = ["Config", "load_config", "refusals_with_file"]

@@ -1,8 +1,12 @@
 """Arguments of Python calls that are refused in one sentence."""
 
+from dataclasses import fields
+
 import pytest
 
 import rodsweep as rs
+from rodsweep.api.argument_hints import ARM_ADVICE, ROD_ADVICE
+from rodsweep.model.parameters import PARAMETERS
 
 ROD = {"k1": 200, "k2": 1e4, "gamma3": 1e-4}
 ARM = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
@@ -60,3 +64,45 @@ def test_figures_of_different_tasks_share_no_figure(line):
 def test_methods_refuse_surplus_and_missing_arguments(line, call):
     with pytest.raises(rs.InputError):
         call(line)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "advice"),
+    [
+        ("load_kind", "weight", "the load is given as pressure or force"),
+        ("load_kind", None, "the load is given as pressure or force"),
+        ("taper", 0.5, "a cone has tip_radius"),
+        ("profile", "a.csv", "an arm of several materials has segments"),
+        ("F", 3.0, "the load of an arm is pressure or force"),
+        ("k1", 3.0, r"k1 follows from the quantities of the arm; rs.Rod\(arm=arm, k1=...\)"),
+        ("accuracy", 1e-6, r"accuracy is an option of tasks, as in arm.spectrum\(accuracy=...\)"),
+        ("lenght", "5 cm", "did you mean length"),
+    ],
+)
+def test_what_an_arm_does_not_have_is_refused_with_what_to_write(name, value, advice):
+    arm = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "40 Pa s"}
+    with pytest.raises(rs.InputError, match=f"^unknown key {name}; {advice}"):
+        rs.Arm(**arm | {name: value})
+
+
+@pytest.mark.parametrize(
+    ("name", "advice"),
+    [
+        ("k3", "k3 is the unit of stiffness"),
+        ("gamma2", "gamma2 is the unit of drag"),
+        ("young", r"young belongs to an arm: rs.Rod\(arm=rs.Arm\(young=..., ...\)\)"),
+        ("segments", "segments belongs to an arm"),
+        ("F_max", r"F_max is an option of tasks, as in rod.thresholds\(F_max=...\)"),
+        ("lwa", "did you mean law"),
+        ("secton", "did you mean section"),
+    ],
+)
+def test_what_a_rod_does_not_have_is_refused_with_what_to_write(name, advice):
+    with pytest.raises(rs.InputError, match=f"^a rod has no parameter {name}; {advice}"):
+        rs.Rod(k1=1e4, k2=1e4, gamma3=1e-4, **{name: 1.0})
+
+
+@pytest.mark.parametrize("word", sorted({*ARM_ADVICE, *ROD_ADVICE}))
+def test_advice_is_for_what_is_no_argument(word):
+    known = {field.name for field in fields(rs.Arm)} if word in ARM_ADVICE else set(PARAMETERS)
+    assert word not in known

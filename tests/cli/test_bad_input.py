@@ -33,8 +33,8 @@ SPREAD = {
     "odd bytes": configs.odd_bytes,
 }
 """Kinds of which every case is tried, on one config or the other."""
-NAMED = re.compile(r"rodsweep: ('?c\.yaml|--set |'--set |parameters\.|points\.csv|spectrum\.|limit_cycle\.)")
-"""How a refusal begins: with the file, the override or the key."""
+NAMED = re.compile(r"rodsweep: ('?c\.yaml|--set |'--set )")
+"""How a refusal begins: with the file or the override."""
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +140,28 @@ def test_guards_see_a_solve(run, tmp_path, no_solver):
     )
     assert [end.fault == "" for end in among] == [True, False, True]
     assert the_command(tmp_path, no_solver, "run", "c.yaml").status == MET_SOLVER
+
+
+RODS = "k2: 1.0e4, gamma3: 1.0e-4"
+CHECKED_LATE = {
+    "parameters.F reaches 20000": f"parameters: {{F: [10, 2.0e4], k1: 1.0e4, {RODS}}}",
+    "parameters.F reaches 3000": f"parameters: {{F: [10, 3.0e3], k1: 1.0e4, taper: 0.5, {RODS}}}",
+    "parameters.k1 = -1": f"parameters: {{F: 0, k1: [-1, 5], {RODS}}}",
+    "parameters.taper = 0": f"parameters: {{F: 10, k1: 1.0e4, taper: 0, {RODS}}}",
+    "spectrum.longitudinal": "parameters: {F: 0, k1: .inf, gamma1: 1, k2: 1.0e4, gamma3: 1}\n"
+    "spectrum: {longitudinal: true}",
+    "parameters make a grid": "parameters: {F: {start: 0, stop: 1, num: 10000000}, k1: "
+    "{start: 1, stop: 10, num: 10000000}, k2: {start: 1, stop: 9, num: 10000000}, gamma3: 1}",
+    "parameters.points": "parameters: {points: none.csv}",
+}
+"""Values that are checked after the file was read, by how the refusal goes on."""
+
+
+@pytest.mark.parametrize("says", CHECKED_LATE)
+@pytest.mark.parametrize("command", ["check", "run"])
+def test_what_is_checked_after_reading_is_refused_with_the_name_of_the_file(run, tmp_path, says, command):
+    (tmp_path / "c.yaml").write_text(f"task: spectrum\n{CHECKED_LATE[says]}\n")
+    assert complaint(run(tmp_path, command, "c.yaml"), True, f"c.yaml: {says}") == ""
 
 
 LIST = "task: spectrum\nparameters: {points: points.csv}\n"

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from ...config import load_config
+from ...config import load_config, refusals_with_file
 from ...errors import STOPPED_STATUS
 from ...results.file import provenance
 from ...results.file.creation import FinalVariables
@@ -35,11 +35,11 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
     team = Team()
     with team.abort_all_ranks_on_error():
         config, text = team.call_on_first_rank(lambda: load_config(path, request.overrides))
-        flutter = shared_flutter_forces(config, team, stop)
-        if flutter is None:
-            report_stop(team, stop)
-            return STOPPED_STATUS
-        job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
+        with refusals_with_file(path):
+            if (flutter := shared_flutter_forces(config, team, stop)) is None:
+                report_stop(team, stop)
+                return STOPPED_STATUS
+            job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
         team.require_on_all_ranks(require_solvers)
         return _RankRun(team, job, output, request, stop).run()
 

@@ -13,15 +13,26 @@ P = ParamSpec("P")
 R = TypeVar("R")
 
 
-def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Decorator: wrong arguments of a call raise an InputError that quotes `example`, not a TypeError."""
+def no_hint(name: str) -> str:
+    """No advice on any argument."""
+    return ""
+
+
+def refusing_wrong_arguments(
+    example: str, hint: Callable[[str], str] = no_hint
+) -> Callable[[Callable[P, R]], Callable[P, R]]:
+    """Decorator: wrong arguments of a call raise an InputError that quotes `example`, not a TypeError.
+
+    hint: function from the name of an unknown argument to advice; where the advice is empty, similar names
+    are suggested.
+    """
 
     def decorated(function: Callable[P, R]) -> Callable[P, R]:
         parameters = signature(function)
 
         @wraps(function)
         def call(*values: P.args, **named: P.kwargs) -> R:
-            require_arguments_of_signature(parameters, example, values, named)
+            require_arguments_of_signature(parameters, example, values, named, hint)
             return function(*values, **named)
 
         return call
@@ -30,12 +41,16 @@ def refusing_wrong_arguments(example: str) -> Callable[[Callable[P, R]], Callabl
 
 
 def require_arguments_of_signature(
-    allowed: Signature, example: str, values: tuple[object, ...], named: Mapping[str, object]
+    allowed: Signature,
+    example: str,
+    values: tuple[object, ...],
+    named: Mapping[str, object],
+    hint: Callable[[str], str] = no_hint,
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
     allowed: signature of the function. example: correct call, for the message. values, named: positional and
-    keyword arguments of the call.
+    keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
     """
     parameters = list(allowed.parameters.values())
     positional = [p.name for p in parameters if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
@@ -48,6 +63,8 @@ def require_arguments_of_signature(
         if name in positional[: len(values)]:
             raise InputError(f"{name} is given twice; write it as in {example}")
         if not takes_any_keyword and name not in names:
+            if hint(name):
+                raise InputError(f"unknown key {name}; {hint(name)}")
             raise unknown_argument_error(name, [word for word in names if word != "self"])
     given_names = {*positional[: len(values)], *named}
     for parameter in parameters:

@@ -4,6 +4,8 @@ Every parser event is checked before any value is built: no text can run code or
 message is one sentence with the line and column in the file.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,17 @@ TABLE_ENDINGS = (".csv", ".tsv")
 """Suffixes of files with lists of points, and of the tables that `rodsweep export` writes."""
 MAX_DEPTH = 20
 """Maximum depth of nested lists and mappings in a config."""
+
+
+@contextmanager
+def refusals_with_file(path: Path) -> Iterator[None]:
+    """Names the config file `path` at the beginning of refusals raised within the context, of values that are
+    checked after the file was read."""
+    try:
+        yield
+    except InputError as error:
+        named = InputError(f"{printable_name(path)}: {error}")
+        raise (named.marked_collective() if error.collective else named) from None
 
 
 def read_config_text(path: Path) -> str:

@@ -86,6 +86,13 @@ class Profile:
             coefficients.append(np.stack([from_lower, from_upper], axis=1))
         return np.ascontiguousarray(np.concatenate(coefficients, axis=2).transpose(0, 3, 1, 2))
 
+    def with_factors_above(self, name: str, least: float) -> "Profile":
+        """The profile whose factors of the stiffness or drag `name` are at least `least` in every row, and
+        thus everywhere, because factors between two rows lie between the factors of the rows."""
+        column = FACTOR_NAMES.index(name)
+        rows = (row[:column] + (max(row[column], least),) + row[column + 1 :] for row in self.rows)
+        return Profile(self.u, tuple(rows))
+
     def factors_at(self, u: Array) -> Array:
         """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
         break."""

@@ -100,8 +100,23 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
         raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
     # If rounding dominates, the error may exceed the difference between the two meshes.
-    return replace(
+    best_spectrum = replace(
         best_spectrum, error_estimate=TWO_MESH_SETTINGS.mesh_error_factor * best_spectrum.error_estimate
+    )
+    return replace(best_spectrum, message=_missed_accuracy_text(problem, request, best_spectrum))
+
+
+def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, spectrum: Spectrum) -> str:
+    """Which mode misses the requested accuracy by most, by how much, why, and what to change."""
+    sizes = np.abs(spectrum.eigenvalues)
+    relative_errors = spectrum.error_estimate / sizes
+    index = int(np.argmax(relative_errors))
+    rounding = TWO_MESH_SETTINGS.rounding * (sizes[index] + _eigenvalue_rounding_scale(problem))
+    cause = "rounding errors" if rounding > request.accuracy * sizes[index] else "the meshes"
+    max_error = float(relative_errors[index])
+    return (
+        f"mode {index + 1} has a relative error of {max_error:.2e}, limited by {cause}, but the requested "
+        f"accuracy is {request.accuracy:.2e}: use an accuracy above {max_error:.2e}, or method: determinant"
     )
 
 

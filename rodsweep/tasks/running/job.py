@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config import Config, load_config
+from ...config import Config, load_config, refusals_with_file
 from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
@@ -122,7 +122,9 @@ def job_of_file(path: Path, overrides: tuple[str, ...]) -> Job:
 
     overrides: texts KEY=VALUE that override keys of the config.
     """
-    return job_of_config(path, *load_config(path, overrides))
+    config, text = load_config(path, overrides)
+    with refusals_with_file(path):
+        return job_of_config(path, config, text)
 
 
 def job_of_config(
@@ -137,7 +139,7 @@ def job_of_config(
     values = sum(axis.size for axis in config.parameters.axes.values())  # checked before arrays are made
     if values * BYTES_PER_VALUE > machine_memory():
         raise InputError(
-            f"{path}: the grid has {grid_size(config):.6g} points; the {values:.6g} values on its axes take "
+            f"the grid has {grid_size(config):.6g} points; the {values:.6g} values on its axes take "
             f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
             "memory of this "
             "machine; use fewer values"
@@ -148,13 +150,13 @@ def job_of_config(
     bytes_per_point = layout.bytes_per_point
     if count * bytes_per_point > MAX_FILE_BYTES:
         raise InputError(
-            f"{path}: parameters make a grid of {count:.6g} points, whose results take "
+            f"parameters make a grid of {count:.6g} points, whose results take "
             f"{count * bytes_per_point:.3g} bytes, more than a file can have ({MAX_FILE_BYTES:.3g}); use "
             "fewer values"
         )
     if bytes_per_point > MAX_RECORD_BYTES:
         raise InputError(
-            f"{path}: the results of one point take {bytes_per_point / 1e9:.3g} GB, more than the "
+            f"the results of one point take {bytes_per_point / 1e9:.3g} GB, more than the "
             f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
             "values are stored"
         )

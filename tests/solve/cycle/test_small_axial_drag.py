@@ -17,6 +17,7 @@ from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
+from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, integrable_rod
 
 ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0)
 STIFF = Rod(F=50.0, k1=1e8, k2=1e4, gamma3=1e-8, gamma1=1e-6)
@@ -67,6 +68,25 @@ def test_an_arm_whose_axial_drag_falls_to_little_beats():
     arm = replace(ROD, gamma1=1e-3, build=falling_to(1e-3))
     assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(arm, 1e-8), rel=2e-6)
     assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(replace(ROD, gamma1=1e-14)), rel=1e-2)
+
+
+@pytest.mark.parametrize(("gamma1", "factor"), [(1.0, 1e-9), (1e-3, 1e-9), (1e-9, 1e-3), (1.0, 0.5)])
+def test_no_part_of_an_integrated_arm_has_less_axial_drag_than_can_be_integrated(gamma1, factor):
+    """The drag of the base alone was raised."""
+    arm = replace(ROD, gamma1=gamma1, build=falling_to(factor))
+    integrated = integrable_rod(arm)
+    least = MOTION_MESH_SETTINGS.min_axial_drag
+    u = np.linspace(0.01, 0.99, 50)
+    drags = [
+        rod.gamma1 * rod.build.profile.factors_at(u)[FACTOR_NAMES.index("gamma1")]
+        for rod in (integrated, arm)
+    ]
+    assert (drags[0] >= least * (1 - 1e-12)).all()
+    assert integrated.least_axial_drag == pytest.approx(max(arm.least_axial_drag, least), rel=1e-12)
+    assert integrated.gamma1 == max(gamma1, least)
+    assert (abs(drags[0] - drags[1]) <= least).all()  # what lies between the rows moves little
+    others = [name != "gamma1" for name in FACTOR_NAMES]
+    assert (integrated.build.profile.factors_at(u)[others] == 1).all()
 
 
 def test_a_rubber_arm_beats_at_a_drag_at_which_the_eliminated_form_finds_no_cycle():

@@ -450,6 +450,23 @@ def test_krylov_schur_on_two_meshes_has_the_reference_spectra_within_its_errors(
         assert not result.certified
 
 
+def test_krylov_schur_on_two_meshes_says_which_mode_misses_the_accuracy_and_why():
+    rod = Rod(F=-100.0, k1=1e8, k2=1e6, gamma3=1e-4)
+    result = solve_on_two_meshes(rod, SpectrumRequest(modes=4, accuracy=1e-12, certify=False))
+    assert result.status == SpectrumStatus.accuracy_not_reached
+    said = re.fullmatch(
+        r"mode (\d) has a relative error of (\S+), limited by rounding errors, but the requested accuracy is "
+        r"1.00e-12: use an accuracy above (\S+), or method: determinant",
+        result.message,
+    )
+    relative = result.error_estimate / np.abs(result.eigenvalues)
+    assert int(said[1]) == 1 + np.argmax(relative)
+    assert float(said[2]) == pytest.approx(relative.max(), rel=0.01)
+    better = SpectrumRequest(modes=4, accuracy=1.01 * float(said[3]), certify=False)
+    assert solve_on_two_meshes(rod, better).status == SpectrumStatus.ok
+    assert solve_on_two_meshes(rod, better).message == ""
+
+
 def test_krylov_schur_on_two_meshes_is_sparse_where_elements_are_many():
     rod, request = (
         Rod(F=390.0, k1=1e4, k2=15.0, gamma3=1e-3),

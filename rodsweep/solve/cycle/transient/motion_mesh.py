@@ -53,8 +53,8 @@ class MotionMeshSettings:
     """A smaller rotational drag gamma3 is replaced by this value for the integration; the motion changes by
     1e-6 or less."""
     min_axial_drag: float = 1e-6
-    """A smaller axial drag gamma1 is replaced by this value for the integration; the motion changes by 1e-5
-    or less."""
+    """A smaller axial drag gamma1, anywhere along the arm, is replaced by this value for the integration; the
+    motion changes by 1e-5 or less."""
 
 
 MOTION_MESH_SETTINGS = MotionMeshSettings()
@@ -114,13 +114,19 @@ def coarse_mesh_along_branch(rod: Rod) -> Mesh:
 
 
 def integrable_rod(rod: Rod) -> Rod:
-    """The rod with k1 and k2 of at most MOTION_MESH_SETTINGS.max_stiffness, gamma3 of at least
-    MOTION_MESH_SETTINGS.min_drag and gamma1 of at least MOTION_MESH_SETTINGS.min_axial_drag; a limiting rod
-    (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
+    """The rod with k1 and k2 of at most MOTION_MESH_SETTINGS.max_stiffness and gamma3 of at least
+    MOTION_MESH_SETTINGS.min_drag at the base, and with gamma1 of at least MOTION_MESH_SETTINGS.min_axial_drag
+    everywhere; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
+    gamma1 = max(rod.gamma1, MOTION_MESH_SETTINGS.min_axial_drag)
+    build = rod.build
+    least = MOTION_MESH_SETTINGS.min_axial_drag / gamma1
+    if build.profile is not None and build.relative_least_axial_drag < least:
+        build = replace(build, profile=build.profile.with_factors_above("gamma1", least))
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH_SETTINGS.max_stiffness),
         k2=min(rod.k2, MOTION_MESH_SETTINGS.max_stiffness),
         gamma3=max(rod.gamma3, MOTION_MESH_SETTINGS.min_drag),
-        gamma1=max(rod.gamma1, MOTION_MESH_SETTINGS.min_axial_drag),
+        gamma1=gamma1,
+        build=build,
     )
