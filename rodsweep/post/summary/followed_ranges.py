@@ -30,7 +30,7 @@ def followed_range_text(view: View, done: np.ndarray, along: str, prefix: str) -
 
 def searched_range_line(view: View, computed: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
-    computed: mask of the computed points.
+    computed: mask of the computed points, (...,).
     """
     parameter = followed_parameter(view)
     start, end = branch_ends(view)

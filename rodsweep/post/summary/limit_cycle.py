@@ -59,9 +59,10 @@ def limit_cycle_summary(view: View, computed: np.ndarray) -> SummaryLines:
     numbers = None
     on_torus = computed & view.has_status("torus")
     if on_torus.any():
+        ratio, modulus = (known_range_text(v, name, on_torus) for name in ("modulation_ratio", "multiplier"))
         details.append(
-            "quasiperiodic motions: the unstable cycles inside the tori have a largest |Floquet multiplier| "
-            f"of {known_range_text(v, 'multiplier', on_torus)}"
+            f"quasiperiodic motions: modulated at {ratio} times the frequency of the oscillation; the "
+            f"unstable cycles inside the tori have a largest |Floquet multiplier| of {modulus}"
         )
     if computed.size == 1 and orbit.any():
         answer.insert(1, orbit_line(v, stable=bool(beats.any())))

@@ -79,6 +79,12 @@ CYCLE_VARIABLES = (
         real("multiplier_real", "1", "real part of a nontrivial Floquet multiplier, by descending modulus"),
         real("multiplier_imag", "1", "imaginary part of a nontrivial Floquet multiplier"),
     ),
+    real(
+        "modulation_ratio",
+        "1",
+        "frequency of the modulation of a motion on a torus, divided by the frequency of its oscillation; "
+        "from the integrated motion, with a relative error of up to 0.001",
+    ),
     LEAST_STRETCH,
     integer("periods", "number of returns to the Poincare section during the time integration"),
     *MESH_VARIABLES,

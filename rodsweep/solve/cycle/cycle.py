@@ -100,6 +100,9 @@ class Cycle:
     (MULTIPLIER_LIST_SETTINGS.length,)."""
     trivial_multiplier_error: float = nan
     """Modulus of the difference between the computed trivial multiplier and 1."""
+    modulation_ratio: float = nan
+    """Frequency of the modulation of a motion on a torus, divided by the frequency of its oscillation, from
+    the integrated motion; NaN for other motions."""
     tip: Array | None = None
     """x, y (in L) and theta of the tip at equidistant times over a period, (3, samples)."""
     energy: Array | None = None

@@ -121,7 +121,7 @@ def _solve_cycle_or_raise(
     cycle = _with_motion_data(straight, transient, end, request)
     if decay_reason:
         return replace(cycle, message=decay_reason)
-    cycle = replace(cycle, status=end.status, message=end.message)
+    cycle = replace(cycle, status=end.status, message=end.message, modulation_ratio=end.modulation_ratio)
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
     cycle = _with_cycle_quantities(cycle, end.cycle, request)

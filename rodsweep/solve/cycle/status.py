@@ -39,7 +39,7 @@ class CycleStatus(PointStatus):
     torus = (
         6,
         "quasiperiodic motion on a torus: the cycle inside the torus is unstable by a complex pair of "
-        "Floquet multipliers, and the motion has a second frequency, which the message gives; only the "
+        "Floquet multipliers, and the motion has a second frequency, given by modulation_ratio; only the "
         "multipliers of this cycle are stored",
         True,
     )

@@ -36,6 +36,7 @@ def test_a_torus_is_told_with_its_second_frequency_and_the_cycle_that_it_surroun
     assert c.status.succeeded
     assert "modulated at 0.246 times the frequency of its oscillation" in c.message
     assert "inside the torus has a Floquet multiplier of modulus 1.04" in c.message
+    assert c.modulation_ratio == pytest.approx(ROTATION / (2 * np.pi), rel=1e-3)
     assert c.multiplier == pytest.approx(MULTIPLIER, abs=1e-3)
     assert abs(np.angle(c.multipliers[0])) == pytest.approx(ROTATION, abs=0.1)
     assert c.trivial_multiplier_error < 1e-6

@@ -230,10 +230,9 @@ def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray,
     mask `rods`, (n,) each; NaN for an arm without a Hopf point."""
     is_hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
     first_hopf = np.arange(len(is_hopf)), np.argmax(is_hopf, axis=-1)
-    values, frequency = (
-        np.where(is_hopf.any(axis=-1), view.variables[variable][rods][first_hopf], np.nan)
-        for variable in (name, "crossing_frequency_hz")
-    )
+    has_hopf = is_hopf.any(axis=-1)
+    names = (name, "crossing_frequency_hz")
+    values, frequency = (np.where(has_hopf, view.variables[n][rods][first_hopf], np.nan) for n in names)
     return values, frequency
 
 

@@ -96,7 +96,13 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
                 "unstable cycle inside the torus has a Floquet multiplier of modulus "
                 f"{cycle.largest_multiplier:.3g}"
             )
-            return TransientOutcome(CycleStatus.torus, message, end.return_count, unstable_cycle=cycle)
+            return TransientOutcome(
+                CycleStatus.torus,
+                message,
+                end.return_count,
+                unstable_cycle=cycle,
+                modulation_ratio=ratio,
+            )
     return end
 
 

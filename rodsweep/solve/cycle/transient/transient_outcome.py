@@ -1,6 +1,7 @@
 """Outcome of integrating a motion until its cycle is found (`transient`)."""
 
 from dataclasses import dataclass
+from math import nan
 
 from ..accuracy.cycle_verdict import RefinedCycle
 from ..status import CycleStatus
@@ -10,10 +11,11 @@ from ..status import CycleStatus
 class TransientOutcome:
     """Outcome of integrating a motion. return_count: number of returns of the tip. cycle: the cycle that the
     motion approached, or None. unstable_cycle: the unstable cycle inside the torus, or None if the motion is
-    not on a torus."""
+    not on a torus. modulation_ratio: as in `Cycle`."""
 
     status: CycleStatus
     message: str
     return_count: int
     cycle: RefinedCycle | None = None
     unstable_cycle: RefinedCycle | None = None
+    modulation_ratio: float = nan
