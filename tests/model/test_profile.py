@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.rod import Rod
 
@@ -112,3 +113,19 @@ def test_a_cone_scales_as_its_radius():
     np.testing.assert_allclose(here.nu, 1 - 3 / (100 * 0.75**2))
     np.testing.assert_allclose(here.g, here.nu + 3 * here.c2)
     assert here.gamma2 == 1
+
+
+@pytest.mark.parametrize(
+    "table", [None, Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((0.5,) * 6,) * 2)]
+)
+def test_coefficients_do_not_depend_on_those_computed_before(table):
+    """Factors along the arm are cached, so a changed result must not change the next one."""
+    rod = Rod(F=5.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.7, build=Build(profile=table))
+    u = np.linspace(0.05, 0.95, 10)
+    first = [np.array(part) for part in rod.local_coefficients(u)]
+    for changed in rod.local_coefficients(u):
+        changed[:] = 0.0
+    assert all((a == b).all() for a, b in zip(first, rod.local_coefficients(u), strict=True))
+    by_point = [rod.local_coefficients(u[i : i + 1]) for i in range(len(u))]
+    for a, *each in zip(first, *by_point, strict=True):
+        assert a == pytest.approx(np.concatenate(each), rel=1e-15)
