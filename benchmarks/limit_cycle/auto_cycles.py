@@ -16,7 +16,7 @@ from rodsweep.arrays import Array, Complex
 from rodsweep.bench.limit_cycle.tracking import largest_y_near, state_on_cycle
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.solve.motion.integrator import RunEnding, Trajectory
+from rodsweep.solve.motion.integrator import EndReason, Trajectory
 from rodsweep.solve.orbit.orbit import Orbit
 
 from ..auto import AUTO, run_auto, table_lines
@@ -148,4 +148,4 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
     beam = Beam(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
     y = beam.tip_coordinates(twice[1])[1]
-    return largest_y_near(beam, Trajectory(RunEnding.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    return largest_y_near(beam, Trajectory(EndReason.reached, *twice), 1 + int(np.argmax(y[1:-1])))

@@ -15,7 +15,7 @@ from rodsweep.bench.limit_cycle.default_integrator import (
     petsc_trajectory,
 )
 from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
-from rodsweep.solve.motion.integrator import RunEnding, Trajectory
+from rodsweep.solve.motion.integrator import EndReason, Trajectory
 
 from ..installed import optional_module
 
@@ -53,7 +53,7 @@ def scipy_run(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory
         )
     if not found.success:
         raise ArithmeticError(f"SciPy {method} at {tolerance:g}: {found.message}")
-    return Trajectory(RunEnding.reached, found.t, found.y.T)
+    return Trajectory(EndReason.reached, found.t, found.y.T)
 
 
 def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
@@ -85,7 +85,7 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
     found = solver.solve(np.array([0.0, duration]), z)
     if not found.success:
         raise ArithmeticError(f"CVODE at {tolerance:g}: {found.message}")
-    return Trajectory(RunEnding.reached, found.t, found.y)
+    return Trajectory(EndReason.reached, found.t, found.y)
 
 
 RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)

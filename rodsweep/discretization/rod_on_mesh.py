@@ -21,7 +21,7 @@ from .elements.mesh import Mesh, shape_from_strains
 from .material_on_mesh import jumps_on_mesh, material_at_nodes
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
-from .stresses_at_jumps import interpolate_state_stress, interpolate_stress, stresses_beside_jumps
+from .stresses_at_jumps import interpolate_state_stress, interpolate_stress, stresses_at_both_sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +134,7 @@ class RodOnMesh(ABC):
         nu = broadcast_to_field(c.rest_strain, S)[0]
         (c1, c2, c3) = broadcast_to_field(c.compliance, S)
         density = self._strain_energy_density(nu, c1, c3, S[0], S[2])
-        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True):
             # The energy of the mean stress at a jump is not the mean of the energies of both sides.
             density[..., node] = 0.0
             for (q1, q3), (nu, c1, c3, _, _, weight, _) in zip(sides, numbers, strict=True):
@@ -184,7 +184,7 @@ class RodOnMesh(ABC):
         S = self.stresses(x)
         c = self.nodal_rod
         sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)
-        for node, sides, numbers in zip(c.jumps, stresses_beside_jumps(c, S), c.jump_sides, strict=True):
+        for node, sides, numbers in zip(c.jumps, stresses_at_both_sides(c, S), c.jump_sides, strict=True):
             # The energy must be convex on each side; a section with the mean material does not exist.
             left, right = np.column_stack([numbers[:, :3], sides])
             sections[node] = left

@@ -51,7 +51,7 @@ def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out
         out[3, i] = b.q3
 
 
-def stresses_beside_jumps(rod: NodalRod, S: Array) -> Array:
+def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
     """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
 
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
@@ -75,7 +75,7 @@ def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     S: (3, ..., nodes + 1), with the mean of both sides at a jump.
     """
     fields: Array = S[..., mesh.element_nodes]
-    for node, sides in zip(rod.jumps, stresses_beside_jumps(rod, S), strict=True):
+    for node, sides in zip(rod.jumps, stresses_at_both_sides(rod, S), strict=True):
         index = index_before_jump(int(node), mesh.element_nodes)
         for side, values in enumerate(sides):
             for component, value in zip(JUMPING_COMPONENTS, values, strict=True):
@@ -118,7 +118,7 @@ def interpolate_state_stress(nodal: NodalRod, S: Values, source: Mesh, rod: Rod,
     out = S @ E.T
     target_jumps = jumps_on_mesh(rod, target)
     element = np.searchsorted(source.edges, target.node_positions, side="right") - 1
-    sides_of_jumps = stresses_beside_jumps(nodal, S)
+    sides_of_jumps = stresses_at_both_sides(nodal, S)
     for node, values in zip(nodal.jumps, sides_of_jumps, strict=True):
         for side, side_values in enumerate(values):
             rows = element == _element_behind(source, node) - 1 + side

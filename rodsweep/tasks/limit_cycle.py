@@ -172,7 +172,7 @@ class LimitCycleTask(Task):
         return cycles_cost(self.points, count)
 
     def solver(self) -> Solver:
-        from ..solve.cycle.limit_cycle import CycleStatus, Neighbour, solve_cycle
+        from ..solve.cycle.limit_cycle import CycleStart, CycleStatus, solve_cycle
         from ..solve.cycle.reference_rod import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
@@ -181,10 +181,10 @@ class LimitCycleTask(Task):
         chain_parameter = self.config.chain_parameter if chains else None
         workspace = NewtonWorkspace()
 
-        def solve(index: int, start: "Neighbour | None" = None) -> "Cycle":
+        def solve(index: int, start: "CycleStart | None" = None) -> "Cycle":
             return solve_cycle(self.points.rod(index), request, start, chain_parameter, workspace)
 
-        def solve_from(index: int, start: "Neighbour | None") -> "tuple[Cycle, Neighbour | None]":
+        def solve_from(index: int, start: "CycleStart | None") -> "tuple[Cycle, CycleStart | None]":
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
@@ -193,16 +193,16 @@ class LimitCycleTask(Task):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=ChainedWork(chains, solve_from, Neighbour.from_arrays) if chains else None,
+            chained=ChainedWork(chains, solve_from, CycleStart.from_arrays) if chains else None,
         )
         if self.config.limit_cycle.method == "collocation":
             return by_collocation
         from ..solve.cycle.by_integration import solve_by_integration
-        from ..solve.cycle.status import MarchedStatus
+        from ..solve.cycle.status import IntegrationStatus
 
         return replace(
             by_collocation,
-            statuses=tuple(MarchedStatus),
+            statuses=tuple(IntegrationStatus),
             solve=lambda index: solve_by_integration(self.points.rod(index), request),
         )
 

@@ -116,7 +116,7 @@ function measure() {
 }
 measure()
 """
-"""Measures, for 100 frames of the animation, the distance of the tip from its drawn path."""
+"""CycleMeasures, for 100 frames of the animation, the distance of the tip from its drawn path."""
 
 
 def test_the_tip_of_the_animated_arm_runs_along_its_drawn_path(browser):

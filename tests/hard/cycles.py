@@ -14,7 +14,7 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.solve.cycle.accuracy.cycle_verdict import RefinedCycle
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
-from rodsweep.solve.cycle.neighbour import Neighbour, cycle_from_neighbour
+from rodsweep.solve.cycle.neighbour import CycleStart, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, with_matrix_within_distance
@@ -82,7 +82,7 @@ def chain_from(form, accuracy, parameter, ratio, points):
     rod, memory = form.rod, NewtonWorkspace()
     start = orbit_from_hopf(form, hopf_point_below(rod), memory)
     found = refined_cycle(start, accuracy, memory, parameter)
-    neighbour = Neighbour.from_cycle(found, None, parameter, accuracy)
+    neighbour = CycleStart.from_cycle(found, None, parameter, accuracy)
     for _ in range(points):
         rod = replace(rod, **{parameter: ratio * getattr(rod, parameter)})
         try:
@@ -90,7 +90,7 @@ def chain_from(form, accuracy, parameter, ratio, points):
         except Unsolvable:
             return
         yield found
-        neighbour = Neighbour.from_cycle(found, neighbour, parameter, accuracy)
+        neighbour = CycleStart.from_cycle(found, neighbour, parameter, accuracy)
 
 
 def finer(orbit):

@@ -60,7 +60,7 @@ from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
 from rodsweep.solve.hopf.subcritical_hopf import subcritical_hopf_near
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
-from rodsweep.solve.motion.integrator import RunEnding, destroy_integrators, integrator
+from rodsweep.solve.motion.integrator import EndReason, destroy_integrators, integrator
 from rodsweep.solve.motion.time_scheme import TimeScheme
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.point_outcome import FAILURES
@@ -424,7 +424,7 @@ def motion(accuracy: float) -> Answer:
     start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
     destroy_integrators()
     run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
-    if run.ending is not RunEnding.reached:
+    if run.ending is not EndReason.reached:
         return None
     size = float(np.abs(run.states[0]).max())
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}
@@ -565,7 +565,7 @@ CASES = {
     "CURVE_STEP_CONTROL": CURVE,
     "NORMAL_FORM_SETTINGS": HOPF,
     "HOPF_COEFFICIENT_SETTINGS": HOPF,
-    "GENERALISED_HOPF_SETTINGS": BAUTIN_POINT,
+    "BAUTIN_POINT_SETTINGS": BAUTIN_POINT,
     "BOUNDARY_POINT_SETTINGS": BAUTIN_CURVE,
     "PLANE_DIFFERENCE_SETTINGS": BAUTIN_CURVE,
     "BAUTIN_SETTINGS": BAUTIN_CURVE,
@@ -600,7 +600,7 @@ CASES = {
     "STRAIGHT_ROD_SETTINGS": BESIDE_HOPF,
     "AMPLITUDE_EQUATION_SETTINGS": BESIDE_HOPF,
     "TIME_SCHEME_SETTINGS": BESIDE_HOPF,
-    "MARCHING_SETTINGS": INTEGRATED,
+    "INTEGRATION_SETTINGS": INTEGRATED,
     "TORUS_TEST_SETTINGS": TORUS,
     "KRYLOV_SETTINGS": SPECTRA,
     "CANDIDATE_SETTINGS": SPECTRA,

@@ -577,7 +577,7 @@ class Errors:
     extrema_error: float
     multiplier_error: float
 
-class Neighbour:
+class CycleStart:
     def __init__(self, *values):
         self.values = values
 
@@ -600,7 +600,7 @@ class CycleStatus(IntEnum):
     def succeeded(self):
         return self <= CycleStatus.straight
 
-def solve_cycle(point, request, start=None, along=None, workspace=None):
+def solve_cycle(point, request, start=None, parameter=None, workspace=None):
     import numpy as np
     F, k2 = point.F, point.k2
     if os.environ.get("DIE_AT") == f"{F:g} {k2:g}":
@@ -624,11 +624,11 @@ def solve_cycle(point, request, start=None, along=None, workspace=None):
         trivial_multiplier_error=memory, status=status, measures=measures, errors=errors, periods=3,
         second_state=0, subcritical_F=float("nan"),
         elements=1, order=18, seconds=0.01, message="a message", tip=None, energy=None, shape=None,
-        neighbour=Neighbour(memory, F, k2),
+        neighbour=CycleStart(memory, F, k2),
     )
 
 fake = ModuleType("rodsweep.solve.cycle.limit_cycle")
-fake.CycleStatus, fake.Neighbour, fake.solve_cycle = CycleStatus, Neighbour, solve_cycle
+fake.CycleStatus, fake.CycleStart, fake.solve_cycle = CycleStatus, CycleStart, solve_cycle
 fake.CycleRequest = fake.Rod = SimpleNamespace
 sys.modules[fake.__name__] = fake
 reference = ModuleType("rodsweep.solve.cycle.reference_rod")

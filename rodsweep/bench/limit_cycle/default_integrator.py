@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from ...arrays import Array
 from ...discretization.beam import Beam
-from ...solve.motion.integrator import RunEnding, Trajectory, integrator
+from ...solve.motion.integrator import EndReason, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
 
@@ -73,7 +73,7 @@ def petsc_trajectory(family: str, variant: str, tolerance: float, task: Integrat
     newton = TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(task.beam.mesh, scheme).run(task.beam, task.z, task.duration)
-    if run.ending != RunEnding.reached:
+    if run.ending != EndReason.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
     return run
 

@@ -14,7 +14,7 @@ from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.accuracy.refinement import refined_cycle_of_any_period
 from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
-from ...solve.cycle.neighbour import Neighbour
+from ...solve.cycle.neighbour import CycleStart
 from ...solve.orbit.matrix.linearisation import Linearisation
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
 from ...solve.orbit.measures import CyclePath
@@ -92,17 +92,17 @@ class SweptRod:
 
     rod: Rod
     exact_cycle: AccurateCycle
-    neighbours: dict[str, Neighbour | None]
+    neighbours: dict[str, CycleStart | None]
     workspace: NewtonWorkspace
 
 
 def swept_rod(point: Rod, accuracy: float) -> SweptRod:
     """The rod `point` with its reference cycle, and with the solved untimed points of the sweeps. accuracy:
     relative accuracy of the cycles."""
-    neighbours: dict[str, Neighbour | None] = {}
+    neighbours: dict[str, CycleStart | None] = {}
     workspace = NewtonWorkspace()
     for axis in SWEPT_PARAMETERS:
-        neighbour: Neighbour | None = None
+        neighbour: CycleStart | None = None
         for k in range(WARM_UP_POINT_COUNT, 0, -1):
             earlier = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
             neighbour = require_cycle(

@@ -9,7 +9,7 @@ import numpy as np
 from ...model.floquet import min_unstable_count
 from ..cycle.accuracy.cycle_errors import CycleErrors
 from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
-from ..orbit.measures import Measures
+from ..orbit.measures import CycleMeasures
 from .arc_length_step import BranchCycle
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking
@@ -23,7 +23,7 @@ class BranchPoint:
     """Value of the continuation parameter."""
     at_error: float
     """Relative difference of `at` from the parameter value of the exact cycle with the same deflection."""
-    measures: Measures
+    measures: CycleMeasures
     errors: CycleErrors
     """Errors relative to the exact cycle at the same value of the parameter."""
     multiplier: float

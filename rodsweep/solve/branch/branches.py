@@ -23,7 +23,7 @@ from .branch_request import BranchRequest
 from .branch_search import BranchSearch
 from .region_beyond import regions_beyond
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
-from .start.hopf_point import HopfBranchStart, accuracy_beside_hopf_points, hopf_branch_start
+from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
 from .status import BranchStatus
 
 
@@ -113,7 +113,7 @@ def _solve_branches_or_raise(
     if path.is_compliance_path:
         ends = ends[::-1]
         reasons = reasons[::-1]
-    accuracy = accuracy_beside_hopf_points(hopfs, request.accuracy)
+    accuracy = accuracy_near_hopf_points(hopfs, request.accuracy)
     limits = BranchLimits(hopfs, ends, reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
     search = BranchSearch(limits, request.along)
     search.follow_within_range()

@@ -81,7 +81,7 @@ def _first_cycle(orbit: Orbit, name: str, limits: BranchLimits) -> BranchCycle:
     reason: Unsolvable | None = None
     for distance in DETACHED_BRANCH_SETTINGS.first_distances:
         try:
-            return _cycle_behind(tangent, distance, limits)
+            return _cycle_on_other_side(tangent, distance, limits)
         except WorkLimitReached:
             raise
         except Unsolvable as error:
@@ -115,7 +115,7 @@ def _tangent_towards_larger_cycles(orbit: Orbit, name: str, limits: BranchLimits
     return _Tangent(orbit, scale, tangent / unit, derivative / unit)
 
 
-def _cycle_behind(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
+def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimits) -> BranchCycle:
     """The cycle of a branch at the arc length `distance` behind the orbit of `tangent`, with measured errors;
     raises Unsolvable."""
     accuracy = limits.accuracy

@@ -28,7 +28,7 @@ from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
 from .detached_branch import turned_back
 from .start.first_cycle import first_cycle
-from .start.hopf_point import HopfBranchStart, accuracy_beside_hopf_points, hopf_branch_start
+from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,7 +110,7 @@ class RegionBeyond:
     def _entry_from_hopf_point(self, number: int, hopf: HopfBranchStart) -> RangePassage | None:
         """The place where the branch from the Hopf point `hopf` with the index `number` enters the range;
         None as in `entry_after`."""
-        accuracy = accuracy_beside_hopf_points([hopf], self.limits.accuracy)
+        accuracy = accuracy_near_hopf_points([hopf], self.limits.accuracy)
         moves_away = hopf.direction == (-1 if self.index == 0 else 1)
         # The straight rod loses stability by pairs: without the multiplier that is 1 at the Hopf point, which
         # lies outside the unit circle where Re c > 0, the number of unstable multipliers is even.

@@ -68,7 +68,7 @@ class ThresholdSearchResult:
 
 
 @dataclass(frozen=True, slots=True)
-class AxisCrossings:
+class PathCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
     crossings. search_end: end of the search. evaluation_count: number of evaluations of D in the covering."""
 
@@ -78,7 +78,7 @@ class AxisCrossings:
     search_end: SearchEnd
     evaluation_count: int = 0
 
-    def restricted_to(self, search_end: SearchEnd) -> "AxisCrossings":
+    def restricted_to(self, search_end: SearchEnd) -> "PathCrossings":
         """The crossings and gaps up to `search_end`, an earlier end of the search or the current end."""
         if search_end.p == self.search_end.p:
             return self
@@ -167,7 +167,7 @@ def _with_counts(
 
 
 def _with_interval(
-    result: ThresholdSearchResult, crossings: AxisCrossings, interval: tuple[float, float]
+    result: ThresholdSearchResult, crossings: PathCrossings, interval: tuple[float, float]
 ) -> ThresholdSearchResult:
     """`result` with the searched part of the requested `interval`, and why the search ended early."""
     searched = crossings.searched_interval(*interval)
@@ -185,7 +185,7 @@ def _with_interval(
 
 def _crossings(
     problem: PathProblem, ends: tuple[float, float], certify: bool, max_crossings: float
-) -> AxisCrossings:
+) -> PathCrossings:
     """Crossings for path variables between `ends`: by the covering, or for nonuniform arms by counts, proved
     if `certify`. max_crossings: number of crossings after which the search of a nonuniform arm ends."""
     if not isinstance(problem, ArmPath):
@@ -194,10 +194,10 @@ def _crossings(
     crossings, search_end = search.crossings(problem.interval_edges(*ends), max_crossings)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
-    return AxisCrossings(problem.path, crossings, gaps, search_end)
+    return PathCrossings(problem.path, crossings, gaps, search_end)
 
 
-def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings:
+def _crossings_by_covering(path: Path, low: float, high: float) -> PathCrossings:
     """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
@@ -206,7 +206,7 @@ def _crossings_by_covering(path: Path, low: float, high: float) -> AxisCrossings
     zeros, undecided, box_count = cover_with_boxes(boxes, path.origin, path.direction)
     inside = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
     hopfs = [_hopf_crossing(path, zero) for zero in inside]
-    return AxisCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
+    return PathCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
 
 
 def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:

@@ -25,7 +25,7 @@ from .path_problem import PathProblem
 from .sample_interpolation import (
     excludes_exchange,
     has_only_double_eigenvalue,
-    has_only_overtaking,
+    has_only_leader_exchange,
     next_sample_position,
 )
 from .search_range import IntervalQueue, SearchEnd
@@ -168,7 +168,7 @@ class LeaderExchangeSearch:
         """The exchange `change` between two samples, in a list, if no further exchange lies between them;
         else an empty list, after the division of the interval next to the exchange. An interval too short to
         be divided ends the proof."""
-        excludes_others = has_only_double_eigenvalue if change.frequency == 0 else has_only_overtaking
+        excludes_others = has_only_double_eigenvalue if change.frequency == 0 else has_only_leader_exchange
         if excludes_others(left, right):
             return [change]
         length = right.p - left.p

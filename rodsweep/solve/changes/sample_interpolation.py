@@ -69,10 +69,10 @@ def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two:
 
     The leading eigenvalue must be real at both samples, or a pair at both samples.
     """
-    return two_pairs_exchange_lead(left, right) or (not may_hold_two and next_two_stay_behind(left, right))
+    return two_pairs_exchange_lead(left, right) or (not may_hold_two and next_two_stay_below(left, right))
 
 
-def next_two_stay_behind(left: SpectrumSample, right: SpectrumSample) -> bool:
+def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
     between two samples, whether these two eigenvalues are real or a complex pair.
 
@@ -110,7 +110,7 @@ def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> b
     )
 
 
-def has_only_overtaking(left: SpectrumSample, right: SpectrumSample) -> bool:
+def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes show that, between two samples, a real eigenvalue and a pair exchange the lead once
     and no other eigenvalue takes the lead. False if the first eigenvalues at a sample are not one real
     eigenvalue and one pair."""

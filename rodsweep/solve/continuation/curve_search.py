@@ -14,7 +14,7 @@ from typing import Generic, Protocol, TypeVar
 AnyCurve = TypeVar("AnyCurve")
 
 
-class CurveSearchProblem(Protocol[AnyCurve]):
+class CurveTracingProblem(Protocol[AnyCurve]):
     """Interface of `trace_all_curves` to the curves through seed points. A seed point is identified by its
     index."""
 
@@ -48,7 +48,7 @@ class TracedCurves(Generic[AnyCurve]):
 
 
 @dataclass(slots=True)
-class CurveSearch(Generic[AnyCurve]):
+class CurveTracing(Generic[AnyCurve]):
     """State of the search for curves through seed points.
 
     tolerance: a seed point lies on a curve if its distance is at most this number. distances: distance of
@@ -75,12 +75,12 @@ class CurveSearch(Generic[AnyCurve]):
 
 
 def trace_all_curves(
-    problem: CurveSearchProblem[AnyCurve], seeds: Iterable[int], tolerance: float
-) -> CurveSearch[AnyCurve]:
+    problem: CurveTracingProblem[AnyCurve], seeds: Iterable[int], tolerance: float
+) -> CurveTracing[AnyCurve]:
     """State of a search after curves were traced until every seed point lies on a curve or was tried, or
     until the result of a work item is missing. seeds: indices of the seed points. tolerance: a seed point
     lies on a curve if its distance, divided by the length of a row, is at most this number."""
-    search: CurveSearch[AnyCurve] = CurveSearch(tolerance, dict.fromkeys(seeds, math.inf))
+    search: CurveTracing[AnyCurve] = CurveTracing(tolerance, dict.fromkeys(seeds, math.inf))
     tried_seeds: set[int] = set()
     while untraced := [
         i for i, distance in search.distances.items() if distance > tolerance and i not in tried_seeds

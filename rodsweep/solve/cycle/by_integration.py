@@ -29,9 +29,9 @@ from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
-from .marching_settings import MARCHING_SETTINGS
+from .marching_settings import INTEGRATION_SETTINGS
 from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance
-from .status import MarchedStatus
+from .status import IntegrationStatus
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import integrable_rod, motion_mesh
 from .transient.orbit_from_motion import collocation_states
@@ -52,7 +52,7 @@ def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
 
     def failed(cause: str) -> Cycle:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
-        return Cycle(status=MarchedStatus.failed, message=cause)
+        return Cycle(status=IntegrationStatus.failed, message=cause)
 
     return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
 
@@ -65,20 +65,22 @@ class _IntegrationUntilSettled:
         self.limiting_rod = rod
         self.rod = integrable_rod(rod)
         self.mesh = motion_mesh(rod, request.accuracy)
-        tolerance = MARCHING_SETTINGS.local_tolerance_ratio * request.accuracy
+        tolerance = INTEGRATION_SETTINGS.local_tolerance_ratio * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
         self.beam = Beam(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.beam)
         self.return_count = 0
         self.clock = ReturnClock(self.leading_mode.period)
-        self.intervals_per_return = MARCHING_SETTINGS.measurement_intervals_per_return
+        self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
     def cycle(self) -> Cycle:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
         w = straight_rod_stability(
             self.limiting_rod
         ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
-        straight = Cycle(status=MarchedStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag)
+        straight = Cycle(
+            status=IntegrationStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
+        )
         try:
             z = relax_fast_components(
                 self.beam, self.request.amplitude * self.leading_mode.z.real, self.leading_mode.period
@@ -86,9 +88,9 @@ class _IntegrationUntilSettled:
             settled = self._integrate_until_settled(z)
             path = self._measured_path(settled)
             is_nearby_rod = self.rod != self.limiting_rod
-            fraction = MARCHING_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
+            fraction = INTEGRATION_SETTINGS.max_error_ratio_for_limiting_rod if is_nearby_rod else 1.0
             tolerance = self.request.accuracy * fraction
-            for _ in range(MARCHING_SETTINGS.max_comparisons):
+            for _ in range(INTEGRATION_SETTINGS.max_comparisons):
                 settled = self._settled_on_finer_mesh(settled)
                 coarser_path = path
                 path = self._measured_path(settled)
@@ -106,11 +108,11 @@ class _IntegrationUntilSettled:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again, to
         be measured at more times."""
         coarser_beam = self.beam
-        self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + MARCHING_SETTINGS.order_increase)
+        self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + INTEGRATION_SETTINGS.order_increase)
         self.scheme = replace(
-            self.scheme, tolerance=MARCHING_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
+            self.scheme, tolerance=INTEGRATION_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
-        self.intervals_per_return *= MARCHING_SETTINGS.measurement_interval_ratio
+        self.intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_ratio
         self.beam = Beam(self.rod, self.mesh)
         z = self.beam.state_of_stresses(coarser_beam.stresses_on_mesh(self.beam.mesh, settled.state))
         return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
@@ -120,7 +122,7 @@ class _IntegrationUntilSettled:
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
-        distances = ReturnDistances(MARCHING_SETTINGS.return_noise_ratio * self.scheme.tolerance)
+        distances = ReturnDistances(INTEGRATION_SETTINGS.return_noise_ratio * self.scheme.tolerance)
         max_periods = self.request.most_periods
         while self.return_count < max_periods:
             report(lambda: SolvePosition(f"{self.return_count} of at most {max_periods} returns of the tip"))
@@ -140,7 +142,7 @@ class _IntegrationUntilSettled:
             past_moments.extend(self.beam.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
-                raise NoCycleFound(MarchedStatus.straight, "the motion has decayed to rounding error")
+                raise NoCycleFound(IntegrationStatus.straight, "the motion has decayed to rounding error")
             if len(past_moments) <= TRANSIENT_SETTINGS.returns_per_run:
                 continue
             return_count, distance = repetition(list(past_moments))
@@ -150,7 +152,7 @@ class _IntegrationUntilSettled:
             if distance <= tolerance * (1 - distances.contraction_rate):
                 return SettledMotion(z, return_count, step)
         reason = not_settled_text(self.return_count, len(past_moments), distances.last)
-        raise NoCycleFound(MarchedStatus.not_settled, reason)
+        raise NoCycleFound(IntegrationStatus.not_settled, reason)
 
     def _integrate(
         self, z: Array, duration: float, step: float, limit: RunLimit, scheme: TimeScheme | None = None
@@ -159,7 +161,7 @@ class _IntegrationUntilSettled:
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
         run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
         if end := run_failure(self.beam, run, self.return_count):
-            status = MarchedStatus.left_the_model if end.left_the_model else MarchedStatus.failed
+            status = IntegrationStatus.left_the_model if end.left_the_model else IntegrationStatus.failed
             raise NoCycleFound(status, end.message)
         return run
 
@@ -186,18 +188,18 @@ class _IntegrationUntilSettled:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.returns_per_period + 2
         limit = return_limit(tip_angle_row(self.beam), settled.state, returns)
-        tolerance = min(self.scheme.tolerance, MARCHING_SETTINGS.max_measurement_tolerance)
+        tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_measurement_tolerance)
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]
         if len(times) <= settled.returns_per_period:
             raise NoCycleFound(
-                MarchedStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
+                IntegrationStatus.not_settled, f"the tip stops returning after {self.return_count} returns"
             )
         period = float(times[settled.returns_per_period] - times[0])
         spline = CubicSpline(run.times, run.states)
-        stages = MARCHING_SETTINGS.measurement_stages
+        stages = INTEGRATION_SETTINGS.measurement_stages
         states = spline(
             times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
         )
@@ -214,7 +216,7 @@ class _IntegrationUntilSettled:
         limit_names = [name for name in PARAMETERS if integrated_rod.values[name] != limit.values[name]]
         # The coordinate of a limit is 0, so twice the coordinate is twice the distance from the limit.
         coordinates = {
-            name: MARCHING_SETTINGS.second_rod_distance_ratio * integrated_rod.coordinate(name)
+            name: INTEGRATION_SETTINGS.second_rod_distance_ratio * integrated_rod.coordinate(name)
             for name in limit_names
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
@@ -235,7 +237,7 @@ class _IntegrationUntilSettled:
         is_accurate = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(
             outcome,
-            status=MarchedStatus.cycle if is_accurate else MarchedStatus.not_settled,
+            status=IntegrationStatus.cycle if is_accurate else IntegrationStatus.not_settled,
             message=""
             if is_accurate
             else f"the cycle's errors, up to {errors.largest_weighted_error:.1e}, exceed "

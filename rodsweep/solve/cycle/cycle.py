@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..orbit.measures import CyclePath, Measures
+from ..orbit.measures import CycleMeasures, CyclePath
 from ..status import PointStatus
 from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
-from .neighbour import Neighbour
+from .neighbour import CycleStart
 from .second_state import SecondState
 
 
@@ -91,7 +91,7 @@ class Cycle:
     such Hopf point is known."""
     elements: int = 0
     order: int = 0
-    measures: Measures = Measures()
+    measures: CycleMeasures = CycleMeasures()
     errors: CycleErrors = UNKNOWN_ERRORS
     multiplier: float = nan
     """Modulus of the largest nontrivial Floquet multiplier."""
@@ -115,12 +115,12 @@ class Cycle:
     (4, transient); None if no path was requested or no motion was integrated."""
     motion_shapes: MotionShapes | None = None
     """Shapes of the rod from the start of the motion, if requested."""
-    neighbour: Neighbour | None = None
+    neighbour: CycleStart | None = None
     """Data of this cycle from which the next rod of a chain starts; None outside a chain."""
 
 
 def with_measures(
-    cycle: Cycle, request: CycleRequest, path: CyclePath, measures: Measures, errors: CycleErrors
+    cycle: Cycle, request: CycleRequest, path: CyclePath, measures: CycleMeasures, errors: CycleErrors
 ) -> Cycle:
     """The outcome `cycle` with the mesh, measures, errors and requested time series of a solved cycle. path:
     motion of the solved cycle over its period."""

@@ -26,7 +26,7 @@ from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measures
 from .hopf_start import hopf_point_below, orbit_from_hopf
-from .neighbour import Neighbour, cycle_from_neighbour
+from .neighbour import CycleStart, cycle_from_neighbour
 from .second_state import second_state
 from .small_motion import reason_for_decay, stable_cycle_near_hopf
 from .status import CycleStatus
@@ -38,7 +38,7 @@ from .transient.torus import classify_quasiperiodic
 from .transient.transient import Transient
 from .transient.transient_outcome import TransientOutcome
 
-__all__ = ["Cycle", "CycleRequest", "CycleStatus", "Neighbour", "solve_cycle"]
+__all__ = ["Cycle", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,7 +61,7 @@ NO_MULTIPLIER = complex(nan, nan)
 def solve_cycle(
     rod: Rod,
     request: CycleRequest,
-    start: Neighbour | None = None,
+    start: CycleStart | None = None,
     parameter: str | None = None,
     workspace: NewtonWorkspace | None = None,
 ) -> Cycle:
@@ -89,7 +89,7 @@ def _solve_cycle_or_raise(
     rod: Rod,
     request: CycleRequest,
     stability: StraightRodStability,
-    neighbour: Neighbour | None,
+    neighbour: CycleStart | None,
     parameter: str | None,
     workspace: NewtonWorkspace,
 ) -> Cycle:
@@ -158,7 +158,7 @@ def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequ
 def _with_neighbour(
     cycle: Cycle,
     refined: RefinedCycle,
-    previous: Neighbour | None,
+    previous: CycleStart | None,
     parameter: str | None,
     accuracy: float,
     stability: StraightRodStability,
@@ -169,8 +169,8 @@ def _with_neighbour(
     leading eigenvalue of the straight rod."""
     if parameter is None:
         return cycle
-    eigenvalues = eigenvalues_to_follow(refined.orbit.form.rod, stability)
-    return replace(cycle, neighbour=Neighbour.from_cycle(refined, previous, parameter, accuracy, eigenvalues))
+    followed = eigenvalues_to_follow(refined.orbit.form.rod, stability)
+    return replace(cycle, neighbour=CycleStart.from_cycle(refined, previous, parameter, accuracy, followed))
 
 
 def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> Cycle:
@@ -214,7 +214,7 @@ def _cycle_from_hopf(
 
 
 def _outcome_of_motion(
-    transient: Transient, request: CycleRequest, neighbour: Neighbour | None
+    transient: Transient, request: CycleRequest, neighbour: CycleStart | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
     of the neighbour's cycle; a quasiperiodic motion is recognised."""

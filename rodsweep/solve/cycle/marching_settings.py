@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MarchingSettings:
+class IntegrationSettings:
     """Settings for a limit cycle by time integration alone: tolerances, convergence to the cycle, comparison
     of two integrations."""
 
@@ -49,4 +49,4 @@ class MarchingSettings:
     two contains the error of the measurement."""
 
 
-MARCHING_SETTINGS = MarchingSettings()
+INTEGRATION_SETTINGS = IntegrationSettings()

@@ -4,8 +4,8 @@ rod.
 The prediction is a polynomial through a cycle, its tangent along the varied parameter, and earlier cycles.
 From the prediction, a single matrix factorisation usually gives the next cycle with its multipliers. A step
 too long for Newton's method is divided, on a coarser mesh. Mesh and calibrated errors are passed along the
-chain, too. The next cycle depends only on the data in `Neighbour`, so that an interrupted chain resumes with
-the same results.
+chain, too. The next cycle depends only on the data in `CycleStart`, so that an interrupted chain resumes
+with the same results.
 """
 
 from dataclasses import dataclass, field
@@ -60,13 +60,13 @@ NEXT_MESH_SETTINGS = NextMeshSettings()
 
 
 UNKNOWN_EIGENVALUES: Complex = np.array([complex(nan, nan)])
-"""Value of `Neighbour.eigenvalues` if the eigenvalues are not known."""
+"""Value of `CycleStart.eigenvalues` if the eigenvalues are not known."""
 CheckpointArrays = dict[str, Array]
-"""Data of a neighbour in a checkpoint: arrays by name, as `Neighbour.arrays` returns them."""
+"""Data of a neighbour in a checkpoint: arrays by name, as `CycleStart.arrays` returns them."""
 
 
 @dataclass(frozen=True, eq=False)
-class Neighbour:
+class CycleStart:
     """Data of a solved cycle from which the next rod of a chain starts.
 
     predictor: polynomial for the next cycle. next_mesh: mesh for the next cycle. calibration: measured errors
@@ -83,14 +83,14 @@ class Neighbour:
     def from_cycle(
         cls,
         refined: RefinedCycle,
-        previous: "Neighbour | None",
+        previous: "CycleStart | None",
         name: str,
         accuracy: float,
         eigenvalues: Complex = UNKNOWN_EIGENVALUES,
-    ) -> "Neighbour":
+    ) -> "CycleStart":
         """Data of the cycle `refined`, which was solved with its tangent. previous: data of the previous rod
         of the chain, or None. name: varied parameter. accuracy: requested relative accuracy. eigenvalues: as
-        in `Neighbour`."""
+        in `CycleStart`."""
         branch = predictor_from(refined.converged_orbit, previous.predictor if previous else None, name)
         return cls(branch, *_next_mesh_and_calibration(refined, previous, name, accuracy), eigenvalues)
 
@@ -109,8 +109,8 @@ class Neighbour:
         return orbit_arrays(branch.orbit) | arrays | self.calibration.arrays()
 
     @classmethod
-    def from_arrays(cls, arrays: CheckpointArrays) -> "Neighbour":
-        """The neighbour from the named arrays that `Neighbour.arrays` returns."""
+    def from_arrays(cls, arrays: CheckpointArrays) -> "CycleStart":
+        """The neighbour from the named arrays that `CycleStart.arrays` returns."""
         next_mesh = OrbitMesh.from_array(arrays["next_mesh"])
         orbit = orbit_from_arrays(arrays)
         branch = CyclePredictor(orbit, *(arrays[name] for name in ("places", "orders", "data")))
@@ -118,7 +118,7 @@ class Neighbour:
 
 
 def _next_mesh_and_calibration(
-    refined: RefinedCycle, previous: "Neighbour | None", name: str, accuracy: float
+    refined: RefinedCycle, previous: "CycleStart | None", name: str, accuracy: float
 ) -> tuple[OrbitMesh, Calibration]:
     """Returns (mesh, calibration) for the next cycle of a chain. The calibration is outdated if the errors
     must be measured again at the next cycle. previous: data of the previous rod, or None. name: varied
@@ -138,7 +138,7 @@ def _next_mesh_and_calibration(
     return current_mesh, calibration
 
 
-def _max_cost_ratio(refined: RefinedCycle, previous: "Neighbour | None", name: str) -> float:
+def _max_cost_ratio(refined: RefinedCycle, previous: "CycleStart | None", name: str) -> float:
     """Largest cost of a new mesh divided by the cost of the current, sufficient mesh; 0 if the current mesh
     remains in use. previous: data of the previous rod, or None. name: varied parameter."""
     if previous is None:
@@ -152,7 +152,7 @@ def _max_cost_ratio(refined: RefinedCycle, previous: "Neighbour | None", name: s
 
 
 def cycle_from_neighbour(
-    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+    neighbour: CycleStart, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> RefinedCycle:
     """The cycle of a rod that differs from the neighbour's rod in the parameter `name` only; raises
     Unsolvable. The errors are scaled from the neighbour's calibration, or measured if the calibration no
@@ -178,7 +178,7 @@ def cycle_from_neighbour(
 
 
 def _cycle_on_next_mesh(
-    neighbour: Neighbour, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
+    neighbour: CycleStart, form: StressForm, name: str, accuracy: float, workspace: NewtonWorkspace
 ) -> ConvergedOrbit:
     """The cycle of the rod in `form` on the neighbour's `next_mesh`, with a matrix for multipliers and for
     the tangent along the parameter `name`; raises Unsolvable. If Newton's method fails from the prediction,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from math import isfinite, isnan, nan
 
 from ...arrays import Array
-from .marching_settings import MARCHING_SETTINGS
-from .status import MarchedStatus
+from .marching_settings import INTEGRATION_SETTINGS
+from .status import IntegrationStatus
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,7 +22,7 @@ class SettledMotion:
 
 def max_settled_distance(accuracy: float) -> float:
     """Largest relative distance of a settled motion from its cycle, for a requested relative accuracy."""
-    return MARCHING_SETTINGS.settled_distance_ratio * accuracy
+    return INTEGRATION_SETTINGS.settled_distance_ratio * accuracy
 
 
 class ReturnClock:
@@ -73,8 +73,8 @@ class ReturnDistances:
             self._below_noise = []
         else:
             self._below_noise.append(distance)
-        last_distances = self._below_noise[-MARCHING_SETTINGS.tests_below_noise :]
-        if len(last_distances) == MARCHING_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
+        last_distances = self._below_noise[-INTEGRATION_SETTINGS.tests_below_noise :]
+        if len(last_distances) == INTEGRATION_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
             # Distances that stay small are no coincidence, so the noise is smaller than assumed.
             reduction = max(last_distances) / self._last_above_noise
             rate = reduction ** (periods / len(self._below_noise))
@@ -85,7 +85,7 @@ class ReturnDistances:
 class NoCycleFound(Exception):
     """Raised if the motion does not settle on a cycle. status, message: outcome of the motion."""
 
-    def __init__(self, status: MarchedStatus, message: str) -> None:
+    def __init__(self, status: IntegrationStatus, message: str) -> None:
         super().__init__(message)
         self.status = status
         self.message = message

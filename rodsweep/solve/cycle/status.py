@@ -45,7 +45,7 @@ class CycleStatus(PointStatus):
     )
 
 
-class MarchedStatus(PointStatus):
+class IntegrationStatus(PointStatus):
     """Status of a point of the task limit_cycle with `method: integration`."""
 
     cycle = (

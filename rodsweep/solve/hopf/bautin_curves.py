@@ -20,7 +20,7 @@ from ...solve_progress import SolvePosition, report
 from ..continuation.follower import CurveStop, StepResult, follow_curve
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
-from .bautin_points import GENERALISED_HOPF_SETTINGS, GeneralisedHopfPoint, HopfCurve
+from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfCurve
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 
 
@@ -96,7 +96,7 @@ class BautinProblem:
         plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
         # Without points of the curve: the search needs only Hopf points near a guess.
-        accuracy = min(self.accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy)
+        accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
         hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
         start = guess[[*free, 3]]
         point = self._zero_by_secants(hopf, start, boundary.tangent(start))
@@ -163,7 +163,7 @@ class BautinProblem:
         return len(previous) > BAUTIN_SETTINGS.min_loop_points and bool(is_near)
 
     @staticmethod
-    def _zero_by_secants(hopf: HopfCurve, start: Array, direction: Array) -> GeneralisedHopfPoint:
+    def _zero_by_secants(hopf: HopfCurve, start: Array, direction: Array) -> BautinPoint:
         """The point with Re c = 0 near start + s direction, (3,), by secant steps of s; raises Unsolvable."""
         # Secants, because the normal form does not give the derivatives of Re c.
         previous_s = 0.0
@@ -179,7 +179,7 @@ class BautinProblem:
                 break
             error_along = hopf_point.coefficients.landau_error / abs(slope)
             if abs(step) <= max(BAUTIN_SETTINGS.tolerance, error_along):
-                return hopf.as_generalised_hopf(hopf_point, 0, direction * (error_along + abs(step)))
+                return hopf.as_bautin_point(hopf_point, 0, direction * (error_along + abs(step)))
             last = hopf_point.relative_real_part
             previous_s = s
             s = s + step
@@ -197,7 +197,7 @@ def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve
     return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, last))
 
 
-def as_curve_point(point: GeneralisedHopfPoint, value: float) -> BautinCurvePoint:
+def as_curve_point(point: BautinPoint, value: float) -> BautinCurvePoint:
     """A generalised Hopf point of a plane as a point of a curve. value: of the third parameter."""
     return BautinCurvePoint(
         values=np.array([*point.values, value]),

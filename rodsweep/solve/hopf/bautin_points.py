@@ -26,7 +26,7 @@ from .hopf_coefficients import HopfCoefficients, hopf_coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GeneralisedHopfSettings:
+class BautinPointSettings:
     """Settings for the location of generalised Hopf points on a Hopf curve."""
 
     coarsest_accuracy: float = 1e-10
@@ -44,11 +44,11 @@ class GeneralisedHopfSettings:
     Re c jumps from negative to positive values."""
 
 
-GENERALISED_HOPF_SETTINGS = GeneralisedHopfSettings()
+BAUTIN_POINT_SETTINGS = BautinPointSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class GeneralisedHopfPoint:
+class BautinPoint:
     """Generalised Hopf point: the point of a Hopf curve with Re c = 0.
 
     values, errors: values and absolute errors of both parameters of the plane. frequency in 1/tau2,
@@ -73,7 +73,7 @@ class CurveCriticality:
     """
 
     criticality: Array
-    points: tuple[GeneralisedHopfPoint, ...]
+    points: tuple[BautinPoint, ...]
     unlocated_count: int
 
 
@@ -94,12 +94,12 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     """The sign of Re c at every stored point of the Hopf curve `curve`, 0 if it is undecided, and the
     generalised Hopf points that are located between points of different sign.
 
-    accuracy: relative accuracy of c, reduced to `GENERALISED_HOPF_SETTINGS.coarsest_accuracy` if larger. If
+    accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
         Boundary(plane, curve.eigenvalue_sign),
         curve.scaled_points,
-        min(accuracy, GENERALISED_HOPF_SETTINGS.coarsest_accuracy),
+        min(accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy),
     )
     signs = np.array([hopf.criticality_at(i) for i in range(len(curve.scaled_points))])
     points = []
@@ -107,7 +107,7 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
     decided_indices = np.flatnonzero(signs != 0)  # the sign may change within the error of a point
     for a, b in zip(decided_indices[:-1], decided_indices[1:], strict=True):
         if signs[a] * signs[b] < 0:
-            bautin_point = hopf.generalised_hopf_between(int(a), int(b))
+            bautin_point = hopf.bautin_point_between(int(a), int(b))
             points += [bautin_point] if bautin_point else []
             unlocated_count += bautin_point is None
     return CurveCriticality(signs, tuple(points), unlocated_count)
@@ -134,7 +134,7 @@ class HopfCurve:
             v = self.scaled[i]
             normal = self.boundary.tangent(v)
             hopf_point = self.hopf_point_on_plane(
-                v, normal, GENERALISED_HOPF_SETTINGS.first_sign_accuracy
+                v, normal, BAUTIN_POINT_SETTINGS.first_sign_accuracy
             ).coefficients.criticality
             # An accurate c, which costs more, is needed only where the rough sign is undecided.
             return hopf_point or self.hopf_point_on_plane(v, normal, self.accuracy).coefficients.criticality
@@ -157,7 +157,7 @@ class HopfCurve:
         hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag)
         return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
 
-    def generalised_hopf_between(self, first: int, last: int) -> GeneralisedHopfPoint | None:
+    def bautin_point_between(self, first: int, last: int) -> BautinPoint | None:
         """The generalised Hopf point between the stored points with the indices `first` and `last`, at which
         Re c has opposite signs. None if a normal form fails, if Brent's method finds no zero, or if Re c
         jumps there."""
@@ -173,33 +173,27 @@ class HopfCurve:
         try:
             s = float(
                 brentq(
-                    lambda s: on_chord(s).relative_real_part,
-                    0.0,
-                    1.0,
-                    xtol=GENERALISED_HOPF_SETTINGS.tolerance,
+                    lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=BAUTIN_POINT_SETTINGS.tolerance
                 )
             )
             hopf_point, start_values, beyond = (
-                on_chord(s + side * GENERALISED_HOPF_SETTINGS.relative_difference_step) for side in (0, -1, 1)
+                on_chord(s + side * BAUTIN_POINT_SETTINGS.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
         slope = (beyond.relative_real_part - start_values.relative_real_part) / (
-            2 * GENERALISED_HOPF_SETTINGS.relative_difference_step
+            2 * BAUTIN_POINT_SETTINGS.relative_difference_step
         )
-        if (
-            abs(hopf_point.relative_real_part) > GENERALISED_HOPF_SETTINGS.max_relative_real_part
-            or slope == 0
-        ):
+        if abs(hopf_point.relative_real_part) > BAUTIN_POINT_SETTINGS.max_relative_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         is_passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
-        error_along = hopf_point.coefficients.landau_error / abs(slope) + GENERALISED_HOPF_SETTINGS.tolerance
-        return self.as_generalised_hopf(hopf_point, first + int(is_passed.sum()), chord * error_along)
+        error_along = hopf_point.coefficients.landau_error / abs(slope) + BAUTIN_POINT_SETTINGS.tolerance
+        return self.as_bautin_point(hopf_point, first + int(is_passed.sum()), chord * error_along)
 
-    def as_generalised_hopf(
+    def as_bautin_point(
         self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array
-    ) -> GeneralisedHopfPoint:
+    ) -> BautinPoint:
         """The generalised Hopf point at the Hopf point `hopf_point`, with errors of both parameters.
 
         index_before: index of the curve's stored point before this point. position_error: position error
@@ -215,7 +209,7 @@ class HopfCurve:
             abs(axis.parameter_per_coordinate(value)) * (abs(float(coordinate_error)) + solution.error)
             for axis, value, coordinate_error in zip(axes, values, tangent_error[:2], strict=True)
         ]
-        return GeneralisedHopfPoint(
+        return BautinPoint(
             preceding_index=index_before,
             values=(values[0], values[1]),
             errors=(errors[0], errors[1]),

@@ -26,7 +26,7 @@ from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from ..spectrum.status import SpectrumStatus
 from .convergence import MODE_MESH_SETTINGS, converged_modes
 from .inverse_iteration import ModeVectors, nan_mode_vectors
-from .transient_growth import Growth, growth_of
+from .transient_growth import TransientGrowth, growth_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,7 +69,7 @@ class Modes:
     status: SpectrumStatus
     spectrum: Spectrum
     vectors: ModeVectors
-    growth: Growth = Growth()
+    growth: TransientGrowth = TransientGrowth()
     seconds: float = 0.0
     message: str = ""
 

@@ -53,7 +53,7 @@ GROWTH_SETTINGS = GrowthSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Growth:
+class TransientGrowth:
     """Transient growth of perturbations of a straight rod, with errors; NaN if not requested."""
 
     transient_growth: float = nan
@@ -78,16 +78,16 @@ class Growth:
 
 GROWTH_BY_STABILITY = {
     True: None,
-    False: Growth(transient_growth=inf, transient_time=inf, growth_error=0.0),
-    None: Growth(growth_error=0.0),
+    False: TransientGrowth(transient_growth=inf, transient_time=inf, growth_error=0.0),
+    None: TransientGrowth(growth_error=0.0),
 }
-"""`Growth` by stability (True, False, None if undecided); None for a stable rod, whose growth must be
-computed."""
-UNKNOWN_GROWTH = Growth(growth_error=inf)
+"""`TransientGrowth` by stability (True, False, None if undecided); None for a stable rod, whose growth must
+be computed."""
+UNKNOWN_GROWTH = TransientGrowth(growth_error=inf)
 """Growth after a failed computation: NaN with infinite error."""
 
 
-def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> Growth:
+def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> TransientGrowth:
     """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. accuracy: requested
     relative accuracy. rate: modulus of the leading eigenvalue, in 1/tau2.
 
@@ -115,7 +115,7 @@ def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rat
         growth = GROWTH_BY_STABILITY[stable]
         # Without growth at t = 0+ there is no later growth: the norm of exp(L t) decreases from 1.
         if growth is None and abscissa + change <= 0:
-            growth = Growth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
+            growth = TransientGrowth(transient_growth=1.0, transient_time=0.0, growth_error=0.0)
         if growth is None:
             coarse_propagator = coarse_propagator or propagator_of(rod, pencil_on(last))
             fine_propagator = propagator_of(rod, pencil)
@@ -138,7 +138,9 @@ def propagator_of(rod: Rod, pencil: AnyPencil) -> Propagator:
     return Propagator(shifted_inverse(form.A, form.B, 0.0))
 
 
-def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float) -> Growth:
+def transient_growth(
+    coarse: Propagator, fine: Propagator, abscissa: float, accuracy: float
+) -> TransientGrowth:
     """Largest growth from the propagator `fine`; the error is estimated with the propagator `coarse` of a
     coarser mesh. abscissa: an upper bound > 0 of the numerical abscissa. accuracy: requested relative
     accuracy. `UNKNOWN_GROWTH` if `abscissa` is NaN, if the mesh has an eigenvalue with Re w >= 0, or if
@@ -177,7 +179,7 @@ def transient_growth(coarse: Propagator, fine: Propagator, abscissa: float, accu
         coarse.use_leading_modes(int((1 + GROWTH_SETTINGS.mode_increase_ratio) * k))
         times = maximum[1], sqrt(maximum[1] * max(first, log(maximum[0]) / abscissa))
         error += max(abs(coarse.norm_and_log_slope(t)[0] / fine.norm_and_log_slope(t)[0] - 1) for t in times)
-    return Growth(transient_growth=maximum[0], transient_time=maximum[1], growth_error=error)
+    return TransientGrowth(transient_growth=maximum[0], transient_time=maximum[1], growth_error=error)
 
 
 def _end_of_growth(propagator: Propagator, earliest_end: float, decay_exponent: float) -> tuple[float, float]:

@@ -63,10 +63,11 @@ RELAXATION_SCHEME = TimeScheme(
 """Time scheme of the run in `relax_fast_components`: backward Euler, which damps fast components."""
 
 
-class RunEnding(IntEnum):
+class EndReason(IntEnum):
     """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps`. failed: an
-    error or a failed step of PETSc, or a state that is not finite."""
+    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps:
+    `RunLimit.max_steps`. failed: an error or a failed step of PETSc, or a state that is not
+    finite."""
 
     reached = 0
     stopped = 1
@@ -80,7 +81,7 @@ class Trajectory:
     """Result of a run: times in tau2, (steps + 1,), states z, (steps + 1, unknowns), reason for the end of
     the run, and PETSc's error message."""
 
-    ending: RunEnding
+    ending: EndReason
     times: Array
     states: Array
     message: str = ""
@@ -141,8 +142,8 @@ class Integrator:
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:
-        """Post-step function of a run with a `RunLimit.is_reached`: stores the step, and ends the run at the
-        limit."""
+        """Post-step function of a run with a `RunLimit.is_reached`: stores the step, and ends the run
+        at the limit."""
         end_step.ctypes(ts.handle)
         if self._limit.is_reached is not None and self._limit.is_reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
@@ -151,7 +152,7 @@ class Integrator:
         self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = DEFAULT_RUN_LIMIT
     ) -> Trajectory:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
-        returned as a `RunEnding`, never raised.
+        returned as a `EndReason`, never raised.
 
         step: the first time step, or every time step of a scheme with equal steps, in tau2; 0 for the
         default. Tolerances are relative to the largest component of z, so that small and large motions are
@@ -187,16 +188,16 @@ class Integrator:
         states = np.ascontiguousarray(rows[:, 1:])
         return Trajectory(self._run_ending(message, states[-1]), times, states, message)
 
-    def _run_ending(self, message: str, end: Array) -> RunEnding:
+    def _run_ending(self, message: str, end: Array) -> EndReason:
         """Reason why the run ended. message: PETSc's error message, or empty. end: last state."""
         reason = self.ts.getConvergedReason()
         reasons = PETSc.TS.ConvergedReason
         if message or reason < 0 or not np.isfinite(end).all():
-            return RunEnding.failed
+            return EndReason.failed
         if self.workspace.context["left"]:
-            return RunEnding.left_the_model
-        named = {reasons.CONVERGED_TIME: RunEnding.reached, reasons.CONVERGED_USER: RunEnding.stopped}
-        return named.get(reason, RunEnding.too_many_steps)
+            return EndReason.left_the_model
+        named = {reasons.CONVERGED_TIME: EndReason.reached, reasons.CONVERGED_USER: EndReason.stopped}
+        return named.get(reason, EndReason.too_many_steps)
 
     @property
     def memory_bytes(self) -> int:
@@ -240,4 +241,4 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
     step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
     run = integrator(beam.mesh, RELAXATION_SCHEME).run(beam, z, duration, step)
-    return run.states[-1] if run.ending == RunEnding.reached else z
+    return run.states[-1] if run.ending == EndReason.reached else z

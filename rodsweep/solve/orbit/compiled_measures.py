@@ -58,7 +58,7 @@ class TipPath(NamedTuple):
 
 class OrbitMeans(NamedTuple):
     """Means (`_mean`) and rms fluctuations (`_rms`) of the powers over a period, and the smallest h1; names
-    and units as in `Measures`."""
+    and units as in `CycleMeasures`."""
 
     injection_mean: float
     injection_rms: float

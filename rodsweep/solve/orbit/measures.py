@@ -29,7 +29,7 @@ from .orbit import Orbit
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Measures:
+class CycleMeasures:
     """Scalar measures and harmonics of a cycle, with the names in the result file; NaN if unknown.
 
     period: in tau2. frequency: 2 pi/period. tip_...: extrema of the tip's x, y, in L; tip_theta_max: largest
@@ -94,7 +94,7 @@ class CyclePath:
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `Measures`, by name."""
+        """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `CycleMeasures`, by name."""
         minima = self._path.least_tip_values.tolist()
         maxima = self._path.largest_tip_values.tolist()
         return {
@@ -106,7 +106,7 @@ class CyclePath:
         }
 
     @cached_property
-    def measures(self) -> Measures:
+    def measures(self) -> "CycleMeasures":
         """`measures_of` this path; the smallest stretch may take as long as a step of a branch."""
         return measures_of(self)
 
@@ -179,12 +179,12 @@ def _matrix_to_lobatto_nodes(mesh: Mesh, nodes: int) -> Array:
     return mesh.evaluation_matrix(lobatto_points(nodes)).T
 
 
-def measures_of(path: CyclePath) -> Measures:
+def measures_of(path: CyclePath) -> CycleMeasures:
     """Scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
     mean = orbit.means
-    return Measures(
+    return CycleMeasures(
         period=orbit.period,
         frequency=2 * np.pi / orbit.period,
         **path.extrema,

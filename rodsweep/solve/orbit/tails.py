@@ -43,7 +43,7 @@ COEFFICIENT_TAIL_SETTINGS = CoefficientTailSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Tails:
+class CoefficientTails:
     """Tails of an orbit. space: size of the last Legendre coefficients in space, divided by the largest
     coefficient. time: size of the last coefficient in time, divided by the largest value. space_decay:
     decrease of the natural logarithm of the coefficients in space per order."""
@@ -53,7 +53,7 @@ class Tails:
     space_decay: float
 
 
-def tails_of(orbit: Orbit) -> Tails:
+def tails_of(orbit: Orbit) -> CoefficientTails:
     """Tails of `orbit` in space and in time, and decay of its coefficients in space."""
     coefficients = coefficients_of_elements(orbit)
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
@@ -61,7 +61,7 @@ def tails_of(orbit: Orbit) -> Tails:
     ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
     last = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
-    return Tails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(finest))
+    return CoefficientTails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(finest))
 
 
 @compiled_for_vectors

@@ -226,8 +226,8 @@ def with_hopf_ends(
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
     not stored, added to `untraced_count`.
     """
-    from ...solve.branch.special.special_curves import with_generalised_hopf_ends
+    from ...solve.branch.special.special_curves import with_bautin_ends
 
     bautin_points = [point for curve in criticalities for point in curve.points]
-    curves = tuple(with_generalised_hopf_ends(curve, plane, bautin_points) for curve in traced.curves)
+    curves = tuple(with_bautin_ends(curve, plane, bautin_points) for curve in traced.curves)
     return replace(traced, curves=curves, untraced_count=traced.untraced_count + unstored)

@@ -16,7 +16,7 @@ from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.plane_equations import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stresses_beside_jumps
+from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stresses_at_both_sides
 from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
@@ -30,7 +30,7 @@ from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
-from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.cycle.straight_rod import straight_rod_stability
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
@@ -294,7 +294,7 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
     form = on_mesh("swelling segments", F=40.0)
     x = 20.0 * np.random.default_rng(3).standard_normal(form.unknown_count)
     S = form.stresses(x)
-    ((before, behind),) = stresses_beside_jumps(form.nodal_rod, S)
+    ((before, behind),) = stresses_at_both_sides(form.nodal_rod, S)
     (node,), (sides,) = form.nodal_rod.jumps, form.nodal_rod.jump_sides
     both = list(zip(sides, (before, behind), strict=True))
     stresses = [stress_beyond_rest(2, LocalSection(*side[:3]), *q) for side, q in both]
@@ -346,7 +346,7 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
     mean = np.zeros((3, source.mesh.node_count + 1))
     (node,) = source.nodal_rod.jumps
     mean[:, node] = 5.0, 0.0, 3.0
-    ((before, behind),) = stresses_beside_jumps(source.nodal_rod, mean)
+    ((before, behind),) = stresses_at_both_sides(source.nodal_rod, mean)
     fields = []
     for form in (source, target):
         u, (jump,), (sides,) = form.mesh.node_positions, form.nodal_rod.jumps, form.nodal_rod.jump_sides
@@ -424,7 +424,7 @@ def test_a_neighbour_is_restored_with_its_build():
     """A chain that was interrupted goes on with the same data."""
     rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, build=Build(profile=STEP))
     neighbour = solve_cycle(rod, request(1e-5), None, "F").neighbour
-    again = Neighbour.from_arrays(neighbour.arrays())
+    again = CycleStart.from_arrays(neighbour.arrays())
     assert again.predictor.orbit.form.rod == rod
     assert again.predictor.orbit.form.mesh == neighbour.predictor.orbit.form.mesh
     assert again.next_mesh == neighbour.next_mesh

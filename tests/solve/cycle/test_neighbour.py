@@ -9,7 +9,7 @@ from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
 from rodsweep.solve.cycle.along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.neighbour import Neighbour
+from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.newton import newton, relative_change
 
@@ -59,7 +59,7 @@ def test_a_chain_goes_on_by_the_cycles_behind(chain):
 
 def test_a_chain_goes_on_from_a_checkpoint_with_the_same_bits(chain, tmp_path):
     """The next cycle and all that its own neighbour starts from; fewer than all cycles behind, too."""
-    kept = Checkpoints(tmp_path, "print", Neighbour.from_arrays)
+    kept = Checkpoints(tmp_path, "print", CycleStart.from_arrays)
     for place in (0, 1, -1):
         kept.write(0, 0, chain[place])
         _, again = kept.read(0)

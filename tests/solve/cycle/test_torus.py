@@ -13,7 +13,7 @@ from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient
 from rodsweep.solve.cycle.transient.returns import tip_angle_row
-from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, modulation_of
+from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, torus_frequency_of
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -86,7 +86,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
                 middle = (low + high) / 2
                 low, high = (middle, high) if row @ state(middle) < 0 else (low, middle)
             returns.append(beam.layout.stress_field(state(low), "m3"))
-    found = modulation_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
+    found = torus_frequency_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle_per_return == pytest.approx(ROTATION, abs=1e-3)
     assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error / 5
 
@@ -101,7 +101,7 @@ def closed_curve(phases):
 
 
 def test_rotation_on_a_closed_curve_is_found():
-    found = modulation_of(closed_curve(ANGLE * NUMBERS), ANGLE + 0.1)
+    found = torus_frequency_of(closed_curve(ANGLE * NUMBERS), ANGLE + 0.1)
     assert found.angle_per_return == pytest.approx(ANGLE, abs=1e-6)
     assert found.prediction_error < 1e-3
 
@@ -109,20 +109,20 @@ def test_rotation_on_a_closed_curve_is_found():
 @pytest.mark.parametrize("rate", [3e-3, -3e-3])
 def test_growing_and_decaying_modulations_are_not_predicted(rate):
     returns = 5 + (closed_curve(ANGLE * NUMBERS) - 5) * np.exp(rate * NUMBERS)[:, None]
-    assert modulation_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
+    assert torus_frequency_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
 
 
 def test_irregular_returns_are_not_predicted():
     noise = np.random.default_rng(1).normal(size=len(NUMBERS))
     irregular = closed_curve(ANGLE * NUMBERS + np.cumsum(0.3 * noise))
-    assert modulation_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
+    assert torus_frequency_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
 
 
 @pytest.mark.parametrize("turns, after", [(1, 2), (1, 3), (1, 4), (2, 9), (3, 11), (6, 13), (2, 15)])
 def test_an_orbit_that_closes_after_several_returns_is_no_torus(turns, after):
     angle = 2 * np.pi * turns / after
-    assert modulation_of(closed_curve(angle * NUMBERS), min(angle, np.pi - 0.1)) is None
+    assert torus_frequency_of(closed_curve(angle * NUMBERS), min(angle, np.pi - 0.1)) is None
 
 
 def test_too_few_returns_do_not_fill_the_curve():
-    assert modulation_of(closed_curve((np.pi / 2 + 0.01) * NUMBERS[:80]), np.pi / 2) is None
+    assert torus_frequency_of(closed_curve((np.pi / 2 + 0.01) * NUMBERS[:80]), np.pi / 2) is None

@@ -15,8 +15,8 @@ from rodsweep.solve.backend.petsc import PETSc
 from rodsweep.solve.motion.context import MAX_STAGE_POINTS
 from rodsweep.solve.motion.integrator import (
     RELAXATION_SCHEME,
+    EndReason,
     Integrator,
-    RunEnding,
     RunLimit,
     destroy_integrators,
     integrator,
@@ -169,7 +169,7 @@ def test_small_start_grows_like_the_leading_eigenvalue():
     values, left = np.linalg.eig(beam.jacobian(np.zeros(60)).T)
     row = left[:, np.argmin(np.abs(values - mode.w))]
     run = evolve(beam, start, duration, TimeScheme(tolerance=1e-11, newton_tolerance_ratio=0.01))
-    assert run.ending == RunEnding.reached
+    assert run.ending == EndReason.reached
     grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
     assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
     assert abs(grown.imag) / duration < 1e-6 * mode.w.imag
@@ -226,7 +226,7 @@ def test_every_method_follows_the_same_motion(method):
     start = 0.3 * leading_mode(beam).z.real
     exact = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
     run = evolve(beam, start, 0.03, method)
-    assert run.ending == RunEnding.reached
+    assert run.ending == EndReason.reached
     assert run.times[-1] == pytest.approx(0.03)
     assert np.abs(run.states[-1] - exact).max() < 2e-4 * np.abs(exact).max()
 
@@ -335,7 +335,7 @@ def test_a_failed_integration_is_an_ending(petsc_options):
     petsc_options("cycle_ts_max_snes_failures", "1")
     beam = Beam(ROD, uniform_mesh(1, 14))
     run = evolve(beam, bent(beam), 1.0)
-    assert run.ending == RunEnding.failed
+    assert run.ending == EndReason.failed
     assert len(run.times) == len(run.states)
 
 
@@ -343,12 +343,12 @@ def test_an_error_inside_petsc_is_an_ending(petsc_options):
     petsc_options("cycle_pc_factor_mat_solver_type", "nosuch")
     beam = Beam(ROD, uniform_mesh(1, 14))
     run = evolve(beam, bent(beam), 1.0)
-    assert run.ending == RunEnding.failed
+    assert run.ending == EndReason.failed
     assert run.message
 
 
 def test_a_crushed_rod_has_left_the_model():
     beam = Beam(Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), uniform_mesh(1, 14))
     run = evolve(beam, 0.5 * leading_mode(beam).z.real, 1e-3)
-    assert run.ending == RunEnding.left_the_model
+    assert run.ending == EndReason.left_the_model
     assert beam.least_stretch(run.states[-1]) <= 0 < beam.least_stretch(run.states[0])

@@ -11,7 +11,7 @@ from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh
-from rodsweep.solve.motion.integrator import RELAXATION_SCHEME, Integrator, RunEnding
+from rodsweep.solve.motion.integrator import RELAXATION_SCHEME, EndReason, Integrator
 from rodsweep.solve.motion.leading_mode import leading_mode
 from rodsweep.solve.motion.time_scheme import TimeScheme
 
@@ -32,7 +32,7 @@ def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     failures = integrator.ts.getSNESFailures()
     integrator.destroy()
     assert failures > 0
-    assert run.ending == RunEnding.reached
+    assert run.ending == EndReason.reached
     assert run.times[-1] == pytest.approx(DURATION, rel=1e-12)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
-from ...hopf.bautin_points import GeneralisedHopfPoint
+from ...hopf.bautin_points import BautinPoint
 from ...orbit.normalised import polynomial_weights
 from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
 from .solved_curve_point import SolvedPoint
@@ -184,8 +184,8 @@ class SpecialPointCurve:
         return cls(kind, points, (first_half.end, forward.end), (vanishing[0], vanishing[1]))
 
 
-def with_generalised_hopf_ends(
-    curve: SpecialPointCurve, plane: Plane, known_points: Sequence[GeneralisedHopfPoint]
+def with_bautin_ends(
+    curve: SpecialPointCurve, plane: Plane, known_points: Sequence[BautinPoint]
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
     `known_points`, which is more accurate than the extrapolation. A curve of torus points, and an end without

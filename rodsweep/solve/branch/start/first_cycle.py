@@ -31,7 +31,7 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
 
     workspace: memory of Newton's matrices.
     """
-    first = _cycle_beside_hopf_point(hopf, np.inf, accuracy, workspace)
+    first = _cycle_near_hopf_point(hopf, np.inf, accuracy, workspace)
     amplitude = first.cycle.measures.tip_y_max
     # The parameter moves against the normal form: the branch has a fold before this cycle.
     while (
@@ -40,13 +40,13 @@ def first_cycle(hopf: HopfBranchStart, accuracy: float, workspace: NewtonWorkspa
     ):
         amplitude /= 2
         try:
-            first = _cycle_beside_hopf_point(hopf, amplitude, accuracy, workspace)
+            first = _cycle_near_hopf_point(hopf, amplitude, accuracy, workspace)
         except Unsolvable:
             break
     return first
 
 
-def _cycle_beside_hopf_point(
+def _cycle_near_hopf_point(
     hopf: HopfBranchStart, max_amplitude: float, accuracy: float, workspace: NewtonWorkspace
 ) -> BranchCycle:
     """A cycle of the branch from the Hopf point `hopf`, as its first cycle, to a relative accuracy; raises

@@ -120,7 +120,7 @@ def hopf_branch_start(
     )
 
 
-def accuracy_beside_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
+def accuracy_near_hopf_points(hopfs: Sequence[HopfBranchStart], accuracy: float) -> float:
     """Relative accuracy of the cycles of a rod with the given Hopf points: the requested `accuracy`, or a
     smaller number if a Hopf point is close to a generalised Hopf point."""
     max_coefficient = max((abs(hopf.amplitude_coefficient) for hopf in hopfs), default=0.0)

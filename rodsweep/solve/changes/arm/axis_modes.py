@@ -31,7 +31,7 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 
 
 @dataclass(frozen=True)
-class AxisModes:
+class CriticalModes:
     """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
     number of unstable modes.
 
@@ -61,7 +61,7 @@ class AxisModes:
         return float(np.abs(self.w).max(initial=0.0))
 
 
-class AxisModesOfPath:
+class CriticalModesOfPath:
     """The modes of the arms of a path, computed when needed.
 
     modes_by_p: the modes computed so far, by path variable p. outside_p_by_end: for p of each end of the
@@ -72,7 +72,7 @@ class AxisModesOfPath:
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
         self.certify = certify
-        self.modes_by_p: dict[float, AxisModes] = {}
+        self.modes_by_p: dict[float, CriticalModes] = {}
         self.outside_p_by_end: dict[float, float] = {}
 
     def has_many_modes(self, p: float) -> bool:
@@ -83,7 +83,7 @@ class AxisModesOfPath:
             and self.problem.expected_unstable_count(p) > AXIS_MODE_SETTINGS.max_growing_for_leading_modes
         )
 
-    def modes_at(self, p: float, guesses: Complex | None = None) -> AxisModes:
+    def modes_at(self, p: float, guesses: Complex | None = None) -> CriticalModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises
         Unsolvable if the eigenvalues or the count cannot be computed.
 
@@ -99,7 +99,7 @@ class AxisModesOfPath:
                 self.modes_by_p[p] = replacement
         return self.modes_by_p[p]
 
-    def _modes_just_outside(self, p: float) -> AxisModes | None:
+    def _modes_just_outside(self, p: float) -> CriticalModes | None:
         """The modes slightly outside the end p of the searched range, used if the modes at p cannot be
         counted; None if p is no end, or if these modes cannot be computed."""
         if p not in self.outside_p_by_end:
@@ -109,7 +109,7 @@ class AxisModesOfPath:
         except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
             return None
 
-    def _compute_modes(self, p: float, guesses: Complex | None) -> AxisModes:
+    def _compute_modes(self, p: float, guesses: Complex | None) -> CriticalModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
         leading modes; raises Unsolvable. guesses: as in `modes_at`."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
@@ -129,7 +129,7 @@ class AxisModesOfPath:
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
-    def _modes_near_axis(self, p: float, start_guesses: Complex | None) -> AxisModes | None:
+    def _modes_near_axis(self, p: float, start_guesses: Complex | None) -> CriticalModes | None:
         """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
         the count is undecided. start_guesses: approximate eigenvalues of these modes, (n,), if available."""
         guesses = (
@@ -141,9 +141,9 @@ class AxisModesOfPath:
         w = np.array([root[0] for root in refined], complex)
         count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined]))
         slopes = np.array([root[1] for root in refined], complex)
-        return None if count is None else AxisModes(p, w, slopes, count)
+        return None if count is None else CriticalModes(p, w, slopes, count)
 
-    def _leading_modes(self, p: float, expected_count: int) -> AxisModes:
+    def _leading_modes(self, p: float, expected_count: int) -> CriticalModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. expected_count: expected number of unstable modes."""
         modes = max(SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, 2 + expected_count)
@@ -172,7 +172,7 @@ class AxisModesOfPath:
         slopes = spectrum.eigenvalues.copy()
         for i, w in enumerate(spectrum.eigenvalues.tolist()):
             slopes[i] = self.problem.eigenvalue(w, p)[1] if w.imag >= 0 else slopes[i - 1].conjugate()
-        return AxisModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
+        return CriticalModes(p, spectrum.eigenvalues, slopes, spectrum.unstable_count)
 
 
 def _needed_modes(spectrum: Spectrum) -> int:
@@ -182,7 +182,7 @@ def _needed_modes(spectrum: Spectrum) -> int:
     return 2 + max(spectrum.unstable_count, growing_count)
 
 
-def next_count_position(left: AxisModes, right: AxisModes) -> float:
+def next_count_position(left: CriticalModes, right: CriticalModes) -> float:
     """Position of the next count as a fraction of the interval of p from `left` to `right`; 0 if no count is
     needed, because no pair can touch the imaginary axis in the interval."""
     h = right.p - left.p

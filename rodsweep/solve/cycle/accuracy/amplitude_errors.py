@@ -11,7 +11,7 @@ from math import log
 import numpy as np
 
 from ....arrays import Complex
-from ...orbit.measures import Measures
+from ...orbit.measures import CycleMeasures
 from ...orbit.newton import ConvergedOrbit
 from .cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
 
@@ -19,7 +19,9 @@ MIN_MULTIPLIER_DISTANCE = 2e-16
 """Smallest distance of a multiplier from 1: smaller distances are rounding errors of the multiplier."""
 
 
-def with_amplitude_rounding(errors: CycleErrors, solved: ConvergedOrbit, measures: Measures) -> CycleErrors:
+def with_amplitude_rounding(
+    errors: CycleErrors, solved: ConvergedOrbit, measures: CycleMeasures
+) -> CycleErrors:
     """The errors of the extrema, at least the effect of rounding: `rounding_error` divided by the distance of
     the nearest nontrivial multiplier from 1.
 

@@ -15,7 +15,7 @@ import numpy as np
 from ....arrays import Array
 from ...orbit.measures import CyclePath
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
-from ..marching_settings import MARCHING_SETTINGS
+from ..marching_settings import INTEGRATION_SETTINGS
 from .calibration_settings import CALIBRATION_SETTINGS
 
 MULTIPLIER_INDEX = 4
@@ -107,8 +107,8 @@ def errors_of_two_integrations(first: CyclePath, second: CyclePath, distance: fl
     # Errors of extrema are divided by the largest y; theta may be several times as large as y.
     remaining_error = distance * max(1.0, abs(b["tip_theta_max"]) / size)
     return CycleErrors(
-        float(MARCHING_SETTINGS.difference_safety_factor * period + distance),
-        float(MARCHING_SETTINGS.difference_safety_factor * height + distance),
-        float(MARCHING_SETTINGS.difference_safety_factor * max_extremum_difference + remaining_error),
+        float(INTEGRATION_SETTINGS.difference_safety_factor * period + distance),
+        float(INTEGRATION_SETTINGS.difference_safety_factor * height + distance),
+        float(INTEGRATION_SETTINGS.difference_safety_factor * max_extremum_difference + remaining_error),
         nan,
     )

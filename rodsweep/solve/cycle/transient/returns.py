@@ -15,7 +15,7 @@ import numpy as np
 from ....arrays import Array
 from ....discretization.beam import Beam
 from ....wording import counted
-from ...motion.integrator import RunEnding, RunLimit, Trajectory
+from ...motion.integrator import EndReason, RunLimit, Trajectory
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,9 +75,9 @@ class RunFailure(NamedTuple):
 def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
     """The failure of a run, with a message; None if the run is complete. returns: number of returns of the
     tip before the run."""
-    if run.ending in (RunEnding.reached, RunEnding.stopped):
+    if run.ending in (EndReason.reached, EndReason.stopped):
         return None
-    if run.ending == RunEnding.left_the_model:
+    if run.ending == EndReason.left_the_model:
         h1 = beam.least_stretch(run.states[-1])
         place = f"at a point of the rod after {counted(returns, 'return')} of the tip"
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
@@ -88,7 +88,7 @@ def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
         )
         return RunFailure(True, reason)
     reason = "the integrator finds no time step with an acceptable error"
-    if run.ending == RunEnding.too_many_steps:
+    if run.ending == EndReason.too_many_steps:
         reason = "the integrator reached the maximum number of time steps of one run"
     return RunFailure(False, run.message or reason)
 

@@ -58,7 +58,7 @@ TORUS_TEST_SETTINGS = TorusTestSettings()
 
 
 @dataclass(frozen=True, slots=True)
-class Modulation:
+class TorusFrequency:
     """Second frequency of a quasiperiodic motion. angle_per_return: advance on the closed curve per return,
     in rad. prediction_error: relative rms error of the predicted returns."""
 
@@ -88,7 +88,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
             <= TORUS_TEST_SETTINGS.max_period_difference
         )
         angle = unstable_pair_angle(cycle)
-        modulation = modulation_of(moments, angle) if is_near and angle else None
+        modulation = torus_frequency_of(moments, angle) if is_near and angle else None
         if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
             ratio = modulation.angle_per_return / (2 * np.pi)
             message = (
@@ -129,9 +129,9 @@ def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     return float(abs(np.angle(outside[0])))
 
 
-def modulation_of(returns: Array, angle: float) -> Modulation | None:
-    """Modulation of a motion whose returns advance on a closed curve by about `angle` rad per return; None if
-    the returns do not fill a closed curve. returns: states at successive returns, (k, n).
+def torus_frequency_of(returns: Array, angle: float) -> TorusFrequency | None:
+    """Torus frequency of a motion whose returns advance on a closed curve by about `angle` rad per return;
+    None if the returns do not fill a closed curve. returns: states at successive returns, (k, n).
 
     The Fourier series is fitted to the first half of the returns, and predicts the second half.
     """
@@ -150,7 +150,7 @@ def modulation_of(returns: Array, angle: float) -> Modulation | None:
     basis = fourier_basis(best_angle * numbers, TORUS_TEST_SETTINGS.harmonics)
     # Fitted on the first half, tested on the second: a fit alone would explain any motion.
     series = np.linalg.lstsq(basis[:half], first_half, rcond=None)[0]
-    return Modulation(best_angle, float(np.linalg.norm(second_half - basis[half:] @ series)) / size)
+    return TorusFrequency(best_angle, float(np.linalg.norm(second_half - basis[half:] @ series)) / size)
 
 
 def fitted_angle(returns: Array, angle: float) -> float:

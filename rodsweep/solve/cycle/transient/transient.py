@@ -18,7 +18,7 @@ from ....discretization.beam import Beam
 from ....discretization.stress.form import StressForm
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
-from ...motion.integrator import INTEGRATOR_SETTINGS, RunEnding, Trajectory, integrator, relax_fast_components
+from ...motion.integrator import INTEGRATOR_SETTINGS, EndReason, Trajectory, integrator, relax_fast_components
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...unsolvable import Unsolvable
@@ -234,7 +234,7 @@ class Transient:
         # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
             run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
-            if run.ending != RunEnding.reached:
+            if run.ending != EndReason.reached:
                 return None
         orbit = orbit_from_motion(self.beam, self.form, run, period, return_count)
         try:

@@ -40,7 +40,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
         np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column
     )
     if not len(values):
-        raise np.linalg.LinAlgError("the flow derivative of the cycle overflows")
+        raise np.linalg.LinAlgError("the flow derivative of the cycle is not finite")
     return values
 
 

@@ -99,7 +99,7 @@ class ShootingIntervals:
         # The map is `ahead triangle start^T`, which has the nonzero eigenvalues of this matrix.
         triangular_map = triangle @ (start.T @ basis)
         if not np.isfinite(triangular_map).all():
-            raise np.linalg.LinAlgError("the flow derivative of the cycle overflows")
+            raise np.linalg.LinAlgError("the flow derivative of the cycle is not finite")
         # `eigvals` balances the matrix, which destroys the grading: multipliers near 1 would lose nine
         # digits.
         values = np.diag(schur(triangular_map, output="complex")[0])
