@@ -34,6 +34,8 @@ LEADS_TO = {
     "a force that almost crushes the rod": "crushed",
     "a cycle beyond which no further cycle was found": "no_cycle_found",
 }
+FARTHEST = 1.5 * (1 + 1e-12)
+"""Largest ratio of the force up to which branches are followed to the end of the range."""
 CURVED = 2e-3
 """Relative error of a spline through the cycles of a finer branch, which stands for cycles between them."""
 DECIDED = 0.02
@@ -61,8 +63,29 @@ def branch_sentences(view, page, keywords, fine):
         [keywords.get("start", 0.0)],
         [keywords["stop"]],
     )
+    found += followed_beyond(view, page, "followed_", [keywords.get("start", 0.0), keywords["stop"]])
     proved = (view.variables["certified"].sum(), len(rods))
     return found + counts(page, r"list of Hopf points is proved complete for NUMBER of NUMBER rod", *proved)
+
+
+def followed_beyond(view, page, prefix, ends):
+    """How far branches are followed beyond the range `ends` of F: at most to its limits, and as stored."""
+    low, high = (view.variables[f"{prefix}{end}"].ravel() for end in ("from", "to"))
+    low, high = low[np.isfinite(low)], high[np.isfinite(high)]
+    crushing = view.point_columns["k1"].max() if is_linear(view) else np.inf
+    why = (
+        "" if (high <= min(FARTHEST * ends[1], max(crushing, ends[1]))).all() else f"followed to {high.max()}"
+    )
+    why += "" if (low >= min(ends[0], 0.0)).all() else f"followed from {low.min()}"
+    return [
+        (line, why or wrong)
+        for line, wrong in ranges(page, "are followed down to F = RANGE and up to RANGE;", low, high)
+    ]
+
+
+def is_linear(view):
+    """Whether the rods of a file are of linear material, which the force F = k1 crushes."""
+    return view.config.get("material", {}).get("law", "linear") == "linear"
 
 
 def _one_rod(view, page, fine, own, true):
@@ -93,7 +116,10 @@ def _branch_line(view, page, line, own, true):
     """From where to where a branch leads, its cycles, and how wide they beat."""
     first, last, found = true.special[0], true.special[-1], []
     places = read(page, rf"F = NUMBER \(\+- ({NUMBER})\)", only=line)
-    for place, special in zip(places, (first, last), strict=False):
+    ends = (last,) if first.kind == "end" else (first, last)
+    for _, match in read(page, "from beyond [a-z ]*, F = NUMBER,", only=line):
+        found.append((line, as_stated(match[1], first.at)))
+    for place, special in zip(places, ends, strict=False):
         found.append((line, with_error(place[1][1], place[1][2], special.at)))
     for word, reason in LEADS_TO.items():
         if f"to {word}, F =" in line:
@@ -235,6 +261,11 @@ def _unstable(view, some, rod):
     return ""
 
 
+def first_end(curve):
+    """1 for a branch that begins at an end of the range, beyond which it comes from; else 0."""
+    return int(curve.special[0].kind == "end")
+
+
 def _grid(view, page, fine, own, true):
     count = len(true)
     curves = [curve for each in own.values() for curve in each]
@@ -256,9 +287,13 @@ def _grid(view, page, fine, own, true):
         (rod, s)
         for rod, each in true.items()
         for number, curve in enumerate(each, 1)
-        for s in curve.special
+        for s in curve.special[first_end(curve) :]
         if not 0 < s.meets < number
     ]
+    entries = [curve.special[0].at for each in true.values() for curve in each if first_end(curve)]
+    for line, match in read(page, r"^NUMBER branch(?:es)? enters? the range from beyond: F = RANGE"):
+        why = [] if int(match[1]) == len(entries) else [f"there are {len(entries)}"]
+        found.append((line, "; ".join(filter(None, [*why, range_as_stated(match[2], entries)]))))
     for words, kind in PLURALS.items():
         at = [s.at for _, s in specials if s.kind == kind]
         for line, match in read(page, rf"^NUMBER (?:{words}): F = RANGE"):

@@ -25,7 +25,7 @@ from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.sweep.points.points import lines_along
 
 from .arm_sentences import arm_sentences, random_arm, region_as_stated
-from .branch_sentences import branch_sentences
+from .branch_sentences import branch_sentences, followed_beyond
 from .page import (
     NUMBER,
     TIE,
@@ -1000,6 +1000,7 @@ def _state_sentences(view, page, fine, row):
     """Stable states and special points of cycles, against branches of a far smaller accuracy."""
     v, rows, found = fine, view.parameter_values[row], []
     states = v["stable_states"]
+    found += followed_beyond(view, page, "cycle_followed_", view.variables["F"][[0, -1]])
     for number, word in enumerate(STABLE_STATES):
         share = [100 * (states == number).mean()]
         found += ranges(

@@ -3,10 +3,8 @@ stored.
 
 A branch may leave the range, turn back at a fold beyond its end, and enter the range again; and the branch of
 a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.
-Special points in the region are not located.
-
-A fold changes the number of multipliers outside the unit circle by one. Therefore a branch that moves away
-from the range comes back stable after one fold only if this number is 1, and is not followed otherwise.
+Special points in the region are not located. A fold changes the number of multipliers outside the unit circle
+by one: a branch that moves away from the range is followed only if it has one, and may come back stable.
 """
 
 from collections.abc import Iterator
@@ -20,7 +18,8 @@ from ...model.crushing import uncrushed_interval
 from ...solve_progress import solve_part
 from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
-from .arc_length_step import BranchCycle
+from ..unsolvable import Unsolvable, WorkLimitReached
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
 from .branch_continuation import follow_from_cycle, index_of_passed_range_end
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_end_reason import BranchEndReason
@@ -87,13 +86,16 @@ class RegionBeyond:
         self.followed_to = farther(self.range_end, nearer(self.followed_to, coordinate))
 
     def entry_after(self, passage: RangePassage) -> RangePassage | None:
-        """The place where a branch that leaves the range at `passage` enters the range again; None if the
-        branch ends before, leaves the region at its other end, or is not followed further."""
+        """The place where a branch that leaves the range at `passage` enters it again; None if it ends
+        before, leaves the region at its other end, or is not followed further."""
         least, most = unstable_count_bounds(passage.cycle)
         if not least <= 1 <= most:
             return None
         with solve_part(f"a branch beyond {self.path.text_at(self.range_end)}"), self._limited_work():
-            return self._entry(BranchCurve(start_hopf=-1), passage.cycle, passage.accuracy)
+            start = self._with_step_into_region(passage)
+            if start is not None:
+                return self._entry(BranchCurve(start_hopf=-1), start, passage.accuracy)
+        return None
 
     def entries_from_hopf_points(self) -> Iterator[RangePassage]:
         """Yields the places where branches from the Hopf points of the region enter the range. A Hopf point
@@ -102,14 +104,32 @@ class RegionBeyond:
             if number in self._ended_hopfs:
                 continue
             where = self.path.text_at(hopf.parameter_coordinate)
+            entry = None
             with solve_part(f"branch from the Hopf point at {where}"), self._limited_work():
                 entry = self._entry_from_hopf_point(number, hopf)
             if entry is not None:
                 yield entry
 
+    def _with_step_into_region(self, passage: RangePassage) -> BranchCycle | None:
+        """The cycle of `passage` with a step so short that the next cycle lies in the region, before a fold
+        there; None, and the region ends here, if no step is so short."""
+        start = passage.cycle
+        length = start.next_arc_length
+        while length >= ARC_STEP_CONTROL.min_length:
+            try:
+                end = cycle_at_length(start, length, passage.accuracy)
+                if index_of_passed_range_end(end, self.limits.coordinate_range) != 1 - self.index:
+                    return replace(start, next_arc_length=length)
+            except WorkLimitReached:
+                break
+            except Unsolvable:
+                pass  # the step is too long for the prediction
+            length /= 2
+        self.stop_at(self.range_end)
+        return None
+
     def _entry_from_hopf_point(self, number: int, hopf: HopfBranchStart) -> RangePassage | None:
-        """The place where the branch from the Hopf point `hopf` with the index `number` enters the range;
-        None as in `entry_after`."""
+        """The place where the branch from the Hopf point `hopf` with the index `number` enters the range."""
         accuracy = accuracy_near_hopf_points([hopf], self.limits.accuracy)
         moves_away = hopf.direction == (-1 if self.index == 0 else 1)
         # The straight rod loses stability by pairs: without the multiplier that is 1 at the Hopf point, which
@@ -148,12 +168,15 @@ class RegionBeyond:
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:
-        """Counts the work of the `with` block, and limits it to `work_left`."""
+        """Counts the work of the `with` block, and limits it to `work_left`. If the block fails, it ends, and
+        the region is not searched further."""
         workspace = self.limits.workspace
         before = workspace.work
         try:
             with workspace.further_limit(self.work_left):
                 yield
+        except FAILURES:
+            self.stop_at(self.range_end)
         finally:
             self.work_left -= workspace.work - before
 

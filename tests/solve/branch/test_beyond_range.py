@@ -150,6 +150,26 @@ def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
     assert 137.56 <= high < 1.5 * 137.56
 
 
+def test_a_failure_beyond_the_range_leaves_the_branches_within(monkeypatch):
+    def overflows(*_):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(region_beyond.RegionBeyond, "_entry", overflows)
+    found = followed(FIG_2C, 0.0, 150.0)
+    assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]]
+    assert found.followed_range == (0.0, 150.0)
+
+
+def test_a_branch_that_turns_back_just_beyond_the_range_comes_back():
+    """The step from the end of the range leads over the fold: at half of this step the branch is beyond."""
+    rod = Rod(F=0.0, k1=175.0, k2=1e4, gamma3=1e-4)
+    fold = 144.728
+    (one,) = followed(rod, 0.0, fold * (1 - 1e-3)).curves[:1]
+    assert kinds(one) == ["hopf", "end"]
+    row = states(rod, [100.0, 130.0, fold * (1 - 1e-3)])
+    assert row == states(rod, [100.0, 130.0, fold * (1 - 1e-3), 160.0])[:-1]
+
+
 def test_a_narrow_diagram_equals_the_part_of_a_wide_one():
     """Random rods near the first fold of their Hopf curves, with ranges that contain no fold."""
     rng = np.random.default_rng(11)
