@@ -19,6 +19,7 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
 from .arm.quantities import constant_quantities_text
+from .arm.validity_hatches import hatch_compressed
 from .grid_sections import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -82,7 +83,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    edge = _draw_crushing(axes, ratio, *at)
+    edge = [*_draw_crushing(axes, ratio, *at), *hatch_compressed(axes, view, ratio, *at)]
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     handles = [*palette.legend_entries(pixels), *_draw_stored_curves(axes, view, palette, line, row), *edge]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
