@@ -487,6 +487,8 @@ def diagram_figure(d, view, _):
         return Rod(**values) if values["F"] < values["k1"] else None
 
     words = {colour_of(h): text for h, text in d.legend_entries() if isinstance(h, Patch)}
+    for one in d.take(axes, ContourSet, lambda one: any(one.hatches)):
+        found.append(("compression", _compressed(one, line, fixed, row)))
     covers = d.take(axes, Collection, lambda one: not isinstance(one, QuadMesh))
     states = "stable_states" in v
     if meshes := d.take(axes, QuadMesh):
@@ -505,6 +507,14 @@ def diagram_figure(d, view, _):
         )
     }
     return found + parameters_told(d, columns | gamma1)
+
+
+def _compressed(hatched, line, fixed, row):
+    """Why an area is not that of arms that the load compresses by a tenth and more."""
+    x, y = np.concatenate([path.vertices for path in hatched.get_paths()]).T
+    values = {"taper": 1.0} | fixed | {line: x, row: y}
+    ratio = values["F"] / (values["k1"] * np.minimum(values["taper"], 1) ** 2)
+    return "" if abs(np.min(ratio) - 0.1) < 0.01 * np.max(ratio) else f"it begins at {np.min(ratio)}"
 
 
 def _uniform(pixels, i, j):

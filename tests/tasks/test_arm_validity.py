@@ -437,13 +437,33 @@ def test_figures_over_F_are_hatched_where_the_model_does_not_apply(command, draw
     assert "hatched: the model does not apply\ndotted: the model is doubtful" in figure.get_suptitle()
 
 
+@pytest.mark.parametrize(
+    ("stop", "law", "hatched"), [("15 kPa", "", True), ("9 kPa", "", False), ("15 kPa", "neo_hookean", False)]
+)
+def test_a_diagram_is_hatched_where_the_load_compresses_the_arm_too_much(command, drawn, stop, law, hatched):
+    """Above 10 kPa, a tenth of Young's modulus; the rows are judged at their first Hopf points, 2 kPa."""
+    arm = f"length: 10 cm, radius: 5 mm, young: 100 kPa, viscosity: 1 kPa s{law and f', law: {law}'}"
+    loads = f"pressure: {{start: 0 kPa, stop: {stop}, num: 4}}"
+    rows = "gamma3: [1.0e-3, 2.0e-3]"
+    command.write("d.yaml", f"task: phase_diagram\nparameters: {{arm: {{{arm}, {loads}}}, {rows}}}\n")
+    command.solved("d.yaml")
+    figure = figure_of(drawn, command.directory / "d.h5", command.directory / "f.png")
+    areas = [each for each in figure.axes[0].collections if any(getattr(each, "hatches", [None]) or [None])]
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(areas) == legend.count("compression beyond its limit") == hatched
+    for area in areas:
+        x = np.concatenate([path.vertices for path in area.get_paths()])[:, 0]
+        k1 = rs.open(command.directory / "d.h5").k1.item()
+        assert x.min() == pytest.approx(0.1 * k1, rel=0.01)
+
+
 def test_a_diagram_over_poissons_ratio_has_the_arm_a_scale_of_the_ratio_and_dots(command, drawn):
     command.write("d.yaml", DIAGRAM_OVER_POISSON)
     command.solved("d.yaml")
     figure = figure_of(drawn, command.directory / "d.h5", command.directory / "f.png")
     title = figure.get_suptitle().replace("\xa0", " ")
     assert "length 14 cm, radius 4 mm, Young's modulus 100 kPa, viscosity 5 Pa s" in title
-    assert title.endswith("\ndotted: the model is doubtful")
+    assert title.endswith("\ndotted: the model is doubtful, judged at the first Hopf point of each row")
     (axes,) = (axes for axes in figure.axes if axes.patches)
     assert {patch.get_hatch() for patch in axes.patches} == {"..."}
     (scale,) = (child for child in axes.child_axes if child.get_ylabel() == "Poisson's ratio")

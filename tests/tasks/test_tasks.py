@@ -359,6 +359,33 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     assert line.startswith(f"curve of folds of cycles: from {first} to {last}; 1 point,")
 
 
+@pytest.mark.parametrize(("second", "clause"), [(133.0146, "; k1 is almost extremal there"), (133.3, "")])
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_curve_that_is_lost_near_an_extremum_of_the_row_parameter_is_said_to_be(second, clause, side):
+    """As with folds at gamma3 = 0.006, where a closed branch of cycles shrinks to one cycle."""
+    places = [(79.16, 133.01457), (80.0, second), (90.0, 133.5), (110.0, 134.0)]
+    points = [
+        CurvePoint(at=at, row_value=k1, row_coordinate=k1 - 133, error=1e-7, period=0.02, tip_y_max=0.1)
+        for at, k1 in places
+    ]
+    ends = (CurveEndReason.not_followed, CurveEndReason.edge)
+    points, ends = (tuple(points), ends) if side == 0 else (tuple(points[::-1]), ends[::-1])
+    curve = SpecialPointCurve(SpecialKind.fold, points, ends, (None, None))
+    filled = cycle_curve_values(
+        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
+    )
+    rows = {name: np.zeros((2, 2)) for name in ("cycle_special_kind", "cycle_special_F")}
+    view = SimpleNamespace(
+        variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 120.0])},
+        point_columns={"k1": np.array([100.0, 200.0])},
+        status_names=np.array(["ok", "ok"]),
+        by_point=rows.__getitem__,
+    )
+    line = cycle_curve_lines(view, "F", "k1")[0]
+    assert f"(no further point found{clause})" in line
+    assert "(edge of the diagram)" in line
+
+
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     points = tuple(
         CurvePoint(at=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)

@@ -19,6 +19,7 @@ from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
 from .arm.quantities import constant_quantities_text
+from .arm.validity_hatches import hatch_compressed
 from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
 from .request import FigureRequest
@@ -82,10 +83,13 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    crushing_line = _draw_crushing(axes, ratio, *pixel_coordinates)
+    boundaries = [
+        *_draw_crushing(axes, ratio, *pixel_coordinates),
+        *hatch_compressed(axes, view, ratio, *pixel_coordinates),
+    ]
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     curves = _draw_stored_curves(axes, view, palette, line, row)
-    handles = [*palette.legend_entries(pixels), *curves, *crushing_line]
+    handles = [*palette.legend_entries(pixels), *curves, *boundaries]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
     constants = constant_quantities_text(view), _constant_parameters_text(view, line, row)
     figure.suptitle(style.heading_text(view, *constants, stored_crossings_text(view)))

@@ -502,3 +502,14 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     assert c.periods < REQUEST.most_periods
     assert "the motion repeats within" in c.message
     assert "but Newton's method finds no cycle near this motion on finer meshes" in c.message
+
+
+def test_a_motion_that_is_slow_near_a_fold_is_said_to_be():
+    """The branch of these cycles folds at F = 85.60558; within 800 returns the motion reaches its cycle."""
+    rod = Rod(F=85.6, k1=150.0, k2=1e4, gamma3=1e-4)
+    request = CycleRequest(
+        amplitude=0.06, harmonics=8, samples=0, shapes=0, nodes=0, most_periods=320, accuracy=1e-5
+    )
+    found = solve_cycle(rod, request)
+    assert found.status == CycleStatus.not_settled
+    assert "only: the motion changes slowly, as near a fold of a branch of cycles" in found.message

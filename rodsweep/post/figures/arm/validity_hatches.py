@@ -8,15 +8,18 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from ....arrays import Array
-from ....model.arm.neglected import Validity
+from ....model.arm.neglected import COMPRESSION_LIMIT, Validity
 from ....results.file.view import View
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
 HATCHES = {Validity.does_not_apply: "////", Validity.doubtful: "..."}
 """Hatches of points by validity of the model; other points have none."""
+COMPRESSION_HATCH = r"\\\\"
+"""Hatch of loads along the rows of a phase diagram that compress an arm beyond the limit of the model."""
 HATCH_LOOK: dict[str, Any] = {"fc": "none", "ec": "0.6", "lw": 0}
 """Matplotlib style of all hatches."""
 NOTES = {
@@ -51,7 +54,8 @@ def _hatched_note(
     )
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
-        return f"{word}: {sentence}"
+        clause = ", judged at the first Hopf point of each row" if "crossing_at" in views[0].variables else ""
+        return f"{word}: {sentence}{clause}"
     return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 
@@ -73,6 +77,22 @@ def _hatch_points(figure: Figure, view: View, names: list[str], outside: np.ndar
             _hatch_map_cells(axes, edges, cells, keywords)
             is_hatched = True
     return is_hatched
+
+
+def hatch_compressed(axes: Axes, view: View, ratio: Array, x: Array, y: Array) -> list[Patch]:
+    """Hatches the part of a phase diagram of arms in which the load compresses the arm beyond the limit of
+    the model; returns a list with its legend entry, empty for rods, for rubber and for smaller loads.
+
+    ratio: force divided by the force that crushes the arm, at x and y, (pixels, pixels); 0 for rubber, whose
+    law includes large compression. x, y: coordinates, (pixels,).
+    """
+    if not view.quantities or not ratio.max() > COMPRESSION_LIMIT:
+        return []
+    levels = [COMPRESSION_LIMIT, max(float(ratio.max()), 2 * COMPRESSION_LIMIT)]
+    hatched = axes.contourf(x, y, ratio, levels=levels, colors="none", hatches=[COMPRESSION_HATCH])
+    hatched.set(edgecolor=HATCH_LOOK["ec"], linewidth=0)
+    keywords = HATCH_LOOK | {"hatch": COMPRESSION_HATCH}
+    return [Patch(label="compression beyond its limit", **keywords)]
 
 
 def _axis_label(axes: Axes, letter: str) -> str:

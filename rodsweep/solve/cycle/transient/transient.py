@@ -2,8 +2,7 @@
 
 The motion is integrated from return to return (`returns`). Newton's method starts once two returns agree to a
 relative distance of a tenth. Slow motions about the straight rod are shortened by jumps: the state is scaled
-to the amplitude that the amplitude equation predicts (`amplitude_equation`). A motion with a stored path has
-no jumps.
+to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless its path is stored.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
 axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
@@ -29,6 +28,7 @@ from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation
 from .motion_mesh import integrable_rod
+from .no_period import no_period_text
 from .orbit_from_motion import orbit_from_motion
 from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
@@ -156,7 +156,7 @@ class Transient:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
             limit = f", at the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
-            return f"no periodic motion within {counted(self.returns, 'return')} of the tip{limit}"
+            return no_period_text(self.returns, limit, self.past_returns)
         is_unstable = self.straight.stable is False
         reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
         return f"the deflection has decayed after {self.returns} returns, but {reason}"

@@ -1,0 +1,27 @@
+"""Message on a motion in which no period was found."""
+
+from collections.abc import Sequence
+
+from ....arrays import Array
+from ....wording import counted
+from .returns import RETURN_SETTINGS, repetition
+
+
+def no_period_text(returns: int, work: str, last: Sequence[tuple[float, Array]]) -> str:
+    """Message on a motion in which no period was found; says so if the motion almost repeats at its last
+    returns.
+
+    returns: number of returns of the tip. work: clause on other limits, or empty. last: times and bending
+    moments, (nodes,) each, of the last returns.
+    """
+    text = f"no periodic motion within {counted(returns, 'return')} of the tip{work}"
+    moments = [state for _, state in last][-1 - RETURN_SETTINGS.max_returns_per_period :]
+    if len(moments) < 2:
+        return text
+    _, distance = repetition(moments)
+    if distance >= RETURN_SETTINGS.max_equal_return_distance:
+        return text
+    return (
+        f"{text}, but the last returns differ by a relative {distance:.1e} only: the motion changes slowly, "
+        "as near a fold of a branch of cycles, which the task `branch` follows"
+    )
