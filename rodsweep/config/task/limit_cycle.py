@@ -112,16 +112,16 @@ class LimitCycleConfig(Config):
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
-                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
-                "give axes instead of parameters.points"
+                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; use start: "
+                "mode, or give axes instead of parameters.points"
             )
         if (
             self.limit_cycle.start == "neighbour"
             and self.chain_parameter not in self.parameters.single_parameter_sizes
         ):
             raise ValueError(
-                f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
-                f"of parameters.arm are {' and '.join(self.parameters.arm_axes)}; give several values of "
-                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+                f"limit_cycle.start: neighbour needs an axis of a single parameter; those of parameters.arm, "
+                f"{' and '.join(self.parameters.arm_axes)}, change several at once. Give several values of "
+                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or start: mode"
             )
         return self
