@@ -466,7 +466,7 @@ def _crossing_sentences(rod, crossings, page):
         above = int((w.real > 0).sum())
         why += [] if int(match[6]) == above else [f"{above} modes are unstable above"]
         found.append((line, "; ".join(filter(None, why))))
-    for line, match in read(page, r"(?:oscillation|beating|beating again|stable again) from F = NUMBER"):
+    for line, match in read(page, r"(?:oscillation|flutter|flutter again|stable again) from F = NUMBER"):
         near = min(crossings, key=lambda c: abs(c.value - float(match[1])))
         found.append((line, as_stated(match[1], near.value)))
     for line, match in read(page, r"(?:^|; )NUMBER crossings? up to F = NUMBER$"):
@@ -645,7 +645,7 @@ def cycle_sentences(view, page, keywords, fine):
     beats = (words[0] == "cycle").reshape(shape)
     found = counts(page, r"^of NUMBER points?: \w", same.size)
     for word in set(words[0]):
-        said = OUTCOMES.get(word, word.replace("_", " "))
+        said = re.escape(OUTCOMES.get(word, word.replace("_", " ")))
         where = (words[0] == word, view.point_columns, lambda text, mask: region_as_stated(view, text, mask))
         found += regions(page, rf"(?<=[:,)\d] ){said} at", *where)
         found += counts(page, rf"^the rod {said} at all NUMBER point", same.size)

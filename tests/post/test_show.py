@@ -90,7 +90,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
     (line,) = lines_along(view.point_columns, "F")
     assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
-    assert "beat): 49.758004916" in command("show", "all.h5").stdout
+    assert "flutter): 49.758004916" in command("show", "all.h5").stdout
 
 
 def test_a_change_that_is_not_understood_is_a_bracket(command):
@@ -109,7 +109,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
 def test_thresholds_of_several_lines_are_named_by_what_differs(command):
     config = "task: modes\nparameters: {F: [30, 60], k1: [200, .inf], k2: 1.0e4, gamma3: 1.0e-4}\n"
     told = shown(command, config)
-    assert re.search(r"beat\): 49\.7580049161?\d+ for k1 = 200, 37\.5155341729\d+ for k1 = inf", told)
+    assert re.search(r"flutter\): 49\.7580049161?\d+ for k1 = 200, 37\.5155341729\d+ for k1 = inf", told)
 
 
 def test_eigenvalues_of_a_single_point_are_told_with_errors_and_count(command):

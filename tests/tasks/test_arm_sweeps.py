@@ -148,7 +148,7 @@ def test_other_units_ask_for_the_same():
         ("branch", {}, {}, "solves for the load; remove it"),
         ("branch", {}, {"along": "k1", "start": 10}, "branch.along: k1 is not allowed with parameters.arm"),
         ("phase_diagram", {"young": ["90 kPa", "100 kPa"]}, {}, "arm.young has several values, which change"),
-        ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "changes a single parameter"),
+        ("limit_cycle", {"length": ["9 cm", "10 cm"]}, {"start": "neighbour"}, "axis of a single parameter"),
     ],
 )  # fmt: skip
 def test_mistakes_are_told_in_a_sentence(task, arm, beside, sentence):

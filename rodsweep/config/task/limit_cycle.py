@@ -112,8 +112,8 @@ class LimitCycleConfig(Config):
             )
         if self.limit_cycle.start == "neighbour" and self.parameters.is_list:
             raise ValueError(
-                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; remove it, or "
-                "give axes instead of parameters.points"
+                "limit_cycle.start: neighbour needs a grid, in which a point has neighbours; use start: "
+                "mode, or give axes instead of parameters.points"
             )
         if self.limit_cycle.start == "neighbour":
             self._require_chain_parameter()
@@ -127,9 +127,9 @@ class LimitCycleConfig(Config):
             return
         if axes := self.parameters.arm_axes:
             raise ValueError(
-                f"limit_cycle.start: neighbour needs an axis that changes a single parameter, but the axes "
-                f"of parameters.arm are {' and '.join(axes)}; give several values of "
-                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or remove it"
+                f"limit_cycle.start: neighbour needs an axis of a single parameter; those of parameters.arm, "
+                f"{' and '.join(axes)}, change several at once. Give several values of "
+                f"{enumeration((*SINGLE_PARAMETER_OF, *NONLINEAR_PARAMETERS), 'or')}, or start: mode"
             )
         raise ValueError(
             f"limit_cycle.along is {parameter} but parameters.{parameter} is not given; give several values "
