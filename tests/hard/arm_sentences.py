@@ -416,7 +416,10 @@ def _answer(view, page, fine, scales):
         )
         codes = {word: code for code, word in view.flags.items()}
         for status, words in WITHOUT_CYCLE.items():
-            told(rf"{re.escape(words)}{some}$", (view.variables["status"].ravel()[chosen] == codes.get(status)).sum())
+            told(
+                rf"{re.escape(words)}{some}$",
+                (view.variables["status"].ravel()[chosen] == codes.get(status)).sum(),
+            )
         power = v["injection_mean"].ravel() * scales["force_scale"] * scales["length"] / scales["tau2"]
         numbers = {"frequency": hertz, "reach of the tip": y, "power": power}
         found += _drag_sentences(view, page, start, chosen, numbers)
