@@ -83,12 +83,12 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
     # The rows q and r of A = sum q r^T: rows are contiguous.
     Q = np.empty((n, n))
     R = np.zeros((n, n))
-    min_norm = negligible * norms.max()
+    least = negligible * norms.max()
     rank = 0
     while rank < n:
         p = np.argmax(norms)
         size = norms[p]
-        if rank > 0 and size <= min_norm:
+        if rank > 0 and size <= least:
             break
         q = Q[rank]
         r = R[rank]
@@ -96,33 +96,33 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
         # avoids a division by 0 for a zero matrix.
         q[:] = columns[p] / max(size, EXPONENT_SETTINGS.least_divisor)
         for j in range(n):
-            if norms[j] > min_norm:
+            if norms[j] > least:
                 norms[j] = _subtract_projection(columns[j], q, r, j)
         # The rest of the pivot column is rounding error: its norm is set to 0.
         r[p] = size
         norms[p] = 0.0
         rank += 1
-    product = np.zeros((rank, rank))
+    small = np.zeros((rank, rank))
     for a in range(rank):
         for b in range(rank):
             total = 0.0
             for j in range(n):
                 # A = Q R has the nonzero eigenvalues of R Q, a matrix of the size of the rank.
                 total += R[a, j] * Q[b, j]
-            product[a, b] = total
-    return product
+            small[a, b] = total
+    return small
 
 
 @compiled_for_vectors
 def _subtract_projection(column: Array, q: Array, r: Array, j: int) -> float:
     """Subtracts from `column`, (n,), in place, its component along the unit vector q, (n,), stores this
     component in r[j], and returns the norm of the remaining column. j: index of the column."""
-    projection = 0.0
-    remaining = 0.0
+    along = 0.0
+    left = 0.0
     for i in range(len(q)):
-        projection += q[i] * column[i]
+        along += q[i] * column[i]
     for i in range(len(q)):
-        column[i] -= projection * q[i]
-        remaining += column[i] ** 2
-    r[j] = projection
-    return np.sqrt(remaining)
+        column[i] -= along * q[i]
+        left += column[i] ** 2
+    r[j] = along
+    return np.sqrt(left)
