@@ -161,7 +161,7 @@ class BranchCalibration:
         cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
         interpolated cycle."""
         mean = [
-            _interpolated_errors(own_errors, other_errors, fraction)
+            _log_interpolated_errors(own_errors, other_errors, fraction)
             for own_errors, other_errors in (
                 (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
                 (self.at_equal_parameter.time_errors, other.at_equal_parameter.time_errors),
@@ -174,7 +174,7 @@ class BranchCalibration:
         return BranchCalibration(calibration, mean[2], sensitivity)
 
 
-def _interpolated_errors(first: Array, second: Array, fraction: float) -> Array:
+def _log_interpolated_errors(first: Array, second: Array, fraction: float) -> Array:
     """Geometric interpolation between the errors `first` and `second`, arrays of equal shape, at the fraction
     `fraction` of the distance from `first`; times `interpolation_factor`, but at most the larger of the two
     errors."""

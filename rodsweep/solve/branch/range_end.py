@@ -3,7 +3,7 @@
 from numpy.polynomial import Polynomial
 
 from ...model.parameters import PARAMETERS
-from ..continuation.follower import zero_along_step
+from ..continuation.curve import zero_along_step
 from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
@@ -44,9 +44,10 @@ def cycle_at_range_end(
 
 
 def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
-    """The cycle at the coordinate 0 of a parameter that is never negative, if the range begins there and the
-    tangent at `start` reaches it within the next step: no step passes this end. Else None, also if no cycle
-    is found there, as behind a fold. low: smallest coordinate of the range. Raises WorkLimitReached."""
+    """The cycle at the coordinate 0, for a parameter that cannot be negative, so that no step can overshoot
+    this end. None unless the range begins at 0 and the tangent at `start` reaches 0 within the next step;
+    also None if no cycle is found there, as when the branch folds before 0. low: smallest coordinate of the
+    range. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
     may_be_negative = PARAMETERS[start.scale.parameter_name].allowed.contains(-1.0)
     if may_be_negative or low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:

@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
-from ...continuation.follower import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
+from ...continuation.curve import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import least_stretch_of_orbit
 from ...orbit.newton import relative_change

@@ -59,7 +59,7 @@ class DetachedRows:
 
     def item_label(self, item: int) -> str:
         """Text for a row in the progress display."""
-        return f"branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g} that only curves meet"
+        return f"detached branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
 
 
 Stage = SpecialCurveTracer | DetachedRows

@@ -12,7 +12,7 @@ from math import nan
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...continuation.follower import zero_along_step
+from ...continuation.curve import zero_along_step
 from ...orbit.least_stretch import least_stretch
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ....solve_progress import report
-from ...continuation.follower import CurveStop, follow_curve, zero_along_step
+from ...continuation.curve import CurveStop, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,

@@ -32,7 +32,7 @@ class OrderRatioSettings:
 ORDER_RATIO_SETTINGS = OrderRatioSettings()
 
 
-def order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
+def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
     """Ratios of the orders of all elements to the largest order, as in `Elements`; () if all are 1.
 
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
