@@ -16,15 +16,16 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: View, done: np.ndarray, along: str, prefix: str) -> str:
+def followed_range_text(view: View, is_computed: np.ndarray, parameter: str, prefix: str) -> str:
     """Sentence on the range in which branches are followed where they may enter the range of the file, and on
-    the branches that are missed. done: mask of the computed points, (...,). along: parameter along which
-    branches are followed. prefix: first part of the names of the two variables."""
-    places = [view.variables[f"{prefix}{end}"][done] for end in ("from", "to")]
+    the branches that are missed. is_computed: mask of the computed points, (...,). parameter:
+    parameter along which branches are followed. prefix: first part of the names of the two variables."""
+    places = [view.variables[f"{prefix}{end}"][is_computed] for end in ("from", "to")]
     if not all(np.isfinite(place).any() for place in places):
         return MISSED_CYCLES_TEXT
     low, high = map(span_text, places)
-    followed = f"branches that may enter the range are followed down to {along} = {low} and up to {high}"
+    limits = f"down to {parameter} = {low} and up to {high}"
+    followed = f"branches that may enter the range are followed {limits}"
     return f"{followed}; {MISSED_CYCLES_TEXT}"
 
 

@@ -174,12 +174,14 @@ class BranchCalibration:
         return BranchCalibration(calibration, mean[2], sensitivity)
 
 
-def _log_interpolated_errors(first: Array, second: Array, fraction: float) -> Array:
-    """Geometric interpolation between the errors `first` and `second`, arrays of equal shape, at the fraction
-    `fraction` of the distance from `first`; times `interpolation_factor`, but at most the larger of the two
-    errors."""
+def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:
+    """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
+    at the fraction `fraction` of the distance from `first_errors`; times `interpolation_factor`, but at most
+    the larger of the two errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([first, second], BRANCH_ERROR_SETTINGS.min_error))
+    logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first, second))
+    bounded: Array = np.minimum(
+        BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first_errors, second_errors)
+    )
     return bounded

@@ -153,10 +153,10 @@ class RegionBeyond:
             return None
         return replace(there, cycle=turned_back(there.cycle))
 
-    def _entry(self, curve: BranchCurve, first: BranchCycle, accuracy: float) -> RangePassage | None:
-        """Follows the branch `curve` from its first cycle `first` in the region; returns the place where it
-        enters the range, or None."""
-        curve = follow_from_cycle(curve, first, replace(self.limits, accuracy=accuracy))
+    def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
+        """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
+        where it enters the range, or None."""
+        curve = follow_from_cycle(curve, first_cycle, replace(self.limits, accuracy=accuracy))
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)
@@ -202,14 +202,14 @@ class RegionBeyond:
                 self.stop_at(self.path.coordinate(crossing.value))
         self.limits = replace(self.limits, hopfs=hopfs)
 
-    def _stop_where_search_is_incomplete(self, found: ThresholdSearchResult) -> None:
-        """Moves `followed_to` to the place beyond which `found` may lack Hopf points."""
-        if found.ended_early:
+    def _stop_where_search_is_incomplete(self, search_result: ThresholdSearchResult) -> None:
+        """Moves `followed_to` to the place beyond which `search_result` may lack Hopf points."""
+        if search_result.ended_early:
             # The search begins at the smallest coordinate.
-            reached = max(map(self.path.coordinate, found.searched_interval))
+            reached = max(map(self.path.coordinate, search_result.searched_interval))
             self.stop_at(reached if self.index == 1 else self.range_end)
-        if not isnan(found.open_range[0]):
-            gap = [self.path.coordinate(value) for value in found.open_range]
+        if not isnan(search_result.open_range[0]):
+            gap = [self.path.coordinate(value) for value in search_result.open_range]
             self.stop_at(min(gap) if self.index == 1 else max(gap))
 
 

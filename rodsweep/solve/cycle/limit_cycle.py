@@ -1,12 +1,12 @@
 """The limit cycle of one rod (paper, Sec. VII): task `limit_cycle` with `method: collocation`.
 
 The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
-From the eigenmode the motion is integrated until the motion approaches a cycle (`transient`); near a Hopf
-point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour predicts the cycle
-of this rod by continuation (`neighbour`). Newton's method then solves for the periodic orbit on meshes chosen
-for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by its Floquet
-multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may agree
-although no cycle exists.
+From the eigenmode the motion is integrated until the motion approaches a cycle (`transient_integration`);
+near a Hopf point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour
+predicts the cycle of this rod by continuation (`neighbour`). Newton's method then solves for the periodic
+orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by
+its Floquet multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may
+agree although no cycle exists.
 """
 
 from contextlib import suppress

@@ -154,14 +154,14 @@ def _variables_with_values(
     return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
 
-def _end_reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
+def _end_reasons(end_reasons: Sequence[int], count: int) -> list[dict[str, int]]:
     """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 if the
     curve goes on.
 
-    ends: (reason at the first point, reason at the last point).
+    end_reasons: (reason at the first point, reason at the last point).
     """
     reasons = [{"start": 0, "end": 0} for _ in range(count)]
-    reasons[0]["start"], reasons[-1]["end"] = ends
+    reasons[0]["start"], reasons[-1]["end"] = end_reasons
     return reasons
 
 

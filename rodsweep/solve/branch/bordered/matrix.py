@@ -155,27 +155,30 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._stage_columns[:, :, 1], 0.0)
 
-    def matching_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def matching_right_sides(self, jump: Array, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides, (m n,), of the m matching conditions of multiple shooting: each shooting interval
         must end where the next interval starts, the last interval at the symmetric image of the first start.
 
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
-        of the next. columns: reduced right-hand sides, without the stages, (K, s, 1, n). ends: change of the
-        state at the end of the last time interval that `columns` cause if the first state is fixed, (1, n).
+        of the next. columns: reduced right-hand sides, without the stages, (K, s, 1, n). end_increments:
+        change of the state at the end of the last time interval that `columns` cause if the first state is
+        fixed, (1, n).
         """
         p = self.orbit.semidiscrete_equations
-        sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, end_increments, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
-    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
+    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
-        intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1,
-        n). ends: change of the state at the end of the last time interval that `columns` cause if the first
-        state is fixed, (1, n)."""
+        intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1, n).
+        end_increments: change of the state at the end of the last time interval that `columns` cause if the
+        first state is fixed, (1, n)."""
         p = orbit.semidiscrete_equations
-        matching_sides = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
+        matching_sides = self.matching_right_sides(
+            closing_residual(orbit.all_states, p), columns, end_increments
+        )
         return np.append(matching_sides, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right_side: Array, sides: Array, fraction: float) -> Array:

@@ -118,14 +118,14 @@ def special_point_between(
 
 
 def _with_mesh_errors(
-    point: SpecialPoint, last: SpecialPoint, start: BranchCycle, end: BranchCycle
+    point: SpecialPoint, coarser_point: SpecialPoint, start: BranchCycle, end: BranchCycle
 ) -> SpecialPoint:
-    """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor. The errors of period and largest tip y include a fraction of their difference between
-    `start` and `end`, the cycles before and after the point: for the error of the last secant step, and,
-    except at a fold, for the error of the parameter."""
+    """The special point with errors: its differences from `coarser_point`, the same point on a coarser mesh,
+    times a safety factor. The errors of period and largest tip y include a fraction of their difference
+    between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
+    and, except at a fold, for the error of the parameter."""
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
-        point.at - last.at
+        point.at - coarser_point.at
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
     fraction = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
@@ -137,10 +137,10 @@ def _with_mesh_errors(
     start_measures = start.cycle.measures
     end_measures = end.cycle.measures
     factor = SPECIAL_POINT_SETTINGS.error_factor
-    period = factor * abs(point.period - last.period) + fraction * abs(
+    period = factor * abs(point.period - coarser_point.period) + fraction * abs(
         start_measures.period - end_measures.period
     )
-    size = factor * abs(point.tip_y_max - last.tip_y_max) + fraction * abs(
+    size = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + fraction * abs(
         start_measures.tip_y_max - end_measures.tip_y_max
     )
     return replace(
