@@ -23,7 +23,7 @@ from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
 from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
-from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
+from rodsweep.sweep.points.chains import Chains, ChainSolver, SweepChains
 from rodsweep.sweep.points.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.tasks.running.job import job_of_file
@@ -473,7 +473,7 @@ def chain_solver(missing, kept, solved, stop=None):
         return outcome, Count(0.0 if state is None else state.value + 1)
 
     stop = StopRequest() if stop is None else stop
-    work = ChainedWork(Chains((6,), 0, True), solve_from, Count.from_arrays)
+    work = SweepChains(Chains((6,), 0, True), solve_from, Count.from_arrays)
     return ChainSolver(work, IndexSet(missing), kept, stop)
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import count_of_total
 from ..branch_curves import branch_ends, followed_parameter
 from ..crushing import uncrushed_ranges
@@ -16,7 +16,7 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: View, done: np.ndarray, along: str, prefix: str) -> str:
+def followed_range_text(view: ResultView, done: np.ndarray, along: str, prefix: str) -> str:
     """Sentence on the range in which branches are followed where they may enter the range of the file, and on
     the branches that are missed. done: mask of the computed points, (...,). along: parameter along which
     branches are followed. prefix: first part of the names of the two variables."""
@@ -28,7 +28,7 @@ def followed_range_text(view: View, done: np.ndarray, along: str, prefix: str) -
     return f"{followed}; {MISSED_CYCLES_TEXT}"
 
 
-def searched_range_line(view: View, computed: np.ndarray) -> str:
+def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
     computed: mask of the computed points, (...,).
     """

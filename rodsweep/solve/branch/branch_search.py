@@ -96,7 +96,7 @@ class BranchSearch:
         for start in starts:
             if lies_on_any(start, self.curves):
                 continue
-            place = f"{_WORDS[start.kind]} at {self.name} = {start.at:.9g}"
+            place = f"{_WORDS[start.kind]} at {self.name} = {start.parameter_value:.9g}"
             with solve_part(f"branch {len(self.curves) + 1}, through the {place}"):
                 try:
                     self._follow_detached(start)

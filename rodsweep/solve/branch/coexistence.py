@@ -208,12 +208,12 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
             stable = 1
         elif signs and 0 not in signs:
             stable = 0
-        low, high = sorted((first, second), key=lambda point: point.at)
+        low, high = sorted((first, second), key=lambda point: point.parameter_value)
         inner_interval = (
-            low.at + _end_error_sign(low) * low.error,
-            high.at - _end_error_sign(high) * high.error,
+            low.parameter_value + _end_error_sign(low) * low.error,
+            high.parameter_value - _end_error_sign(high) * high.error,
         )
-        outer_interval = low.at - low.error, high.at + high.error
+        outer_interval = low.parameter_value - low.error, high.parameter_value + high.error
         intervals.append(StabilityInterval(inner_interval, outer_interval, stable))
     return intervals
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.element_strains import write_element_strain_changes, write_element_strains
-from ...discretization.elements.periodic import (
+from ...discretization.elements.trigonometric import (
     hermite_coefficients_of_columns,
     series_maxima,
     series_minima,
@@ -19,9 +19,9 @@ from ...discretization.plane_equations import write_balance
 from ...discretization.state_layout import stress_index
 from ...discretization.stress.tip_motion import TipMatrices, write_tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
-from .semidiscrete import SemidiscreteEquations
+from .equations import OrbitEquations
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: half a period later, a symmetric orbit
@@ -29,7 +29,7 @@ has the values multiplied by these signs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TipExtremumSettings(CompiledSettings):
+class TipExtremumSettings(KernelConstants):
     """Settings for the extrema of the tip's coordinates over a period."""
 
     oversampling: int = 4
@@ -68,7 +68,7 @@ class OrbitMeans(NamedTuple):
 
 
 @compiled_for_vectors
-def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatrices) -> TipPath:
+def tip_path(states: Array, period: float, p: OrbitEquations, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
     period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
     of `tip_matrices`."""
@@ -118,7 +118,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 
 @compiled_for_vectors
-def power_means_and_least_stretch(stages: Array, weights: Array, p: SemidiscreteEquations) -> OrbitMeans:
+def power_means_and_least_stretch(stages: Array, weights: Array, p: OrbitEquations) -> OrbitMeans:
     """Means and rms deviations of the powers over a period, and the smallest h1 at the nodes and stages.
     stages: states at the stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of
     the orbit."""
@@ -158,7 +158,7 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 
 @compiled_for_vectors
-def write_strain_rates(states: Array, out: Array, p: SemidiscreteEquations) -> None:
+def write_strain_rates(states: Array, out: Array, p: OrbitEquations) -> None:
     """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
     tip 0 is written. p: equations of the orbit."""
     size = len(p.node_matrices.weights)
@@ -173,7 +173,7 @@ def write_strain_rates(states: Array, out: Array, p: SemidiscreteEquations) -> N
 
 
 @compiled_for_vectors
-def write_powers(states: Array, out: Array, p: SemidiscreteEquations) -> None:
+def write_powers(states: Array, out: Array, p: OrbitEquations) -> None:
     """Writes two powers for `states`, (m, n), into `out`, (2, m): row 0, the power of the follower force,
     computed from the reaction at the tip; row 1, the power lost by drag. p: equations of the orbit."""
     size = len(p.node_matrices.weights)

@@ -15,13 +15,13 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
-from ...discretization.elements.periodic import (
+from ...discretization.elements.quadrature import lobatto_points
+from ...discretization.elements.trigonometric import (
     hermite_coefficients,
     hermite_coefficients_of_columns,
     series_samples,
     time_of_rise_through_mean,
 )
-from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
 from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, tip_path, write_powers
 from .least_stretch import least_stretch_between_nodes
@@ -65,7 +65,7 @@ class CyclePath:
         mesh = orbit.form.mesh
         self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
         matrices = tip_matrices(mesh)
-        self._path = tip_path(self._equidistant_states, orbit.period, orbit.semidiscrete_equations, matrices)
+        self._path = tip_path(self._equidistant_states, orbit.period, orbit.orbit_equations, matrices)
         self.tip_coefficients = self._path.tip_coefficients
         self.tip_samples = self._path.tip_samples
 
@@ -145,7 +145,7 @@ class CyclePath:
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
         U = self.orbit.form.elastic_energy(self._equidistant_states)
         power = np.empty((2, len(self._equidistant_states)))
-        write_powers(self._equidistant_states, power, self.orbit.semidiscrete_equations)
+        write_powers(self._equidistant_states, power, self.orbit.orbit_equations)
         rates = (power[0] - power[1]) * period
         if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.

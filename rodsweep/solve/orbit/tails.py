@@ -19,12 +19,12 @@ from ...discretization.elements.mesh import uniform_mesh
 from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...discretization.stresses_at_jumps import stresses_by_element
 from ...model.compiled.compilation import compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from .orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CoefficientTailSettings(CompiledSettings):
+class CoefficientTailSettings(KernelConstants):
     """Settings for the tails of an orbit and for the decay of its coefficients."""
 
     min_decay: float = 0.2

@@ -39,7 +39,7 @@ class BorderedMatrix:
         self.scale = scale
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         derivatives = parameter_derivatives(orbit.form, scale.parameter_name)
         K, s, n = orbit.stage_states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
@@ -87,9 +87,9 @@ class BorderedMatrix:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
         factors of this matrix; border, residual: as in `step`."""
         factors = self._memory.factors
-        p = self.orbit.semidiscrete_equations
+        p = self.orbit.orbit_equations
         columns, ends = reduced_residuals(
-            orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
+            orbit.all_states, orbit.solved_duration, orbit.orbit_equations, p, factors
         )
         right_side = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
         return self.solve(border, right_side, columns[:, :, 0], 1.0)
@@ -110,8 +110,8 @@ class BorderedMatrix:
         variations: changes of orbit values and parameter coordinate, (v, N + 1).
         """
         derivatives = parameter_derivatives(orbit.form, self.scale.parameter_name)
-        equations = orbit.semidiscrete_equations
-        p = self.orbit.semidiscrete_equations
+        equations = orbit.orbit_equations
+        p = self.orbit.orbit_equations
         sides: tuple[Array, Array] = reduced_variation_sides(
             orbit.values, equations, derivatives, variations, p, self._memory.factors
         )
@@ -121,7 +121,7 @@ class BorderedMatrix:
         """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
         state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute_stages(starts, columns, self.orbit.semidiscrete_equations, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -164,7 +164,7 @@ class BorderedMatrix:
         of the next. columns: eliminated right-hand sides of the stages, (K, s, 1, n). ends: change of the end
         of the last interval caused by `columns` for a fixed start, (1, n).
         """
-        p = self.orbit.semidiscrete_equations
+        p = self.orbit.orbit_equations
         sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, ends, p)[:, 0]
         sides[-1] += jump
         return sides.ravel()
@@ -174,7 +174,7 @@ class BorderedMatrix:
         intervals, and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages,
         (K, s, 1, n). ends: change of the end of the last shooting interval caused by `columns` for a fixed
         start, (1, n)."""
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         matching_sides = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
         return np.append(matching_sides, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
@@ -205,9 +205,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = increments[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.stage_changes(
-            factors, starts, columns, self.orbit.semidiscrete_equations
-        )
+        out = self._shooting_intervals.stage_changes(factors, starts, columns, self.orbit.orbit_equations)
         return np.concatenate([increments[:n], out.ravel(), increments[-2:]])
 
 

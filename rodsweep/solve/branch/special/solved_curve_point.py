@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.along_parameter import interpolated_change
+from ...cycle.cycles_along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails

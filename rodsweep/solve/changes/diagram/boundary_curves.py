@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ....solve_progress import report
-from ...continuation.follower import CurveStop, follow_curve, zero_along_step
+from ...continuation.follower import StopReason, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
@@ -80,7 +80,7 @@ def trace_boundary(
     forward = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
     backward = forward
     solutions = forward.solutions
-    if forward.end_reason is not CurveStop.closed:
+    if forward.end_reason is not StopReason.closed:
         backward = follow_curve(
             curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEP_CONTROL, lambda _: report()
         )

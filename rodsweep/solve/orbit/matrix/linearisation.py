@@ -13,8 +13,8 @@ from ....discretization.nodal_rod import NO_JUMP_DERIVATIVE, NodalRodDerivative
 from ....discretization.state_layout import PLANE_COMPONENT_COUNT
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
+from ..equations import OrbitEquations
 from ..orbit import Orbit
-from ..semidiscrete import SemidiscreteEquations
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
 from .multipliers import multipliers_over_period, multipliers_over_solved_part
@@ -40,7 +40,7 @@ class Linearisation:
         self._memory = MatrixMemory(
             workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknown_count
         )
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         factors = self._memory.factors
         derivatives = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
@@ -55,7 +55,7 @@ class Linearisation:
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
-            orbit.values, self._period_derivative, orbit.semidiscrete_equations, self._memory.factors
+            orbit.values, self._period_derivative, orbit.orbit_equations, self._memory.factors
         )
         return step
 
@@ -82,7 +82,7 @@ def eliminate_at_orbit(
     values: Array,
     count: int,
     derivatives: ParameterDerivatives,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
@@ -124,7 +124,7 @@ def eliminate_at_orbit(
 
 
 @compiled_for_vectors
-def closing_residual(points: Array, p: SemidiscreteEquations) -> Array:
+def closing_residual(points: Array, p: OrbitEquations) -> Array:
     """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
@@ -138,7 +138,7 @@ def orbit_changes(
     right_sides: Array,
     period_derivative: Array,
     columns: Array,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> Array:
     """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
@@ -179,8 +179,8 @@ def orbit_changes(
 def reduced_residuals(
     points: Array,
     duration: float,
-    rod: SemidiscreteEquations,
-    p: SemidiscreteEquations,
+    rod: OrbitEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
@@ -204,10 +204,10 @@ def reduced_residuals(
 @compiled_for_vectors
 def reduced_variation_sides(
     values: Array,
-    rod: SemidiscreteEquations,
+    rod: OrbitEquations,
     derivatives: ParameterDerivatives,
     variations: Array,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
@@ -231,7 +231,7 @@ def reduced_variation_sides(
 
 @compiled_for_vectors
 def newton_step_with_factors(
-    values: Array, period_derivative: Array, p: SemidiscreteEquations, factors: NewtonFactors
+    values: Array, period_derivative: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
     """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors,
     period_derivative: from `eliminate_at_orbit` at a nearby orbit."""

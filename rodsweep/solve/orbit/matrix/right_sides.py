@@ -16,7 +16,7 @@ from ....discretization.plane_equations import (
 )
 from ....discretization.state_layout import stress_index, velocity_index
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import SemidiscreteEquations
+from ..equations import OrbitEquations
 from .substitution import add_products
 
 
@@ -29,7 +29,7 @@ class ParameterDerivatives(NamedTuple):
 
 
 @compiled_for_vectors
-def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: SemidiscreteEquations) -> None:
+def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: OrbitEquations) -> None:
     """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
     state x, (n,), into V and G, (3, nodes + 1). p: equations of the orbit."""
     write_balance(x, V, G, p.rod, p.node_matrices)
@@ -50,7 +50,7 @@ def _store_stresses(G: Array, F: Array) -> None:
 
 @compiled_for_vectors
 def write_rate_derivatives(
-    x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: SemidiscreteEquations
+    x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: OrbitEquations
 ) -> None:
     """Writes the derivative of F(x) of `write_rates_of_state` along a change of the parameters into F, (n,).
 
@@ -68,7 +68,7 @@ def write_rate_derivatives(
 
 
 @compiled_for_vectors
-def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquations, out: Array) -> None:
+def write_stage_residuals(points: Array, duration: float, p: OrbitEquations, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
     points: states x_j at the start and at all stages, in order, (1 + K s, n). duration: total length of the
@@ -92,7 +92,7 @@ def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquatio
 def write_right_sides(
     points: Array,
     duration: float,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     derivatives: ParameterDerivatives,
     V: Array,
     columns: Array,
@@ -127,7 +127,7 @@ def write_right_sides(
 
 @compiled_for_vectors
 def write_variation_sides(
-    values: Array, p: SemidiscreteEquations, partials: ParameterDerivatives, variations: Array, columns: Array
+    values: Array, p: OrbitEquations, partials: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
     """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
     (K, s, k, n).

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import schur
 
 from ....arrays import Array, Complex
+from ..equations import OrbitEquations
 from ..orbit import Orbit
-from ..semidiscrete import SemidiscreteEquations
 from .substitution import map_start_to_end, substitute_stages
 from .workspace import INTERVAL_MAP, NewtonFactors
 
@@ -47,7 +47,7 @@ class ShootingIntervals:
     flow_maps: Array
 
     def end_changes(
-        self, factors: NewtonFactors, columns: Array, end_increments: Array, p: SemidiscreteEquations
+        self, factors: NewtonFactors, columns: Array, end_increments: Array, p: OrbitEquations
     ) -> Array:
         """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
         the shooting intervals, (m, k, n).
@@ -66,7 +66,7 @@ class ShootingIntervals:
         return ends
 
     def stage_changes(
-        self, factors: NewtonFactors, starts: Array, columns: Array, p: SemidiscreteEquations
+        self, factors: NewtonFactors, starts: Array, columns: Array, p: OrbitEquations
     ) -> Array:
         """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
         n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated matrix. p: equations of the

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import SemidiscreteEquations
+from ..equations import OrbitEquations
 from .workspace import (
     FIRST_STAGE,
     INTERVAL_MAP,
@@ -21,7 +21,7 @@ from .workspace import (
 
 
 @compiled_for_vectors
-def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> None:
+def reduce_right_sides(B: Array, columns: Array, p: OrbitEquations) -> None:
     """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
     first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
     end for a fixed start. B: eliminated blocks of the interval, (blocks, n, n). p: equations."""
@@ -44,7 +44,7 @@ def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> No
 
 
 @compiled_for_vectors
-def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: Array) -> None:
+def map_start_to_end(B: Array, columns: Array, p: OrbitEquations, ends: Array) -> None:
     """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
     interval. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
@@ -55,7 +55,7 @@ def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: A
 
 
 @compiled_for_vectors
-def _write_first_two_stages(B: Array, y: Array, p: SemidiscreteEquations, t: Array, u: Array) -> None:
+def _write_first_two_stages(B: Array, y: Array, p: OrbitEquations, t: Array, u: Array) -> None:
     """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (blocks, n, n).
     y: right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages
     are taken as 0."""
@@ -101,7 +101,7 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute_stages(
-    initial_increment: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors, out: Array
+    initial_increment: Array, columns: Array, p: OrbitEquations, factors: NewtonFactors, out: Array
 ) -> None:
     """Writes the changes of all stages into `out`, (K, s, k, n). initial_increment: changes of the start, (k,
     n). columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""

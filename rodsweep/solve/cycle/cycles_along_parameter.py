@@ -16,7 +16,7 @@ from ...discretization.stress.form import StressForm
 from ..continuation.follower import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
-from ..orbit.normalised import (
+from ..orbit.normalised_orbit import (
     normalised_orbit_values,
     normalised_tangent,
     polynomial_weights,
