@@ -85,10 +85,9 @@ def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarr
         # The growth is quadratic near its maximum, and is 1 at t = 0.
         log_growth = np.maximum(1 - 1 / v["transient_growth"], np.finfo(float).tiny)
         return values * np.sqrt(v["growth_error"] / log_growth)
-    has_constant_error = name == "modulation_ratio"
-    relative_error = MODULATION_RATIO_ERROR if has_constant_error else v.get(RELATIVE_ERRORS.get(name, ""))
-    if relative_error is not None:
-        return values * relative_error
+    relative_error = RELATIVE_ERRORS.get(name, "")
+    if name == "modulation_ratio" or relative_error in v:
+        return values * (v[relative_error] if relative_error else MODULATION_RATIO_ERROR)
     return v[ABSOLUTE_ERRORS[name]] if ABSOLUTE_ERRORS.get(name, "") in v else np.zeros_like(values, float)
 
 
