@@ -68,8 +68,8 @@ def error_of_interpolated_chain(
     """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
 
     polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: logarithm of the
-    scale of the result. entry_sizes: as in `rodsweep.determinant.arm.arm_family.ArmFamily`; no elements if
-    nothing is interpolated.
+    scale of the result. entry_sizes: sizes to which the interpolation errors of propagator entries are
+    relative, (elements, 2, PADDED); no elements if nothing is interpolated.
     """
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(w / W, terms)

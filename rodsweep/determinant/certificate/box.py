@@ -168,7 +168,7 @@ def _zero_free_radius(r: float, T: float, X: float, G: float, max_pull: float) -
 def _distance_from_one_bound(r: float, T: float, X: float, G: float, max_pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
 
-    T, X, G, max_pull: as in `_zero_free_radius`.
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0.
     """
     exponent = sqrt(max_pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(max_pull):

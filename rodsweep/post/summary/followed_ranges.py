@@ -16,15 +16,15 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: ResultView, done: np.ndarray, along: str, prefix: str) -> str:
-    """Sentence on the range in which branches are followed where they may enter the range of the file, and on
-    the branches that are missed. done: mask of the computed points, (...,). along: parameter along which
-    branches are followed. prefix: first part of the names of the two variables."""
-    places = [view.variables[f"{prefix}{end}"][done] for end in ("from", "to")]
-    if not all(np.isfinite(place).any() for place in places):
+def followed_range_text(view: ResultView, computed: np.ndarray, parameter: str, prefix: str) -> str:
+    """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
+    the cycles that are missed. computed: mask of the computed points, (...,). parameter: parameter along
+    which branches are followed. prefix: the variables are named `prefix` + "from" and `prefix` + "to"."""
+    limits = [view.variables[f"{prefix}{end}"][computed] for end in ("from", "to")]
+    if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
-    low, high = map(span_text, places)
-    followed = f"branches that may enter the range are followed down to {along} = {low} and up to {high}"
+    low, high = map(span_text, limits)
+    followed = f"branches that may enter the range are followed down to {parameter} = {low} and up to {high}"
     return f"{followed}; {MISSED_CYCLES_TEXT}"
 
 

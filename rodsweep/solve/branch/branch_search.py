@@ -149,7 +149,7 @@ class BranchSearch:
         breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
         limits = replace(self._limits_left(), breakings=breakings)
         if limits.max_cycles < 1:
-            raise Unsolvable("the branches of the rod have the maximum number of cycles")
+            raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
         curve = follow_detached_branch(start, self.name, limits)
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
         inner = (point for point in curve.special_points if point.kind != SpecialKind.end)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.element_strains import write_element_strain_changes, write_element_strains
+from ...discretization.element_strains import write_element_strain_rates, write_element_strains
 from ...discretization.elements.trigonometric import (
     hermite_coefficients_of_columns,
     series_maxima,
@@ -82,7 +82,7 @@ def tip_path(states: Array, period: float, p: OrbitEquations, m: TipMatrices) ->
     write_strain_rates(states, rates, p)
     rates *= period
     write_element_strains(S, p.rod, m.element_nodes, strains[0])
-    write_element_strain_changes(S, rates, p.rod, m.element_nodes, strains[1])
+    write_element_strain_rates(S, rates, p.rod, m.element_nodes, strains[1])
     write_tip_motion(strains[0], strains[1], m, tip, velocity)
     # For an orbit without symmetry the signs are 0, because its values cover the whole period.
     c = hermite_coefficients_of_columns(tip, velocity, REFLECTION_SIGNS * (p.period_parts - 1))
@@ -107,8 +107,9 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
     """Size of each harmonic from the first, (count - 1,): square root of the sum of squared moduli over all
     columns of `values`.
 
-    values, slopes: as in `hermite_coefficients_of_columns`. sign: factor by which every column changes in
-    half a period of a symmetric orbit; 0 for an orbit without symmetry."""
+    values, slopes: values and time derivatives at equidistant nodes of a period, or of half a period, (nodes,
+    columns). sign: factor by which every column changes in half a period of a symmetric orbit; 0 for an orbit
+    without symmetry."""
     c = hermite_coefficients_of_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
     for k in range(1, len(c)):

@@ -57,8 +57,9 @@ class CycleMeasures:
 
 
 class CyclePath:
-    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
-    as in `TipPath`."""
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients: Fourier
+    coefficients of the tip's (x, y, theta), (count, 3). tip_samples: (x, y, theta) at equidistant times of
+    the period, (m, 3)."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
@@ -94,7 +95,7 @@ class CyclePath:
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `CycleMeasures`, by name."""
+        """Extrema of the tip over the period: tip_x_min, tip_x_max, tip_y_max and tip_theta_max, by name."""
         minima = self._path.least_tip_values.tolist()
         maxima = self._path.largest_tip_values.tolist()
         return {

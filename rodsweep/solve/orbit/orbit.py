@@ -138,7 +138,7 @@ class Orbit:
         time intervals with `stages` stages each by a linear map, (N on this mesh,)."""
         points = self._at_times_of(change, (intervals, stages))
         if target != self.form.mesh:
-            points = self.form.changes_on_mesh(target, points)
+            points = self.form.increments_on_mesh(target, points)
         return np.append(points.ravel(), change[-1])
 
     def _at_times_of(self, values: Array, target: tuple[int, int]) -> Array:

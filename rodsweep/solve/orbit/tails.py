@@ -162,8 +162,9 @@ def _last_columns_of_analysis_matrix(order: int) -> Array:
 
 @compiled_for_vectors
 def largest_norms(values: Array, analysis: Array) -> Array:
-    """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values,
-    analysis: as in `largest_coefficients`."""
+    """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values: fields
+    at the nodes of the element, (3, m, p + 1), for m states. analysis: matrix from values at the nodes to
+    coefficients, (p + 1, c)."""
     components, states, size = values.shape
     norms = np.zeros(components)
     c = np.empty(analysis.shape[1])

@@ -98,7 +98,9 @@ def _node_inside(
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
 
-    value: D at the node. Further arguments as in `phase_node`.
+    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D
+    changes, largest radius of a circle).
+    arm: (samples of the arm's coefficients, propagators for |w| <= W).
     """
     w = node.w
     samples, (W, propagators) = arm

@@ -135,8 +135,9 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_all_curves`; other fields as in `SpecialCurveTracer`.
-    results: arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_all_curves`. line_axis, row_axis: axes of the parameter along
+    a row and of the row parameter. special_points: points through which curves are traced. results: arrays of
+    half curves, by number."""
 
     kind: SpecialKind
     line_axis: PlaneAxis

@@ -130,8 +130,8 @@ class SpecialPoint:
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     """The cycle at a located special point; None if the point was not located."""
     amplitude_coefficient: float = nan
-    """At a Hopf point the amplitude coefficient of the branch, in L, as in `HopfBranchStart`; NaN at other
-    points."""
+    """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = a sqrt(|p/p_H - 1|) at
+    parameter values p near the Hopf point p_H; NaN at other points."""
     coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 

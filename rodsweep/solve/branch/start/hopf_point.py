@@ -102,7 +102,7 @@ def hopf_branch_start(
 ) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable. keeps_omega: whether the angular velocity Omega is an unknown for all cycles of
-    the branch. min_coordinate_unit: as in `ArcLengthScale`."""
+    the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc lengths."""
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))

@@ -65,7 +65,7 @@ def trace_boundary(
     sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
-    curve is found there. sign: as in `BoundaryCurve`.
+    curve is found there. sign: 0 for a curve of Hopf points, else the sign of the double eigenvalue.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.

@@ -24,7 +24,7 @@ from .substitution import map_start_to_end, reduce_right_sides, substitute_stage
 from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
 
 NO_PARAMETER_CHANGE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
-"""Placeholder for the change of a rod if there is no parameter; compiled code never reads it."""
+"""Placeholder for the derivative of a rod if there is no parameter; compiled code never reads it."""
 
 
 class Linearisation:
@@ -120,7 +120,7 @@ def eliminate_at_orbit(
         right_sides[1, n] = phase_right_side(points[0], derivatives.change, p.rod, p.node_matrices)
     # A contiguous copy: later corrections at nearby orbits need only this column.
     period_derivative = columns[:, :, 0].copy()
-    return orbit_changes(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
+    return orbit_increments(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
 
 
 @compiled_for_vectors
@@ -134,14 +134,14 @@ def closing_residual(points: Array, p: OrbitEquations) -> Array:
 
 
 @compiled_for_vectors
-def orbit_changes(
+def orbit_increments(
     right_sides: Array,
     period_derivative: Array,
     columns: Array,
     p: OrbitEquations,
     factors: NewtonFactors,
 ) -> Array:
-    """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
+    """Increments of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
     right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand
     sides of the stages, (K, s, k, n). period_derivative: reduced period derivative of the stage residuals,
     (K, s, n)."""
@@ -186,8 +186,8 @@ def reduced_residuals(
     """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
     duration: total length of the intervals, in tau2.
 
-    Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
-    fixed start, (1, n).
+    Returns (columns, ends): reduced residuals, (K, s, 1, n), and increment of the state at the end of the
+    last interval for a fixed start, (1, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)
@@ -213,8 +213,8 @@ def reduced_variation_sides(
     """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
     a nearby rod `p`.
 
-    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
-    of the last interval for a fixed start, (m, n).
+    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and increments of
+    the state at the end of the last interval for a fixed start, (m, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)
@@ -243,4 +243,4 @@ def newton_step_with_factors(
     # The residuals of the stages move the end, too; this change is subtracted from the jump.
     right_sides[0, :n] = closing_residual(points, p) - ends[0]
     right_sides[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
-    return orbit_changes(right_sides, period_derivative, columns, p, factors)[0]
+    return orbit_increments(right_sides, period_derivative, columns, p, factors)[0]

@@ -52,7 +52,7 @@ def _store_stresses(G: Array, F: Array) -> None:
 def write_rate_derivatives(
     x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: OrbitEquations
 ) -> None:
-    """Writes the derivative of F(x) of `write_rates_of_state` along a change of the parameters into F, (n,).
+    """Writes the derivative of F(x) of `write_rates_of_state` with respect to the parameter into F, (n,).
 
     x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1). change:
     derivatives of the arrays of the rod. p: equations of the orbit.
@@ -100,9 +100,10 @@ def write_right_sides(
     """Writes k right-hand sides of Newton's system into `columns`, (K, s, k, n), and the velocities of the
     stages into V, (K, s, 3, nodes + 1).
 
-    Column 0: derivative of the residuals with respect to the period. Column 1: the `write_stage_residuals`.
-    Column 2, if present: derivative of the residuals along the parameter of `derivatives`. points, duration,
-    p: as in `write_stage_residuals`."""
+    Column 0: derivative of the residuals with respect to the period. Column 1: residuals by
+    `write_stage_residuals`. Column 2, if present: derivative of the residuals along the parameter of
+    `derivatives`. points: states at the start and at all stages, in order, (1 + K s, n). duration: total
+    length of the intervals, in tau2. p: equations."""
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
     changes = np.empty((3, *V.shape[2:]))
@@ -132,8 +133,8 @@ def write_variation_sides(
     """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
     (K, s, k, n).
 
-    values: values of the orbit, (N,). p: equations of the orbit. variations: changes of the values and of the
-    parameter of `partials`, (k, N + 1).
+    values: values of the orbit, (N,). p: equations of the orbit. variations: variations of the values and of
+    the parameter of `partials`, (k, N + 1).
     """
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)

@@ -57,9 +57,9 @@ def _converged_step_and_error(
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
-    first: result of the first step. crowding: as in `converged_error`. exact: whether the remainder must be
-    below the rounding error, and the error must contain rounding and interpolation along the whole arm.
-    level: propagators of the arm. The error is inf without convergence.
+    first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
+    whether the remainder must be below the rounding error, and the error must contain rounding and
+    interpolation along the whole arm. level: propagators of the arm. The error is inf without convergence.
     """
     step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):

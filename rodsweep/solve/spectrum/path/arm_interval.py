@@ -39,8 +39,8 @@ from .prediction import FollowedEigenvalues, slice_track, start_track
 class ArmInterval(NamedTuple):
     """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    track: as in `follow_eigenvalues_of_arms`. proved_modes: number of leading modes proved complete at each
-    point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
+    track: the eigenvalues followed to these points. proved_modes: number of leading modes proved complete at
+    each point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
     further_modes: number of modes followed in addition to the wanted modes.
     """
 

@@ -35,7 +35,7 @@ class CarriedCountSettings(KernelConstants):
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
     min_gap: float = 1e-6
-    """No line is drawn in a gap whose relative half-width, as in `wide_gap`, is less than this."""
+    """No line is drawn in a gap whose relative half-width (see `wide_gap`) is less than this."""
 
 
 CARRIED_COUNT_SETTINGS = CarriedCountSettings()

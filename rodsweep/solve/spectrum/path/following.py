@@ -147,8 +147,9 @@ def _iterate_to_convergence(
     """Returns (last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until
     `converged_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `converged_error`. rod: coefficients of the rod.
-    direction: d(F, nu, c2, gamma3)/dp. The error is inf without convergence.
+    first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
+    whether the remainder must be below the rounding error. rod: coefficients of the rod. direction: d(F, nu,
+    c2, gamma3)/dp. The error is inf without convergence.
     """
     step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):

@@ -146,7 +146,8 @@ def _predict_pair(
     real part or frequency comes first.
 
     undecided: whether D must show if the two eigenvalues are real or a complex pair. Both guesses are then
-    half the sum. steps: as in `extrapolate_hermite`.
+    half the sum. steps: distances in p from the point before the last to the last, and from the last to point
+    i.
     """
     k, j = pair
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half

@@ -129,7 +129,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.stage_states.shape
-        self.null_vectors = matrix.orbit_changes_at_fixed_parameter(
+        self.null_vectors = matrix.orbit_increments_at_fixed_parameter(
             _real_and_imaginary(start), np.zeros((K, s, 2, n))
         )
         n = len(start)
@@ -160,7 +160,7 @@ class TorusFunction:
         right_side[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered_propagator, right_side)
         self.multiplier += complex(change[-1])
-        self.null_vectors = self.null_vectors + self.matrix.orbit_changes_at_fixed_parameter(
+        self.null_vectors = self.null_vectors + self.matrix.orbit_increments_at_fixed_parameter(
             _real_and_imaginary(change[:-1]), columns
         )
 
