@@ -56,7 +56,7 @@ LONGEST = (
     "test_arm_report",
     "test_generalised_hopf",
     "test_branch",
-    "test_stretches",
+    "test_groups",
     "test_compilation",
     "test_modes",
     "test_cycles_task",

@@ -6,14 +6,14 @@ import numpy as np
 
 from benchmarks.lapack import inverse_spectrum, whole_matrices
 from rodsweep.determinant.certificate.box import eigenvalue_box
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.resolution import expected_wave_number, resolution_for
 from rodsweep.model.dispersion import most_amplified_wave
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 from rodsweep.solve.spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
-from rodsweep.sweep.points.stretches import STRETCH_POINTS
+from rodsweep.sweep.points.groups import GROUP_POINTS
 
 LARGEST = 400
 """Unknowns up to which whole matrices are solved."""
@@ -26,14 +26,14 @@ CLEAR = 1e-6
 def line(name: str, values, **others: float) -> NeighbouringRods:
     """Rods that differ in one parameter."""
     values = np.asarray(values, float)
-    return NeighbouringRods(Path(Rod(**others, **{name: values[0]}), name), values)
+    return NeighbouringRods(ParameterPath(Rod(**others, **{name: values[0]}), name), values)
 
 
 def parts(whole: NeighbouringRods) -> list[NeighbouringRods]:
     """A line cut as a sweep cuts it."""
     return [
-        NeighbouringRods(whole.path, whole.values[at : at + STRETCH_POINTS])
-        for at in range(0, len(whole), STRETCH_POINTS)
+        NeighbouringRods(whole.path, whole.values[at : at + GROUP_POINTS])
+        for at in range(0, len(whole), GROUP_POINTS)
     ]
 
 
@@ -42,7 +42,7 @@ def random_line(rng: np.random.Generator) -> NeighbouringRods:
     k1, k2 = (10 ** rng.uniform(0, 6) if rng.random() < 0.8 else np.inf for _ in range(2))
     gamma3 = 10 ** rng.uniform(-8, 1) if rng.random() < 0.7 else 0.0
     F = min(0.999 * k1, 10 ** rng.uniform(0, 3)) * (1 if rng.random() < 0.9 else -1)
-    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, STRETCH_POINTS + 1))
+    name, n = str(rng.choice(["F", "k1", "k2", "gamma3"])), int(rng.integers(8, GROUP_POINTS + 1))
     if name == "F":
         values = np.linspace(F * rng.uniform(-0.1, 0.9), F, n)
     else:

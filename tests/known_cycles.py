@@ -7,7 +7,7 @@ import numpy as np
 
 from rodsweep.results.file.creation import FilePlan, create_file
 from rodsweep.results.file.seal import seal
-from rodsweep.results.file.view import View
+from rodsweep.results.file.view import ResultView
 from rodsweep.results.layouts import layout_of
 from rodsweep.results.layouts.limit_cycle import hopf_point_variables
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
@@ -81,7 +81,7 @@ def make_view(axes, statuses, *, stored=("shapes", "samples"), name="fake.h5", a
     if "shapes" in stored:
         fill(("shape_x", "shape_y", "shape_theta"), [arm(few, s)[0] for s, _ in points])
         v["u"] = arm(few, 1.0)[1]
-    return View(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, MORE_FLAGS, 0)
+    return ResultView(Path(name), {"task": "limit_cycle", "title": "two $ arms"}, v, NAMES, MORE_FLAGS, 0)
 
 
 def hopf_table(table, hopf, error=1e-12):

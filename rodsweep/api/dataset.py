@@ -27,7 +27,7 @@ from ..results.file.validation import (
     one_line_message,
     open_checked,
 )
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts import layout_of, sweep_wide_variables
 from ..results.layouts.variables import DIMENSIONS, TYPED_UNIT, Layout
 from ..results.run.journal import journal_directory
@@ -137,7 +137,7 @@ def with_checksums(data: xr.Dataset) -> xr.Dataset:
     return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
 
-def view_of_dataset(data: xr.Dataset, path: Path) -> View:
+def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
     """View of a Dataset, which `show` and `plot` read; InputError if the Dataset is not a complete result.
 
     path: name of the result for messages.
@@ -164,4 +164,6 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> View:
     typed_units = {
         str(name): str(v.attrs[TYPED_UNIT]) for name, v in data.variables.items() if TYPED_UNIT in v.attrs
     }
-    return View(path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed_units)
+    return ResultView(
+        path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed_units
+    )

@@ -16,7 +16,7 @@ import xarray as xr
 
 from ..results.file.creation import FilePlan
 from ..results.file.validation import FORMAT, PROGRAM
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..tasks.running.in_memory import blas_kernels, stored_variables, view_in_memory
@@ -32,7 +32,7 @@ class Result(Protocol):
         """The Dataset that xarray would read from the result file."""
 
     @property
-    def view(self) -> View:
+    def view(self) -> ResultView:
         """The view that tables read, with the attributes `task` and `config_resolved`."""
 
 
@@ -43,7 +43,7 @@ class DatasetResult:
     dataset: xr.Dataset
 
     @property
-    def view(self) -> View:
+    def view(self) -> ResultView:
         """The view of the Dataset that tables read."""
         return view_of_dataset(self.dataset, Path(str(self.dataset.attrs.get("title", "data"))))
 
@@ -64,7 +64,7 @@ class SolvedPoints:
     run_attributes: Mapping[str, Any]
     """Attributes with the times, the host and the PETSc options of the solve."""
     messages: Sequence[str]
-    """Message of each point; "" for points solved together in a stretch."""
+    """Message of each point; "" for points solved together in a group."""
 
     @cached_property
     def dataset(self) -> xr.Dataset:
@@ -81,7 +81,7 @@ class SolvedPoints:
         return with_arm_indexes(with_checksums(in_layout_order(result, self.plan.layout, self.plan.config)))
 
     @cached_property
-    def view(self) -> View:
+    def view(self) -> ResultView:
         """The view of the points that tables read."""
         return view_in_memory(self.job, self.plan, self.values, self.filled)
 

@@ -11,12 +11,12 @@ import numpy as np
 from ..errors import InputError
 from ..results.file.creation import FilePlan
 from ..results.file.provenance import joined_failure_reasons, utc_time
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
 from ..solve_progress import reporting_to, solve_part
-from ..sweep.points.stretches import SolveStretch, Stretches
+from ..sweep.points.groups import PointGroups, SolveGroup
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 from ..tasks.protocol import NamedArrays, Solver, SweepWideResult, SweepWideSolver
@@ -115,9 +115,7 @@ def _solve_points(
     count = job.points.count
     columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
     messages = [""] * count
-    unsolved = (
-        range(count) if solver.stretched is None else _solve_stretches(*solver.stretched, columns, display)
-    )
+    unsolved = range(count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
     for solved_count, (index, outcome) in enumerate(
         _solve_outcomes(unsolved, count, solver, display), count - len(unsolved) + 1
     ):
@@ -135,8 +133,8 @@ def _solve_points(
     )
 
 
-def _solve_stretches(
-    stretches: Stretches, solve_stretch: SolveStretch, columns: dict[str, np.ndarray], display: Display
+def _solve_groups(
+    groups: PointGroups, solve_group: SolveGroup, columns: dict[str, np.ndarray], display: Display
 ) -> Sequence[int]:
     """Fills the variables of all points that are solved together; returns the flat indices of all other
     points.
@@ -145,8 +143,8 @@ def _solve_stretches(
     """
     unsolved: list[int] = []
     solved_count = 0
-    for indices in map(stretches.indices, range(stretches.count)):
-        result = solve_stretch(indices)
+    for indices in map(groups.indices, range(groups.count)):
+        result = solve_group(indices)
         solved_indices = np.flatnonzero(result.is_solved)
         for name, column in result.part_at(solved_indices).values.items():
             columns[name][indices[solved_indices]] = column
@@ -156,7 +154,7 @@ def _solve_stretches(
     return unsolved
 
 
-def _sweep_wide_result(solver: SweepWideSolver, view: View, display: Display) -> SweepWideResult:
+def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Display) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
     points. display: progress display.
     """

@@ -69,7 +69,7 @@ class TabulatedSpectra(SpectrumTask):
                 os.kill(os.getpid(), signal.SIGKILL)
             return outcomes[index % OUTCOME_COUNT]
 
-        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, stretched=None)
+        return replace(SpectrumTask.solver(self), warm_up=lambda: None, solve=solve, grouped=None)
 
 
 def record_memory(directory: Path) -> None:

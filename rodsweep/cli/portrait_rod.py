@@ -14,7 +14,7 @@ from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
 
 if TYPE_CHECKING:
     from ..post.rod_portrait.results import DescribedRod
-    from ..results.file.view import View
+    from ..results.file.view import ResultView
     from ..sweep.progress import ProgressReporter
     from ..tasks.rod_portrait import SolveJob
     from ..tasks.running.job import Job
@@ -84,7 +84,7 @@ def solve_with_progress(reporter: "ProgressReporter", solve: "SolveJob") -> "Ite
     def show(position: SolvePosition) -> None:
         reporter.show_position(position.text, position.completed_fraction or 0.0)
 
-    def solve_and_show(job: "Job") -> "View":
+    def solve_and_show(job: "Job") -> "ResultView":
         name = job.config.task.replace("_", " ")
         with reporting_to(RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)):
             view = solve(job)

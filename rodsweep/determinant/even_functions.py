@@ -4,7 +4,7 @@ of the dispersion relation (`rodsweep.determinant.value`), z+- = (q1 +- q2)^2.
 With the squares z+- of the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are even in P,
 and entire in M = (z+ + z-)/2 and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* =
 (dd/dP^2)/4, because ds/dP^2 = 4 d'. Both methods also return the rounding errors of s and d. Every rounding
-error here is in units of `exponents.NOISE_UNIT`.
+error here is in units of `exponents.ROUNDING_UNIT`.
 """
 
 import cmath
@@ -13,12 +13,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
+from ..model.compiled.kernel_constants import KernelConstants
 from .exponents import ROUND_OFF, HyperbolicFunctions, hyperbolic_functions, modulus
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EvenFunctionSettings(CompiledSettings):
+class EvenFunctionSettings(KernelConstants):
     """Thresholds that select the formula for the even functions s and d (see the module docstring)."""
 
     series_terms: int = 13
@@ -29,7 +29,7 @@ class EvenFunctionSettings(CompiledSettings):
     """Otherwise, if |z+ z-| / (|M|^2 + 4 |P|^2) is at most this number, `even_sum_by_squares` computes s and
     d; else `even_functions_by_roots` does."""
     scale_rounding: float = 3.0
-    """Bound of the relative rounding error of the scale S, in units of NOISE_UNIT."""
+    """Bound of the relative rounding error of S, the logarithm of the scale, in units of ROUNDING_UNIT."""
     max_scale_without_rounding: float = 8.0
     """Up to this S the other rounding errors of D exceed the rounding error of exp(-S). At a larger S only
     the exponentially small eigenvalues of strongly pulled rods depend on exp(-S)."""
@@ -46,13 +46,14 @@ class EvenFunctionSettings(CompiledSettings):
 EVEN_FUNCTION_SETTINGS = EvenFunctionSettings()
 
 
-class EvenFunctions(NamedTuple):
-    """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S).
+class EvenFunctionValues(NamedTuple):
+    """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S),
+    S = `log_scale`.
 
     s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4.
     """
 
-    S: float
+    log_scale: float
     s: complex
     d: complex
     s_M: complex
@@ -61,7 +62,7 @@ class EvenFunctions(NamedTuple):
 
 
 @compiled
-def _noise_by_roots(
+def _rounding_by_roots(
     squares: tuple[complex, complex, complex, complex],
     difference: complex,
     functions_of_u: HyperbolicFunctions,
@@ -106,7 +107,7 @@ def _noise_by_roots(
 @compiled
 def even_functions_by_roots(
     M: complex, square: complex, rounding_M: float, rounding_square: float
-) -> tuple[EvenFunctions, float, float]:
+) -> tuple[EvenFunctionValues, float, float]:
     """Returns (s and d with derivatives, rounding error of s, rounding error of d), from the roots q1 and q2
     of the dispersion relation; for z+ and z- that are not small.
 
@@ -148,16 +149,16 @@ def even_functions_by_roots(
     dd = (M * H_square / 2 - C_square + 4 * d) * per_R / 4
     squares = (M, square, u, v)
     roundings = (scaled_one, rounding_M, rounding_square)
-    error_of_s, error_of_d = _noise_by_roots(
+    error_of_s, error_of_d = _rounding_by_roots(
         squares, difference, functions_of_u, functions_of_v, (s, d), roundings
     )
-    return EvenFunctions(S, s, d, s1, d1, dd), error_of_s, error_of_d
+    return EvenFunctionValues(S, s, d, s1, d1, dd), error_of_s, error_of_d
 
 
 @compiled
 def even_functions_by_series(
     M: complex, P: complex, rounding_M: float, rounding_square: float
-) -> tuple[EvenFunctions, float, float]:
+) -> tuple[EvenFunctionValues, float, float]:
     """Returns (s and d with derivatives, rounding error of s, rounding error of d), by the series E(z) =
     sum z^n/(2n + 2)!; for small z+ and z-.
 
@@ -197,4 +198,4 @@ def even_functions_by_series(
     # Bounds of the first terms of the series, times the rounding errors of M and P^2.
     error_of_s = size * (1 + rounding_M / 10 + rounding_square / 80)
     error_of_d = size * (0.1 + rounding_M / 300 + rounding_square / 8000)
-    return EvenFunctions(S, s, d, s1, d1, dd), error_of_s, error_of_d
+    return EvenFunctionValues(S, s, d, s1, d1, dd), error_of_s, error_of_d

@@ -16,19 +16,19 @@ from ..model.compiled.compilation import compiled
 from ..model.rod import Coefficients
 from .even_functions import (
     EVEN_FUNCTION_SETTINGS,
-    EvenFunctions,
+    EvenFunctionValues,
     even_functions_by_roots,
     even_functions_by_series,
 )
-from .exponents import EXPONENT_SETTINGS, NOISE_UNIT, entire_cosh, modulus, squared_exponents
+from .exponents import EXPONENT_SETTINGS, ROUNDING_UNIT, entire_cosh, modulus, squared_exponents
 
-EvenSum = tuple[EvenFunctions, complex, float]
+EvenSum = tuple[EvenFunctionValues, complex, float]
 """(s and d with derivatives, sum z+' E(z+) + z-' E(z-) times exp(-S), rounding error). The rounding error is
 of D exp(-S) in results of `even_parts`, and of the sum in results of `even_sum_by_squares`."""
 
 
 @compiled
-def _noise_by_squares(
+def _rounding_by_squares(
     sizes: tuple[float, float],
     coefficients: Coefficients,
     roots: tuple[complex, complex],
@@ -36,7 +36,7 @@ def _noise_by_squares(
     roundings: tuple[float, float],
 ) -> float:
     """Rounding error of the sum z+' E(z+) + z-' E(z-) as computed by `even_sum_by_squares`, in units of
-    `NOISE_UNIT`, like all rounding errors of the arguments.
+    `ROUNDING_UNIT`, like all rounding errors of the arguments.
 
     sizes: (|w|, |P|). roots: (sqrt z+, sqrt z-). slopes: (z+', z-'). roundings: rounding errors of M and P^2.
     The error of z follows from the terms that cancel in z; the error of an exponent q = sqrt z is half the
@@ -83,7 +83,7 @@ def even_sum_by_squares(
 
     The derivative of the smaller of z+ and z- follows from the derivative of the product z+ z-, because
     z+-' = T +- 2 P' cancels for large w. rounding_M, rounding_square: rounding errors of M and P^2. All
-    rounding errors are in units of `NOISE_UNIT`.
+    rounding errors are in units of `ROUNDING_UNIT`.
     """
     F, nu, c2, gamma3 = coefficients
     P, plus, minus = squared_exponents(w, coefficients)
@@ -113,8 +113,12 @@ def even_sum_by_squares(
     sizes = (modulus(w), modulus(P))
     roots = (root_plus, root_minus)
     slopes = (slope_plus, slope_minus)
-    rounding_error = _noise_by_squares(sizes, coefficients, roots, slopes, (rounding_M, rounding_square))
-    return EvenFunctions(S, s, d, s1, d1, dd), slope_plus * E_plus + slope_minus * E_minus, rounding_error
+    rounding_error = _rounding_by_squares(sizes, coefficients, roots, slopes, (rounding_M, rounding_square))
+    return (
+        EvenFunctionValues(S, s, d, s1, d1, dd),
+        slope_plus * E_plus + slope_minus * E_minus,
+        rounding_error,
+    )
 
 
 @compiled
@@ -154,6 +158,6 @@ def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
         rounding_error = T * error_of_s + 4 * (stiffness + X * size) * error_of_d
     else:
         even, total, rounding_error = even_sum_by_squares(w, coefficients, rounding_M, rounding_square)
-    excess = even.S - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
+    excess = even.log_scale - EVEN_FUNCTION_SETTINGS.max_scale_without_rounding
     scale_error = max(1.0, EVEN_FUNCTION_SETTINGS.scale_rounding * excess)
-    return even, total, NOISE_UNIT * (scale_error * math.exp(-even.S) + size / 2 * rounding_error)
+    return even, total, ROUNDING_UNIT * (scale_error * math.exp(-even.log_scale) + size / 2 * rounding_error)

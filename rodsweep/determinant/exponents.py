@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
+from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ExponentSettings(CompiledSettings):
+class ExponentSettings(KernelConstants):
     """Settings for the exponents of D and for entire functions of the exponents."""
 
     least_divisor: float = 1e-300
@@ -37,7 +37,7 @@ EXPONENT_SETTINGS = ExponentSettings()
 
 ROUND_OFF = sys.float_info.epsilon
 """Distance from 1 to the next larger double-precision number."""
-NOISE_UNIT = 2 * ROUND_OFF
+ROUNDING_UNIT = 2 * ROUND_OFF
 """Unit of the rounding errors of the terms of D: twice the spacing of double-precision numbers at 1."""
 
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
+from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
 from .certificate.box import BOX_SETTINGS, box_from_sqrt_bound, frequency_bound_between_rods
 from .certificate.covering import (
@@ -29,7 +29,7 @@ from .parameter_path import coefficient_derivatives, determinant_along_path
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class MovingLineSettings(CompiledSettings):
+class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
     first_half_height: float = 0.35
@@ -109,7 +109,7 @@ def examine_rectangle(
         raise ValueError("the half-widths of a rectangle must be above 0")
     w = complex(centre_end.line, y)
     D, D_w, D_p, S, rounding_error = determinant_along_path(w, centre_end.coefficients, direction)
-    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
+    rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     centre = bidisc_centre(
         w, centre_end.coefficients, coefficient_derivatives(centre_end.coefficients, direction), S
     )

@@ -37,17 +37,19 @@ class CoefficientDerivatives(NamedTuple):
 
 
 class PathDeterminantValue(NamedTuple):
-    """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S). noise: bound of the rounding error of D exp(-S)."""
+    """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S), S = `log_scale`.
+
+    rounding_error: bound of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
     D_p: complex
-    S: float
-    noise: float
+    log_scale: float
+    rounding_error: float
 
 
 @dataclass(frozen=True, slots=True)
-class Path:
+class ParameterPath:
     """All rods that differ from `rod` only in the parameter `name`."""
 
     rod: Rod

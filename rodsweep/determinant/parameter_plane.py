@@ -78,7 +78,7 @@ class PlaneAxis:
 
 
 class ValueOnPlane(NamedTuple):
-    """D and the derivatives of D by w, x and y, times exp(-S).
+    """D and the derivatives of D by w, x and y, all times exp(-S), S = `log_scale`.
 
     rounding_error: rounding error of D exp(-S), including the effect of rounding in w, x and y.
     """
@@ -87,7 +87,7 @@ class ValueOnPlane(NamedTuple):
     D_w: complex
     D_x: complex
     D_y: complex
-    S: float
+    log_scale: float
     rounding_error: float
 
 
@@ -152,7 +152,7 @@ class Plane:
                 neighbour = self.determinant_value(
                     w, *((x + offset * h, y) if axis_index == 0 else (x, y + offset * h))
                 )
-                slope += weight * neighbour.D * exp(neighbour.S - S) / h
+                slope += weight * neighbour.D * exp(neighbour.log_scale - S) / h
             slopes.append(slope)
         D_x, D_y = slopes
         rounding = rounding_error + ROUND_OFF * (abs(D_x) + abs(D_y) + abs(w * D_w))

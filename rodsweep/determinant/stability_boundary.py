@@ -146,7 +146,9 @@ class Boundary:
                 shifted = v + step
                 w = self._real_eigenvalue(shifted)
                 neighbour = self.plane.determinant_value(w, shifted[0], shifted[1])
-                jacobian[1, i] += weight * (w * neighbour.D_w).real * math.exp(neighbour.S - value.S) / h
+                jacobian[1, i] += (
+                    weight * (w * neighbour.D_w).real * math.exp(neighbour.log_scale - value.log_scale) / h
+                )
         scale = np.abs(jacobian).max(axis=1)
         residual = np.array([value.D.real, slope]) / scale
         return residual, jacobian / scale[:, None], float(value.rounding_error / scale.min())

@@ -14,13 +14,13 @@ import numpy as np
 
 from ..arrays import Array, Complex
 from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
+from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
 from .roots.newton import crossing_newton, double_eigenvalue_newton
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StabilityChangeSettings(CompiledSettings):
+class StabilityChangeSettings(KernelConstants):
     """Settings for crossings of the imaginary axis between two forces."""
 
     same_crossing_distance: float = 1e-8

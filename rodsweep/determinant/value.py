@@ -24,19 +24,19 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..model.compiled.compilation import compiled
-from ..model.compiled.settings import CompiledSettings
+from ..model.compiled.kernel_constants import KernelConstants
 from ..model.rod import Coefficients
 from .even_parts import EvenSum, even_parts
 from .exponents import EXPONENT_SETTINGS, squared_exponents
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DeterminantSettings(CompiledSettings):
+class DeterminantSettings(KernelConstants):
     """Settings for values of D and for differences of its derivatives."""
 
-    typical_noise: float = 0.1
-    """The rounding error of D is estimated by this fraction of its bound `noise`. Measured fractions have the
-    median 0.05, the upper quartile 0.1 and the maximum 0.7."""
+    typical_rounding_fraction: float = 0.1
+    """The rounding error of D is estimated by this fraction of its bound `rounding_error`. Measured fractions
+    have the median 0.05, the upper quartile 0.1 and the maximum 0.7."""
     zero_replacement: float = 1e-200
     """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0. At this w, |D - 1| is below
     rounding error."""
@@ -49,12 +49,14 @@ DETERMINANT_SETTINGS = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D_w = dD/dw, both times exp(-S). S: scale. noise: bound of the rounding error of D exp(-S)."""
+    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`.
+
+    rounding_error: bound of the rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
-    S: float
-    noise: float
+    log_scale: float
+    rounding_error: float
 
 
 class ExponentDerivatives(NamedTuple):
@@ -102,7 +104,10 @@ def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSu
     N = (nu + F * c2) * nu + 2 * X * w
     slope = T * (T * even.s_M + 8 * N * even.d_M) + 8 * X * even.d + 16 * N * N * even.d_P
     return DeterminantValue(
-        math.exp(-even.S) + w / 2 * even_sum, (even_sum + w * slope) / 2, even.S, rounding_error
+        math.exp(-even.log_scale) + w / 2 * even_sum,
+        (even_sum + w * slope) / 2,
+        even.log_scale,
+        rounding_error,
     )
 
 
@@ -114,7 +119,8 @@ def second_difference(
     (`value_before`)."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (
-        value_after.D_w * math.exp(value_after.S - S) - value_before.D_w * math.exp(value_before.S - S)
+        value_after.D_w * math.exp(value_after.log_scale - S)
+        - value_before.D_w * math.exp(value_before.log_scale - S)
     ) / (2 * h)
 
 
@@ -138,7 +144,7 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
     return (
         2
         * abs(value.D_w)
-        / max(abs(second_derivative(w, value.S, coefficients)), EXPONENT_SETTINGS.least_divisor)
+        / max(abs(second_derivative(w, value.log_scale, coefficients)), EXPONENT_SETTINGS.least_divisor)
     )
 
 
@@ -153,7 +159,7 @@ def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tupl
     """
     value, slope, _, rounding_error = scaled_determinant(w, coefficients)
     # |D| far below its rounding error is accidental and does not mean a smaller error of w.
-    error = max(abs(value), DETERMINANT_SETTINGS.typical_noise * rounding_error) / max(
+    error = max(abs(value), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error) / max(
         abs(slope), EXPONENT_SETTINGS.least_divisor
     )
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)

@@ -112,7 +112,7 @@ class Beam(RodOnMesh):
     def _shape_and_velocities(self, z: Array, direction: Array) -> Complex:
         """(x, y, theta) at z at all nodes, (3, ..., nodes + 1), plus i times the imaginary step times its
         time derivative for dz/dt = direction."""
-        change = self.element_strain_changes(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
+        change = self.element_strain_rates(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
         strains = self.element_strains(z) + 1j * change
         return shape_from_strains(self.mesh, strains, np.zeros(3)).astype(complex, copy=False)
 

@@ -16,7 +16,7 @@ from ..model.compiled.compilation import compiled, compiled_for_vectors
 from ..model.material.jump import (
     SHEAR_COLUMN,
     LawUnknowns,
-    changes_beside_jump,
+    side_increments_at_jump,
     unknowns_before_jump,
     unknowns_behind_jump,
 )
@@ -28,7 +28,8 @@ def index_before_jump(node: int, element_nodes: IntegerArray) -> int:
     """Index of the last node of the element before the jump at `node`, in arrays over the nodes of every
     element.
 
-    The first node of the element behind the jump has the next index. element_nodes: as in `Elements`.
+    The first node of the element behind the jump has the next index. element_nodes: indices of the nodes of
+    every element, one element after the other, (nodes + elements,).
     """
     return int(np.searchsorted(element_nodes, node))
 
@@ -38,7 +39,8 @@ def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, 
     """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, nodes + elements).
 
     S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the
-    strains of both sides are written. element_nodes: as in `Elements`.
+    strains of both sides are written. element_nodes: indices of the nodes of every
+    element, (nodes + elements,).
     """
     for a in range(len(S)):
         for k in range(S.shape[1]):
@@ -60,13 +62,15 @@ def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, 
 
 
 @compiled_for_vectors
-def write_element_strain_changes(
+def write_element_strain_rates(
     S: Array, rates: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array
 ) -> None:
-    """Writes changes of the strains at the nodes of every element into out, (3, m, nodes + elements).
+    """Writes derivatives of the strains (with respect to time or along a variation) at the nodes of every
+    element into out, (3, m, nodes + elements).
 
-    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: changes of the strains at all nodes, and
-    of the mean strain at jumps, (3, m, nodes + 1). element_nodes: as in `Elements`.
+    S: stresses of m states at all nodes, (3, m, nodes + 1). rates: derivatives of the strains at all nodes,
+    and of the mean strain at jumps, (3, m, nodes + 1). element_nodes: indices of the nodes of every
+    element, (nodes + elements,).
     """
     for a in range(len(rates)):
         for k in range(rates.shape[1]):
@@ -84,7 +88,7 @@ def write_element_strain_changes(
             # The strain of a rigid component is constant for every stress.
             dq1 = rates[0, k, node] / c1 if c1 > 0 else 0.0
             dq2 = rates[1, k, node] / c2 if c2 > 0 else 0.0
-            changes = changes_beside_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
+            changes = side_increments_at_jump(rod.law, sides, q, LawUnknowns(dq1, rates[2, k, node] / c3))
             for side in range(2):
                 out[0, k, index + side] = sides[side, 1] * changes[side].q1
                 out[1, k, index + side] = sides[side, SHEAR_COLUMN] * dq2

@@ -87,7 +87,7 @@ def nodal_rod_derivative(
     change: Material, mesh: Mesh, sides: Array = NO_JUMP_DERIVATIVE
 ) -> NodalRodDerivative:
     """The `NodalRodDerivative` of a mesh. change: derivative of the material by a parameter. sides:
-    derivatives at the jumps, (k, 2, 3), as in `NodalRodDerivative`."""
+    derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
     fields = change.rest_strain, change.compliance, change.drag
     rest_strain, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)
     return NodalRodDerivative(change.tip_stress, rest_strain, compliance, drag, sides)

@@ -16,7 +16,7 @@ from ..model.balance import Values
 from ..model.material.laws import LINEAR
 from ..model.material.stress_strain import LocalSection, stress_tangent
 from ..model.rod import Rod
-from .element_strains import write_element_strain_changes, write_element_strains
+from .element_strains import write_element_strain_rates, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains
 from .material_on_mesh import jumps_on_mesh, material_at_nodes
 from .nodal_rod import NodalRod, nodal_rod
@@ -96,7 +96,7 @@ class RodOnMesh(ABC):
         )
         return out
 
-    def element_strain_changes(self, x: Array, change: Array) -> Array:
+    def element_strain_rates(self, x: Array, change: Array) -> Array:
         """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements).
 
         x, change: (..., unknowns).
@@ -105,7 +105,7 @@ class RodOnMesh(ABC):
         dS = self.stresses(change)
         dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
-        write_element_strain_changes(
+        write_element_strain_rates(
             _flatten_middle_axes(S),
             _flatten_middle_axes(dE),
             self.nodal_rod,
@@ -165,9 +165,9 @@ class RodOnMesh(ABC):
             return interpolate_stress(self.rod, S, self.mesh, target)
         return interpolate_state_stress(self.nodal_rod, S, self.mesh, self.rod, target)
 
-    def stress_changes_on_mesh(self, target: Mesh, change: Array) -> Array:
-        """Changes of the stresses S by the changes `change` of states, at all nodes of the mesh `target`,
-        (3, ..., nodes of target + 1), by a linear map."""
+    def stress_increments_on_mesh(self, target: Mesh, change: Array) -> Array:
+        """Increments of the stresses S for the increments `change` of states, at all nodes of the mesh
+        `target`, (3, ..., nodes of target + 1), by a linear map."""
         return interpolate_stress(self.rod, self.stresses(change), self.mesh, target)
 
     def least_stretch(self, x: Array) -> float:

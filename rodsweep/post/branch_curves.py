@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..model.floquet import min_unstable_count
 from ..model.parameters import PARAMETERS
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.branch import END_REASONS, SPECIAL_KINDS
 from .range_unions import ParameterRange, intersection_of_ranges, union_of_ranges
 
@@ -103,12 +103,12 @@ class StoredBranch:
         return curves
 
 
-def followed_parameter(view: View) -> str:
+def followed_parameter(view: ResultView) -> str:
     """Name of the parameter along which the branches in a result file are followed."""
     return next(name for name in PARAMETERS if f"branch_{name}" in view.variables)
 
 
-def branch_ends(view: View) -> ParameterRange:
+def branch_ends(view: ResultView) -> ParameterRange:
     """(start, stop) of the range in which the branches in a result file are followed."""
     options = view.config["branch"]
     return float(options["start"]), float(options["stop"])
@@ -119,7 +119,7 @@ class RodBranches:
     index among the points of the file. curves: branches whose special points are all stored. hidden_count:
     number of the remaining branches."""
 
-    def __init__(self, view: View, rod: int = 0):
+    def __init__(self, view: ResultView, rod: int = 0):
         self.view = view
         self.index = rod
         self._v = view.point_values(rod)

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 
 from ..results.file.provenance import RANK_STATISTICS, blas_kernels_in
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..wording import counted, duration, plural
 
 
-def time_lines(view: View, is_computed: np.ndarray, noun: str) -> list[str]:
+def time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str]:
     """Lines about the computing time of the points in the mask `is_computed`, of any shape; an empty list if
     no point is computed. noun: noun for a point.
     """

@@ -9,12 +9,12 @@ from ..config.document.reading import config_from_resolved
 from ..errors import InputError
 from ..model.crushing import uncrushed_interval
 from ..model.material.build import Build
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from .branch_curves import branch_ends, followed_parameter
 from .range_unions import ParameterRange
 
 
-def build_of_rods(view: View) -> Build:
+def build_of_rods(view: ResultView) -> Build:
     """Constitutive law and profile of the rods of a file. Raises InputError if this version of rodsweep does
     not accept the config of the file."""
     try:
@@ -23,7 +23,7 @@ def build_of_rods(view: View) -> Build:
         raise InputError(f"{view.path}: {error}") from None
 
 
-def uncrushed_ranges(view: View, rods: Iterable[int]) -> list[ParameterRange]:
+def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRange]:
     """(start, stop) of the followed range of branches without forces that crush the rod, for each of the
     rods; stop <= start if all forces of the range crush the rod. rods: indices among the points of the file.
     """
@@ -35,7 +35,7 @@ def uncrushed_ranges(view: View, rods: Iterable[int]) -> list[ParameterRange]:
     return [uncrushed_interval(build, rod, (parameter, low, high)) for rod in rods_values]
 
 
-def crushing_ratio(view: View, line: str, row: str, x: Array, y: Array) -> Array:
+def crushing_ratio(view: ResultView, line: str, row: str, x: Array, y: Array) -> Array:
     """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
     0 if no force crushes the rod.
 

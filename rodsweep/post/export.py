@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TextIO
 
 from ..errors import InputError
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..wording import counted, enumeration
 from .output_files import atomic_write
 from .tables.tables import Table, Tables
@@ -32,7 +32,7 @@ class ExportRequest:
     replace: bool = False
 
 
-def export(view: View, output: Path, request: ExportRequest) -> str:
+def export(view: ResultView, output: Path, request: ExportRequest) -> str:
     """Writes one table of a result to the file `output`, and returns a sentence about the table. Raises
     InputError for an unknown table or column, for an invalid file name, and if the file exists and may not be
     replaced.
@@ -59,7 +59,7 @@ def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> Non
         lines.writerows(zip(*texts, strict=True))
 
 
-def _written_table_sentence(table: Table, view: View) -> str:
+def _written_table_sentence(table: Table, view: ResultView) -> str:
     """Sentence on the written table: numbers of rows and columns, number of points without a row, and names
     of the other tables.
     """

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..model.parameters import OPTIONAL_PARAMETERS, TRANSVERSE_PARAMETERS
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from ..sweep.points.points import ParameterLine
 
@@ -78,7 +78,7 @@ class StoredThresholds:
     store Hopf points along any parameter.
     """
 
-    def __init__(self, view: View, name: str):
+    def __init__(self, view: ResultView, name: str):
         v = view.variables
         points = v["status"].size
         growth = "linear_growth_rate" if "linear_growth_rate" in v else "growth_rate"

@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..wording import counted
 
 
-def material_of(view: View) -> Mapping[str, Any]:
+def material_of(view: ResultView) -> Mapping[str, Any]:
     """The given keys of law, section, profile and segments of the arms of a file, in the section `material`
     of the config or in the arm; empty for uniform arms of linear material."""
     section = dict(view.config.get("material") or {})
@@ -22,7 +22,7 @@ def material_of(view: View) -> Mapping[str, Any]:
     return shape_keys
 
 
-def material_words(view: View) -> str:
+def material_words(view: ResultView) -> str:
     """Law, profile and segments in a few words, for figures; empty for uniform arms of linear material."""
     section = material_of(view)
     phrases = [f"neo-Hookean, {section['section']} section"] if "law" in section else []
@@ -31,7 +31,7 @@ def material_words(view: View) -> str:
     return ", ".join(phrases)
 
 
-def material_lines(view: View) -> list[str]:
+def material_lines(view: ResultView) -> list[str]:
     """Lines on law, profile and segments, for summaries; empty for uniform arms of linear material."""
     section = material_of(view)
     lines = []

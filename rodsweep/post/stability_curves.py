@@ -5,12 +5,12 @@ points of further modes.
 import numpy as np
 
 from ..arrays import Array
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from .located_thresholds import STABILITY_CHANGES
 
 
-def curves_bounding_stability(view: View, line: str, row: str) -> dict[int, bool]:
+def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int, bool]:
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the

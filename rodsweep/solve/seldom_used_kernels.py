@@ -7,7 +7,7 @@ that varies along its length would wait up to 40 s for the compiler.
 
 import numpy as np
 
-from ..determinant.parameter_path import Path
+from ..determinant.parameter_path import ParameterPath
 from ..determinant.stability_changes import stability_change_between
 from ..discretization.elements.mesh import uniform_mesh
 from ..discretization.stress.form import StressForm
@@ -23,7 +23,7 @@ from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
 from .spectrum.path.carried_count import widest_gap
 from .spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
-from .spectrum.path.prediction import Track
+from .spectrum.path.prediction import FollowedEigenvalues
 from .spectrum.spectrum import SpectrumRequest
 
 SAMPLE_ROD = Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2)
@@ -55,7 +55,7 @@ def warm_up() -> None:
 def warm_up_arms() -> None:
     """Solves spectra of neighbouring rods of a sweep, thresholds and a cycle, for arms that vary along their
     length."""
-    path = Path(SAMPLE_CONE, "F")
+    path = ParameterPath(SAMPLE_CONE, "F")
     spectra = SpectrumRequest(2, SAMPLE_ACCURACY, certify=True)
     follow_spectra(NeighbouringRods(path, np.linspace(SAMPLE_CONE.F, 1.2 * SAMPLE_CONE.F, 12)), spectra)
     search = ThresholdsRequest(SAMPLE_SEGMENTS.F, SAMPLE_ACCURACY, certify=True, max_thresholds=1)
@@ -71,7 +71,7 @@ def warm_up_uniform() -> None:
     stability_change_between(
         (SAMPLE_ROD.coefficients, SAMPLE_ROD.coefficient_derivative("F")), (1.0, 2.0), -w[0], w[0], 2
     )
-    widest_gap(Track(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
+    widest_gap(FollowedEigenvalues(w, w, np.zeros((1, 2)), np.zeros((1, 2), np.int64)), 0, 1)
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
     states = np.zeros((1 + SAMPLE_TIME_INTERVALS * SAMPLE_COLLOCATION_STAGES, form.unknown_count))
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_COLLOCATION_STAGES)
@@ -79,7 +79,7 @@ def warm_up_uniform() -> None:
         NewtonWorkspace(), SAMPLE_TIME_INTERVALS, SAMPLE_COLLOCATION_STAGES, form.unknown_count
     )
     variations = np.zeros((1, len(orbit.values) + 1))
-    equations = orbit.semidiscrete_equations
+    equations = orbit.orbit_equations
     reduced_variation_sides(
         orbit.values, equations, parameter_derivatives(form, "F"), variations, equations, memory.factors
     )

@@ -1,7 +1,7 @@
 """Distribution of work items over ranks: independent items in small chunks whose size follows from each
 rank's time per item, and items that depend on earlier results one by one.
 
-A work item, item for short, is a point, a chain, a stretch of points, or a part of a curve. A rank with a
+A work item, item for short, is a point, a chain, a group of points, or a part of a curve. A rank with a
 slow chunk returns the unsolved items of the chunk with the next request. No rank ends while another rank may
 still return items, and all ranks finish within about the time of one item. The module
 `rodsweep.sweep.chunk_requests` sends the messages.

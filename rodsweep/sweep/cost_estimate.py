@@ -13,8 +13,8 @@ from ..discretization.elements.resolution import RESOLUTION_SETTINGS, expected_w
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import expected_unstable_count, most_amplified_wave, sampled_arm
 from ..model.rod import Rod
+from .points.groups import PointGroups
 from .points.points import Points
-from .points.stretches import Stretches
 
 MAX_SAMPLED_POINTS = 200
 """Largest number of points whose meshes are computed for an estimate."""
@@ -44,11 +44,11 @@ MAX_EXTRA_UNSTABLE_MODES = 9
 """Eigenvalues of an arm are followed only if its number of unstable modes exceeds the number of requested
 modes by at most this number."""
 FIRST_POINT_COST = 2.0
-"""Time of the first point of a stretch, divided by the time of a point that is solved alone."""
+"""Time of the first point of a group, divided by the time of a point that is solved alone."""
 FOLLOWED_POINT_MS = 0.006
-"""Time per point of a stretch, in which eigenvalues are continued from a neighbouring point, in ms."""
+"""Time per point of a group, in which eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_POINT_MS = 0.15
-"""Time per point, including the first point, of a stretch of arms that are not uniform, in ms: median over 30
+"""Time per point, including the first point, of a group of arms that are not uniform, in ms: median over 30
 random arms."""
 MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD = 0.02
 """Time of a spectrum of a uniform rod with N unstable modes, divided by N^2 (1 + (N/
@@ -133,12 +133,12 @@ def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> C
 
 
 def followed_spectra_cost(
-    separate: CostEstimate, stretches: Stretches, points: Points, modes: int
+    separate: CostEstimate, groups: PointGroups, points: Points, modes: int
 ) -> CostEstimate:
-    """Estimated cost of the spectra of `points` followed along stretches. separate: cost of solving every
+    """Estimated cost of the spectra of `points` followed along groups. separate: cost of solving every
     point alone. modes: number of eigenvalues.
     """
-    firsts = FIRST_POINT_COST * stretches.count / points.count
+    firsts = FIRST_POINT_COST * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     point_ms = (
         FOLLOWED_ARM_POINT_MS if any(not rod.is_uniform_and_linear for rod in rods) else FOLLOWED_POINT_MS

@@ -22,9 +22,9 @@ Indices = int | NDArray[np.int64]
 
 
 class ItemSolver(Protocol):
-    """Function that solves a work item, that is, a point, a chain or a stretch of points.
+    """Function that solves a work item, that is, a point, a chain or a group of points.
 
-    Yields (flat index, result) of a point, or (flat indices, results) of points of a stretch that were solved
+    Yields (flat index, result) of a point, or (flat indices, results) of points of a group that were solved
     together.
     """
 

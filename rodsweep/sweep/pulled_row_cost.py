@@ -5,8 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.parameter_path import Path
 from ..model.dispersion import sampled_arm
 from ..model.rod import Rod
 from .search_cost import SOFT_SEARCH_MS
@@ -74,7 +72,11 @@ def _row_seconds(rod: Rod, start: float) -> float:
 
 def _boxes(rod: Rod, pull: float) -> Array | None:
     """Boxes of the covering from `pull` to F = 0; None if no a-priori bound applies."""
-    return first_boxes(Path(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None
+    # Imported for rows under pulls only: these modules load the compiler.
+    from ..determinant.certificate.first_boxes import first_boxes
+    from ..determinant.parameter_path import ParameterPath
+
+    return first_boxes(ParameterPath(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None
 
 
 def _least_coupling(rod: Rod, pull: float) -> float:

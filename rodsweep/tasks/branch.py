@@ -92,7 +92,9 @@ def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = [
-        _special_point_values(special_point, starts[number - 1], crossing_by_value.get(special_point.at))
+        _special_point_values(
+            special_point, starts[number - 1], crossing_by_value.get(special_point.parameter_value)
+        )
         | {"special_branch": number, "special_meets": others.get((number, index), -1)}
         for number, curve in enumerate(result.curves, 1)
         for index, special_point in enumerate(curve.special_points)
@@ -129,15 +131,18 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
 def _cycle_values(point: "BranchPoint", parameter: str) -> dict[str, Any]:
     """A cycle of a branch as variables of the file. parameter: the followed parameter."""
     attribute_names = {
-        f"branch_{parameter}": "at",
-        f"branch_{parameter}_error": "at_error",
+        f"branch_{parameter}": "parameter_value",
+        f"branch_{parameter}_error": "parameter_value_error",
         "unstable_multipliers": "unstable_count",
     }
     variables = [v for v in followed_variables(parameter) if v.name != "branch"]
     return outcome_values(variables, point, point.measures, point.errors, names=attribute_names)
 
 
-SPECIAL_POINT_FIELDS = {"special_amplitude_coefficient_error": "coefficient_error"}
+SPECIAL_POINT_FIELDS = {
+    "special_at": "parameter_value",
+    "special_amplitude_coefficient_error": "coefficient_error",
+}
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 

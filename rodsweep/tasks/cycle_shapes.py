@@ -11,7 +11,7 @@ from ..config.arm.axes import LOAD_KEYS
 from ..config.document.reading import validated_config
 from ..errors import EnvironmentIncomplete, InputError
 from ..model.arm.drag import DRAG_NAMES
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.limit_cycle import ENERGY_VARIABLES, SHAPE_VARIABLES, TIP_VARIABLES
 from .running.job import Job, job_of_config
 
@@ -24,7 +24,7 @@ MAX_PERIOD_DIFFERENCE = 100
 multiple of the sum of their estimated errors."""
 
 
-def with_shapes(view: View, numbers: Sequence[int]) -> View:
+def with_shapes(view: ResultView, numbers: Sequence[int]) -> ResultView:
     """A copy of the file's view with shapes and samples of the cycles at some points; NaN at all other
     points.
 
@@ -43,7 +43,7 @@ def with_shapes(view: View, numbers: Sequence[int]) -> View:
     return replace(view, variables=dict(view.variables) | added)
 
 
-def _solve_stored_point(view: View, number: int) -> tuple[Job, dict[str, Any]]:
+def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, Any]]:
     """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
     the point, from 1. Raises InputError if the cycle cannot be solved here, or ends in a state that differs
     from the stored state.
@@ -68,7 +68,7 @@ def _solve_stored_point(view: View, number: int) -> tuple[Job, dict[str, Any]]:
     return job, record
 
 
-def _job_of_point(view: View, number: int) -> Job:
+def _job_of_point(view: ResultView, number: int) -> Job:
     """Job that solves one point of the file again with SHAPE_COUNT shapes and SAMPLE_COUNT samples.
 
     Parameters, material, accuracy, harmonics and start are those of the file, for a start from a mode also
@@ -94,7 +94,7 @@ def _job_of_point(view: View, number: int) -> Job:
     return job_of_config(Path(view.path.name), validated_config(document), document)
 
 
-def _parameters_of_point(view: View, number: int) -> dict[str, Any]:
+def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
     """Section `parameters` of a config with one point of a list of points: the parameters of a rod, or an arm
     and its follower force, with the parameters that the file's config gives in addition to the arm. number:
     number of the point, from 1.

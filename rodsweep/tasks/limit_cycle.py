@@ -26,7 +26,7 @@ from ..results.layouts.variables import FilledVariable, Variable, outcome_values
 from ..solve.backend.availability import require_solvers
 from ..sweep.cost_estimate import CostEstimate, cycles_cost, marched_cycles_cost
 from ..sweep.first_mesh import largest_first_mesh
-from ..sweep.points.chains import ChainedWork, Chains
+from ..sweep.points.chains import Chains, SweepChains
 from ..sweep.points.grid import require_in_range
 from ..wording import counted
 from .check_rows import arms_line, material_check_rows, points_clause, points_text, rod_check_rows
@@ -194,7 +194,7 @@ class LimitCycleTask(Task):
             warm_up=warm_up,
             solve=solve,
             record=lambda index, cycle: self.record(self.points.values(index), cycle),
-            chained=ChainedWork(chains, solve_from, CycleStart.from_arrays) if chains else None,
+            chained=SweepChains(chains, solve_from, CycleStart.from_arrays) if chains else None,
         )
         if self.config.limit_cycle.method == "collocation":
             return by_collocation

@@ -7,14 +7,14 @@ from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.variables import FilledVariable
 from ..solve.status import PointStatus
 from ..sweep.chunk_queue import ItemChooser
 from ..sweep.cost_estimate import CostEstimate
-from ..sweep.points.chains import ChainedWork, Chains, State
+from ..sweep.points.chains import Chains, State, SweepChains
+from ..sweep.points.groups import PointGroups, SolveGroup
 from ..sweep.points.points import Points
-from ..sweep.points.stretches import SolveStretch, Stretches
 
 NamedArrays = dict[str, np.ndarray]
 """Arrays by name: the result of a work item for variables that depend on all points."""
@@ -54,7 +54,7 @@ class SweepWideResult:
 class SweepWideSolver(Protocol):
     """Computes variables that depend on all points, for example curves. Every rank has its own object."""
 
-    def work_items(self, view: View, results: Mapping[int, NamedArrays]) -> WorkItems | None:
+    def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> WorkItems | None:
         """The work items to be divided among the ranks now, with numbers that no other work items have; None
         if there are no work items at all. Only the last work items may be unsolved, or solved.
 
@@ -77,7 +77,7 @@ class SweepWideSolver(Protocol):
     def empty_result(self, items: Any) -> NamedArrays:
         """Empty result, for a work item of `items` whose solver raised an unforeseen exception."""
 
-    def result(self, view: View, results: Mapping[int, NamedArrays]) -> SweepWideResult:
+    def result(self, view: ResultView, results: Mapping[int, NamedArrays]) -> SweepWideResult:
         """The variables that depend on all points, and the points that change; called on the first rank only.
 
         view: the file with all points. results: results of all work items, by number.
@@ -98,36 +98,36 @@ class Solver:
     """Function from (flat index, outcome) of a point to the values of the file's variables, by name."""
     sweep_wide_solver: SweepWideSolver | None = None
     """Computes the variables that depend on all points; None for tasks without such variables."""
-    chained: ChainedWork | None = None
+    chained: SweepChains | None = None
     """Chains of points, each started from the solution of the previous point; used instead of `solve`. None
     if there are no chains."""
-    stretched: tuple[Stretches, SolveStretch] | None = None
-    """(stretches of the sweep, function that solves the points of a stretch at their flat indices), used
+    grouped: tuple[PointGroups, SolveGroup] | None = None
+    """(groups of the sweep, function that solves the points of a group at their flat indices), used
     instead of `solve`; None if no points are solved together."""
 
     def with_wrapper(
-        self, solve_wrapper: SolveWrapper, solve_stretch: SolveStretch | None = None, **changed: Any
+        self, solve_wrapper: SolveWrapper, solve_group: SolveGroup | None = None, **changed: Any
     ) -> "Solver":
         """A copy of the solver with the solve of every point wrapped by `solve_wrapper`, and with the fields
         in `changed`.
 
-        solve_stretch: new function that solves a stretch, if the solver has stretches.
+        solve_group: new function that solves a group, if the solver has groups.
         """
         wrapped = self.chained
-        stretched = self.stretched
+        grouped = self.grouped
         if wrapped is not None:
             step = wrapped.solve_from
             wrapped = replace(
                 wrapped,
                 solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
             )
-        if stretched is not None and solve_stretch is not None:
-            stretched = stretched[0], solve_stretch
+        if grouped is not None and solve_group is not None:
+            grouped = grouped[0], solve_group
 
         def solve(index: int) -> Any:
             return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
-        return replace(self, solve=solve, chained=wrapped, stretched=stretched, **changed)
+        return replace(self, solve=solve, chained=wrapped, grouped=grouped, **changed)
 
 
 def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
@@ -151,8 +151,8 @@ class Task(ABC):
         return None
 
     @property
-    def stretches(self) -> Stretches | None:
-        """Stretches of points that are solved together; None if there are none."""
+    def groups(self) -> PointGroups | None:
+        """Groups of points that are solved together; None if there are none."""
         return None
 
     def coordinates(self) -> dict[str, np.ndarray]:

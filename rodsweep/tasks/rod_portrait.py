@@ -15,7 +15,7 @@ from ..model.parameters import OPTIONAL_PARAMETERS
 from ..post.branch_curves import RodBranches
 from ..post.range_unions import ParameterRange
 from ..post.rod_portrait.results import DescribedRod, RodResults
-from ..results.file.view import View
+from ..results.file.view import ResultView
 from ..results.layouts.thresholds import CROSSING_KINDS
 from .running.in_memory import solved_view
 from .running.job import Job, job_of_config
@@ -36,7 +36,7 @@ allows."""
 BRANCH_WORK = 300.0
 """Limit `work` of the branches of a portrait: 15 to 30 s, and at most 1 GB for a matrix. A cone of taper 0.19
 needs 300 up to F = 15, three times its Hopf point, and ever more at larger forces."""
-SolveJob = Callable[[Job], View]
+SolveJob = Callable[[Job], ResultView]
 """Function that solves the only point of a job."""
 
 
@@ -92,7 +92,7 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
 
     def solved(
         task: str, options: Mapping[str, Any], F: float | None = None, default_accuracy: float | None = None
-    ) -> View | None:
+    ) -> ResultView | None:
         try:
             return solve(request.job_of_task(task, options, F, default_accuracy))
         except InputError as error:
@@ -123,7 +123,9 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
     )
 
 
-def _cycle_at_force(solve: Callable[[str, Mapping[str, Any], float], View | None], F: float) -> View | None:
+def _cycle_at_force(
+    solve: Callable[[str, Mapping[str, Any], float], ResultView | None], F: float
+) -> ResultView | None:
     """The limit cycle at the force F, solved from the Hopf point or, if no cycle is found, from a large
     deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
     gave None.
@@ -139,7 +141,7 @@ def _cycle_at_force(solve: Callable[[str, Mapping[str, Any], float], View | None
     return result
 
 
-def first_threshold_forces(thresholds: View) -> dict[str, float]:
+def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
     drawn.
     """

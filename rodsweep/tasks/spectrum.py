@@ -26,7 +26,7 @@ from ..results.layouts.spectrum import (
 from ..results.layouts.variables import FilledVariable, outcome_values
 from ..sweep.cost_estimate import CostEstimate, followed_spectra_cost, spectra_cost, two_meshes_cost
 from ..sweep.first_mesh import largest_first_mesh, spectrum_mesh
-from ..sweep.points.stretches import Stretches, StretchResult, stretches_along_longest_axis
+from ..sweep.points.groups import GroupResult, PointGroups, groups_along_longest_axis
 from .base_classes import CertifiedTask
 from .check_rows import points_text
 from .hopf.force_changes import force_change_variables
@@ -57,11 +57,11 @@ class SpectrumTask(CertifiedTask):
         return self.config.spectrum.nodes if self.config.spectrum.vectors else 0
 
     @property
-    def stretches(self) -> Stretches | None:
-        """Stretches of points along which eigenvalues are followed; None if eigenvalues are not followed."""
+    def groups(self) -> PointGroups | None:
+        """Groups of points along which eigenvalues are followed; None if eigenvalues are not followed."""
         if not self.config.follows_eigenvalues:
             return None
-        return stretches_along_longest_axis(self.points.shape, self.points.varying_parameters)
+        return groups_along_longest_axis(self.points.shape, self.points.varying_parameters)
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
@@ -149,9 +149,9 @@ class SpectrumTask(CertifiedTask):
             return two_meshes_cost(self.points, options.modes, self.config.accuracy)
         accuracy = mesh_accuracy(self.config.accuracy, options.vectors)
         unfollowed = spectra_cost(self.points, options.modes, accuracy, self.config.certifies)
-        if self.stretches is None:
+        if self.groups is None:
             return unfollowed
-        return followed_spectra_cost(unfollowed, self.stretches, self.points, options.modes)
+        return followed_spectra_cost(unfollowed, self.groups, self.points, options.modes)
 
     def solver(self) -> Solver:
         from ..solve.spectrum.path.neighbouring_rods import warm_up as warm_up_following
@@ -163,33 +163,31 @@ class SpectrumTask(CertifiedTask):
         request = SpectrumRequest(
             options.modes, self.config.accuracy, self.config.certifies, self._vector_nodes
         )
-        stretches = self.stretches
+        groups = self.groups
         solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
             statuses=tuple(SpectrumStatus),
-            warm_up=warm_up_following if stretches else warm_up,
+            warm_up=warm_up_following if groups else warm_up,
             solve=lambda index: solve(self.points.rod(index), request),
             record=lambda index, result: spectrum_values(result),
-            stretched=(stretches, lambda indices: self._solve_stretch(indices, request))
-            if stretches
-            else None,
+            grouped=(groups, lambda indices: self._solve_group(indices, request)) if groups else None,
         )
 
-    def _solve_stretch(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> StretchResult:
-        """Results for the points of a stretch to which eigenvalues are followed. indices: flat indices,
+    def _solve_group(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> GroupResult:
+        """Results for the points of a group to which eigenvalues are followed. indices: flat indices,
         (n,).
         """
-        from ..determinant.parameter_path import Path
+        from ..determinant.parameter_path import ParameterPath
         from ..solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 
-        stretches = self.stretches
-        assert stretches is not None
-        followed_parameter = self.points.varying_parameters[stretches.axis]
-        path = Path(self.points.rod(int(indices[0])), followed_parameter)
+        groups = self.groups
+        assert groups is not None
+        followed_parameter = self.points.varying_parameters[groups.axis]
+        path = ParameterPath(self.points.rod(int(indices[0])), followed_parameter)
         followed = follow_spectra(
             NeighbouringRods(path, self.points.values_of(indices)[followed_parameter]), request
         )
-        return StretchResult(spectrum_values(followed.spectra), followed.is_solved)
+        return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 
 
 def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
@@ -205,7 +203,7 @@ def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int
 
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:
-    """Variables of the file for the spectrum of a point, or for the spectra of the points of a stretch."""
+    """Variables of the file for the spectrum of a point, or for the spectra of the points of a group."""
     values = outcome_values(MODE_VARIABLES + FOLLOWED_POINT_VARIABLES, result)
     if result.vectors is not None:
         for field, component in zip(("Y", "Theta"), result.vectors, strict=True):

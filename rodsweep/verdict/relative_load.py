@@ -14,8 +14,8 @@ import numpy as np
 
 from ..determinant.certificate.covering import cover_with_boxes
 from ..determinant.certificate.first_boxes import first_boxes
-from ..determinant.parameter_path import Path, coefficients_at, determinant_along_path
-from ..determinant.roots.newton import LocatedZero
+from ..determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
+from ..determinant.roots.newton import LocatedEigenvalue
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
@@ -93,7 +93,7 @@ def first_hopf_force(rod: Rod) -> float:
     inf if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
     overflows or cannot exclude a Hopf point at a smaller F.
     """
-    path = Path(rod, "F")
+    path = ParameterPath(rod, "F")
     find_first = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
     try:
         for end in (
@@ -111,7 +111,7 @@ def first_hopf_force(rod: Rod) -> float:
     return inf
 
 
-def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
+def _first_hopf_force_by_boxes(path: ParameterPath, end: float) -> float:
     """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
     of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded.
     """
@@ -131,12 +131,12 @@ def _first_hopf_force_by_boxes(path: Path, end: float) -> float:
     return force
 
 
-def _first_hopf_force_of_varying_arm(path: Path, end: float) -> float:
+def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
     """For arms that are not uniform or not of linear material (others: `_first_hopf_force_by_boxes`):
     smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
     FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
     """
-    from ..solve.changes.along_path import find_axis_crossings
+    from ..solve.changes.thresholds_along_path import find_axis_crossings
     from ..solve.point_outcome import FAILURES, cause_of
 
     try:
@@ -157,7 +157,7 @@ def _first_hopf_force_of_varying_arm(path: Path, end: float) -> float:
     return force
 
 
-def _becomes_unstable(path: Path, zero: LocatedZero) -> bool:
+def _becomes_unstable(path: ParameterPath, zero: LocatedEigenvalue) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
     d Re w/dp > 0.
     """

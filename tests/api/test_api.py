@@ -269,7 +269,7 @@ def test_an_empty_profile_and_an_empty_list_of_segments_are_called_empty():
 
 def test_a_wrong_item_of_a_list_of_words_is_refused_with_the_words_that_are_allowed(tmp_path):
     (tmp_path / "points.csv").write_text("F,k1,k2,gamma3\n5,1e3,1e3,1e-3\n")
-    with pytest.raises(rs.InputError, match="columns.0 = 'F' is not allowed; it should be 'taper'$"):
+    with pytest.raises(rs.InputError, match="columns, number 1 = 'F' is not allowed; it should be 'taper'$"):
         rs.sweep("spectrum", points=tmp_path / "points.csv", columns=["F"])
 
 

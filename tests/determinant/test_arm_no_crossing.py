@@ -7,7 +7,7 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
 from rodsweep.determinant.arm.count.settings import NO_CROSSING_SETTINGS
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.solve.spectrum.path.arm_interval import follow_interval
 from rodsweep.solve.spectrum.search import SpectrumRequest
 
@@ -29,7 +29,7 @@ def followed_path(rng):
     while True:
         rod = random_arm(rng)
         name = str(rng.choice(list(CHANGES)))
-        path = Path(rod, name)
+        path = ParameterPath(rod, name)
         ends = np.array([1.0, CHANGES[name]]) * getattr(rod, name)
         p = np.linspace(*(1 / ends if path.is_compliance_path else ends), 64)
         try:

@@ -11,7 +11,7 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.family_values import eigenvalue_of_family_arm
 from rodsweep.determinant.arm.rounding import rounding_error_by_chain
 from rodsweep.determinant.arm.value import determinant_along_chain
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -83,13 +83,13 @@ def test_two_close_eigenvalues_have_larger_errors_than_the_products_at_the_tip()
     for w, error in pair:
         W, polynomials = determinant.propagators_for(abs(w))
         value = determinant_along_chain(w, W, polynomials)
-        assert rounding_error_by_chain(w, W, polynomials, value.S) > 20 * value.noise
+        assert rounding_error_by_chain(w, W, polynomials, value.log_scale) > 20 * value.rounding_error
         spread = [abs(refined(w, determinant, factor) - w) for factor in (1.4, 2.2, 3.5)]
         assert 1e-12 < max(spread) <= 2 * error < 1e-8
 
 
 def test_eigenvalues_of_families_close_to_crushing_are_within_their_errors():
-    path = Path(CLOSE_PAIR, "F")
+    path = ParameterPath(CLOSE_PAIR, "F")
     family = interpolated_family(path, 110.0, 117.0, 6000.0)
     for F in (112.3, 115.1, CLOSE_PAIR.F):
         determinant = ArmDeterminant(path.rod_at(F))

@@ -16,7 +16,7 @@ from rodsweep.determinant.certificate.covering import cover_with_boxes, distance
 from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidisc
 from rodsweep.determinant.certificate.first_boxes import first_boxes, path_intervals
 from rodsweep.determinant.parameter_path import (
-    Path,
+    ParameterPath,
     coefficient_derivatives,
     coefficients_at,
     determinant_along_path,
@@ -35,7 +35,7 @@ RODS = [
     Rod(F=60.0, k1=1e3, k2=50.0, gamma3=0.0),
 ]
 PATHS = [
-    pytest.param(Path(rod, name), id=f"{name}-{rod.F}")
+    pytest.param(ParameterPath(rod, name), id=f"{name}-{rod.F}")
     for rod in RODS
     for name in ("F", "k1", "k2", "gamma3")
     if math.isfinite(getattr(rod, name)) and getattr(rod, name) != 0
@@ -168,7 +168,7 @@ def test_a_priori_bounds_over_a_path_hold_at_each_of_its_rods(path):
 
 
 def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
-    path = Path(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), "F")
+    path = ParameterPath(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4), "F")
     parts = path_intervals(path, 0.0, 99.9999)
     assert parts[0][0] == 0.0
     assert parts[-1][1] == 99.9999
@@ -177,7 +177,7 @@ def test_slabs_reach_from_end_to_end_and_grow_finer_towards_a_crushed_rod():
 
 
 def test_an_eigenvalue_and_its_slope_along_the_force():
-    path = Path(RODS[0], "F")
+    path = ParameterPath(RODS[0], "F")
     w, slope, error = eigenvalue_newton(complex(-60, 150), path.rod.coefficients, path.direction)
     assert error < 1e-11
     h = 1e-4

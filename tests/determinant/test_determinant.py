@@ -85,9 +85,13 @@ def test_the_noise_bounds_what_rounding_does_where_terms_cancel():
     assert max(errors) < 1
 
 
-def test_the_typical_noise_is_typical():
+def test_the_typical_rounding_fraction_is_typical():
     errors = [rounding(*case.values) for case in cases()]
-    assert DETERMINANT_SETTINGS.typical_noise / 10 < np.median(errors) < DETERMINANT_SETTINGS.typical_noise
+    assert (
+        DETERMINANT_SETTINGS.typical_rounding_fraction / 10
+        < np.median(errors)
+        < DETERMINANT_SETTINGS.typical_rounding_fraction
+    )
 
 
 PULLS_AND_PUSHES = [

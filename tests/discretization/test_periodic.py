@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.elements.periodic import (
+from rodsweep.discretization.elements.trigonometric import (
     fourier_coefficients,
     hermite_coefficients,
     hermite_coefficients_of_columns,

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.quiver import Quiver
 
 import rodsweep as rs
-from rodsweep.discretization.elements.periodic import interpolate_samples
+from rodsweep.discretization.elements.trigonometric import interpolate_samples
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import RodBranches

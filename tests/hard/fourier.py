@@ -9,7 +9,7 @@ import numpy as np
 
 from rodsweep.discretization.element_strains import write_element_strains
 from rodsweep.discretization.elements.mesh import shape_from_strains
-from rodsweep.discretization.elements.periodic import fourier_coefficients, series_maxima
+from rodsweep.discretization.elements.trigonometric import fourier_coefficients, series_maxima
 from rodsweep.discretization.plane_equations import write_balance
 from rodsweep.discretization.straight.mixed_form import MixedForm
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from surveyed import few
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.arc_length_step import BranchCycle, next_cycle
 from rodsweep.solve.branch.bordered.scale import deflection_of
@@ -23,7 +23,7 @@ from rodsweep.solve.branch.branch_curve import BranchPoint
 from rodsweep.solve.branch.branch_mesh_choice import is_measurement_due, with_errors_within_accuracy
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
@@ -80,11 +80,11 @@ def random_case(index: int) -> Case:
 def cycles_of(case: Case) -> Iterator[BranchCycle]:
     """The cycles of the first branch, with the errors that it states, as far as MOST_CYCLES."""
     rod = Rod(F=0.0, k1=case.k1, k2=case.k2, gamma3=case.gamma3)
-    crossings = find_axis_crossings(Path(rod, "F"), 0.0, case.stop).thresholds
+    crossings = find_axis_crossings(ParameterPath(rod, "F"), 0.0, case.stop).thresholds
     if not crossings:
         return
     here = last = first_cycle(
-        hopf_branch_start(Path(rod.with_values(gamma1=case.gamma1), "F"), crossings[0]),
+        hopf_branch_start(ParameterPath(rod.with_values(gamma1=case.gamma1), "F"), crossings[0]),
         case.accuracy,
         NewtonWorkspace(),
     )
@@ -129,11 +129,17 @@ def broken_promises(case: Case) -> list[str]:
             "multiplier": (abs(stored.multiplier - abs(multipliers[0])), errors.multiplier_error),
         }
         rounding = ROUNDING * max(1.0, slope)
-        wrong += [f"{name} at {stored.at!r}: {a} > {b}" for name, (a, b) in off.items() if a > b + rounding]
-        if stored.at_error > case.accuracy or (
+        wrong += [
+            f"{name} at {stored.parameter_value!r}: {a} > {b}"
+            for name, (a, b) in off.items()
+            if a > b + rounding
+        ]
+        if stored.parameter_value_error > case.accuracy or (
             slope <= STEEP and errors.largest_weighted_error > case.accuracy
         ):
-            wrong.append(f"errors at {stored.at!r}: {stored.at_error}, {errors}, slope {slope}")
+            wrong.append(
+                f"errors at {stored.parameter_value!r}: {stored.parameter_value_error}, {errors}, {slope}"
+            )
     return wrong
 
 

@@ -30,14 +30,14 @@ import rodsweep.determinant
 import rodsweep.discretization
 import rodsweep.solve
 from rodsweep.determinant.certificate.box import box_from_sqrt_bound
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
-from rodsweep.model.compiled.settings import CompiledSettings
+from rodsweep.model.compiled.kernel_constants import KernelConstants
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -47,11 +47,11 @@ from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
 from rodsweep.solve.branch.special.special_point import SpecialKind
-from rodsweep.solve.changes.along_path import find_axis_crossings
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
@@ -104,7 +104,7 @@ def branch_answer(
     for number, curve in enumerate(found.curves):
         for place, point in enumerate(curve.special_points):
             name = f"branch {number}, special point {place}, {point.kind.name}: "
-            answer[name + "at"] = point.at, point.error
+            answer[name + "at"] = point.parameter_value, point.error
             answer[name + "period"] = point.period, point.period_error * point.period
             answer[name + "size"] = point.tip_y_max, point.tip_y_max_error * abs(point.tip_y_max)
     return answer
@@ -166,7 +166,7 @@ def curve_of_folds(accuracy: float) -> Answer:
 
 def coefficients(accuracy: float) -> Answer:
     """Normal form of a Hopf point of a rod that is soft in shear, at a high force."""
-    crossing = find_axis_crossings(Path(SOFT_IN_SHEAR, "F"), 0.0, 25.0).thresholds[-1]
+    crossing = find_axis_crossings(ParameterPath(SOFT_IN_SHEAR, "F"), 0.0, 25.0).thresholds[-1]
     try:
         found = hopf_coefficients(SOFT_IN_SHEAR.with_values(F=crossing.value), crossing, accuracy)
     except FAILURES:
@@ -264,11 +264,11 @@ def spectra(accuracy: float) -> Answer:
 
 def followed_cones(accuracy: float) -> Answer:
     """Cones beyond flutter, where counts are carried from cone to cone."""
-    path = Path(Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F")
+    path = ParameterPath(Rod(F=40.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F")
     return spectra_along(path, np.linspace(40.0, 42.0, 40), SpectrumRequest(4, accuracy, certify=True))
 
 
-def spectra_along(path: Path, forces: np.ndarray, request: SpectrumRequest) -> dict[str, Any] | None:
+def spectra_along(path: ParameterPath, forces: np.ndarray, request: SpectrumRequest) -> dict[str, Any] | None:
     found = solve_stretch(NeighbouringRods(path, forces), request)
     if found.status.any():
         return None
@@ -283,7 +283,7 @@ def spectra_along(path: Path, forces: np.ndarray, request: SpectrumRequest) -> d
 def followed(accuracy: float) -> Answer:
     """Spectra of neighbours through flutter, and the leader of one from that of the other."""
     forces = np.linspace(40.0, 170.0, 12)
-    path = Path(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), "F")
+    path = ParameterPath(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), "F")
     answer = spectra_along(path, forces, SpectrumRequest(3, accuracy, certify=True))
     if answer is None:
         return None
@@ -792,7 +792,7 @@ def replaced(name: str, field: str, factor: float) -> Iterator[None]:
     """Another value of one field, in every module that has the settings object, and in compiled functions."""
     old = settings()[name]
     new = changed(name, field, factor)
-    before = digests() if isinstance(old, CompiledSettings) else {}
+    before = digests() if isinstance(old, KernelConstants) else {}
     users = [
         (vars(module), key)
         for title, module in list(sys.modules.items())

@@ -9,11 +9,11 @@ displacement form (`displacement_form.py`), which has no equation with the progr
 import pytest
 from rods import rod_of
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.solve.branch.arc_length_step import next_cycle
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
@@ -33,8 +33,8 @@ PERIODS = 40
 def unstable():
     """An unstable cycle on the branch from the restabilization."""
     rod = rod_of(0.0, *STIFFNESS)
-    crossing = find_axis_crossings(Path(rod, "F"), 100.0, 199.0).thresholds[-1]
-    here = first_cycle(hopf_branch_start(Path(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
+    crossing = find_axis_crossings(ParameterPath(rod, "F"), 100.0, 199.0).thresholds[-1]
+    here = first_cycle(hopf_branch_start(ParameterPath(rod, "F"), crossing), ACCURACY, NewtonWorkspace())
     while here.cycle.measures.tip_y_max < LEAST_Y:
         here = next_cycle(here, ACCURACY)
     return here

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 from rods import rod_of
 
-from rodsweep.determinant.parameter_path import Path as ParameterPath
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.parameters import LINEAR_PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import find_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 from rodsweep.sweep.points.points import lines_along
 

@@ -262,11 +262,11 @@ def test_places_of_the_cache(monkeypatch):
 
 SETTINGS = """
 from dataclasses import dataclass
-from rodsweep.model.compiled.settings import CompiledSettings
+from rodsweep.model.compiled.kernel_constants import KernelConstants
 from rodsweep.model.compiled.compilation import compiled
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HeldSettings(CompiledSettings):
+class HeldSettings(KernelConstants):
     count: int = 2
     sizes: tuple[float, ...] = (1.0, 2.0)
 

@@ -14,7 +14,7 @@ from matplotlib.text import Annotation
 from PIL import Image
 from surveyed import few, survey_only
 
-from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
+from rodsweep.discretization.elements.trigonometric import interpolate_samples, time_derivative
 from rodsweep.errors import EnvironmentIncomplete, InputError
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude

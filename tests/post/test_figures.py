@@ -36,7 +36,7 @@ from rodsweep.post.figures.stability.row_classes import pixel_classes_of_row
 from rodsweep.post.figures.stability.threshold_lines import _groups_of_equal_lines
 from rodsweep.post.figures.style import INVERSE_DRAG_LABEL, LABELS, number_in_tex, scale_axis
 from rodsweep.post.summary import SUMMARIES
-from rodsweep.results.file.view import View, read_view
+from rodsweep.results.file.view import ResultView, read_view
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.results.layouts.variables import flag_number
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -160,7 +160,7 @@ def test_a_stretch_of_a_row_without_a_computed_point_is_undecided():
     }
     resolved = resolved_config(validated_config(tree))
     attributes = {"task": "phase_diagram", "config_resolved": json.dumps(resolved)}
-    view = View(Path("f.h5"), attributes, variables, ("k1",), {0: "ok"}, 0)
+    view = ResultView(Path("f.h5"), attributes, variables, ("k1",), {0: "ok"}, 0)
     edges = np.array([0.0, 50.0, 199.0, 200.0, 220.0])
     assert pixel_classes_of_row(view, "stable_states", "F", "k1", 0, edges).tolist() == [1, 2, 4, 5]
 
@@ -697,7 +697,7 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
         "cycle_curve_F": np.array([50.0, 60.0]),
         "cycle_curve_k1": np.array([100.0, 300.0]),
     }
-    view = View(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
+    view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
     axes = Figure().subplots()
     (folds,) = mark_cycles_on_rows(axes, view, "F", "k1")
     assert folds.get_xydata().tolist() == [[70.0, 150.0]]

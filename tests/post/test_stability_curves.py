@@ -8,7 +8,7 @@ import pytest
 from rodsweep.post.figures.stability.class_bars import draw_class_bars
 from rodsweep.post.figures.stability.diagram_curves import boundaries_to_name, constant_force_text
 from rodsweep.post.stability_curves import curves_bounding_stability
-from rodsweep.results.file.view import View
+from rodsweep.results.file.view import ResultView
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS
 
 K2 = np.array([1.0, 2.0, 3.0])
@@ -31,7 +31,7 @@ def diagram():
         "k2": K2,
         "gamma3": np.array([1e-4]),
     }
-    return View(Path("f.h5"), {"task": "phase_diagram"}, v, ("F", "k2", "gamma3"), {0: "ok"}, 0)
+    return ResultView(Path("f.h5"), {"task": "phase_diagram"}, v, ("F", "k2", "gamma3"), {0: "ok"}, 0)
 
 
 def test_the_boundary_is_the_curve_on_which_the_rows_change_their_stability():
@@ -62,7 +62,9 @@ def test_only_the_first_hopf_point_of_a_bar_is_called_critical(further):
         "k2": np.array([1e2]),
         "gamma3": np.array([1e-2]),
     }
-    view = View(Path("t.h5"), {"task": "thresholds", "title": ""}, v, ("k1", "k2", "gamma3"), {0: "ok"}, 0)
+    view = ResultView(
+        Path("t.h5"), {"task": "thresholds", "title": ""}, v, ("k1", "k2", "gamma3"), {0: "ok"}, 0
+    )
     words = [text.get_text() for text in draw_class_bars(view).legends[0].get_texts()]
     critical = [word for word in words if "{**}" in word]
     assert [word.split(" = ")[1] for word in critical] == ["37.6954"]

@@ -63,7 +63,7 @@ def test_the_cost_of_rows_pulled_beyond_the_shear_stiffness_is_said_to_be_uncert
 
 @pytest.mark.parametrize(("taper", "seconds"), [(0.5, (0.15, 1.0)), (1.0, (0.0, 0.02))])
 def test_check_adds_the_time_to_load_what_solves_arms(taper, seconds, tmp_path, capsys):
-    """30 spectra of cones took 0.25 to 1.1 s on their first stretch, and were estimated at 0.014 s."""
+    """30 spectra of cones took 0.25 to 1.1 s on their first group, and were estimated at 0.014 s."""
     parameters = f"F: {{start: 0, stop: 30, num: 30}}, k1: 1.0e4, k2: 1.0e4, gamma3: 1.0e-4, taper: {taper}"
     (tmp_path / "a.yaml").write_text(f"task: spectrum\nparameters: {{{parameters}}}\n")
     print_job_check(job_of_file(tmp_path / "a.yaml", ()))

@@ -23,7 +23,7 @@ from rodsweep.results.run import checkpoints
 from rodsweep.results.run.checkpoints import CHECKPOINT_GLOB, Checkpoints
 from rodsweep.results.run.journal import Journal, delete_matching_files
 from rodsweep.solve.cycle.accuracy.cycle_errors import CycleErrors
-from rodsweep.sweep.points.chains import ChainedWork, Chains, ChainSolver
+from rodsweep.sweep.points.chains import Chains, ChainSolver, SweepChains
 from rodsweep.sweep.points.ranges import IndexSet
 from rodsweep.sweep.stop import StopRequest
 from rodsweep.tasks.running.job import job_of_file
@@ -223,9 +223,11 @@ NUMBERS = (
     "period", "frequency", "linear_growth_rate", "linear_frequency", "tip_x_min", "tip_x_max", "tip_y_max",
     "tip_theta_max", "period_error", "amplitude_error", "extrema_error", "injection_mean", "injection_rms",
     "dissipation_mean", "dissipation_rms", "energy_imbalance", "multiplier", "multiplier_error",
-    "trivial_multiplier_error", "least_stretch",
+    "trivial_multiplier_error", "modulation_ratio", "least_stretch",
 )  # fmt: skip
-OF_THE_CYCLE = ("linear_growth_rate", "linear_frequency", "multiplier", "trivial_multiplier_error")
+OF_THE_CYCLE = (
+    "linear_growth_rate", "linear_frequency", "multiplier", "trivial_multiplier_error", "modulation_ratio",
+)  # fmt: skip
 ERRORS = ("period_error", "amplitude_error", "extrema_error", "multiplier_error")
 MEASURES = tuple(name for name in NUMBERS if name not in OF_THE_CYCLE + ERRORS)
 
@@ -264,6 +266,7 @@ def nothing(status=1, **sizes):
         setattr(found.measures, name, np.nan)
     found.errors = CycleErrors(np.nan, np.nan, np.nan, np.nan)
     found.status, found.multiplier, found.trivial_multiplier_error = status, np.nan, np.nan
+    found.modulation_ratio = np.nan
     found.tip = found.energy = found.shape = found.multipliers = found.transient = None
     return found
 
@@ -385,6 +388,7 @@ def test_show_tells_ranges_and_worst_errors(tmp_path, capsys):
 
 def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
     view = make_view(([50.0, 60.0], [1e4], [1e2], [1e-2], [1.0]), [1, TORUS])
+    view.variables["modulation_ratio"] = np.array([np.nan, 0.170391]).reshape(view.variables["status"].shape)
     view.variables["multiplier"] = np.array([np.nan, 1.25]).reshape(view.variables["status"].shape)
     view.variables["multiplier_error"] = np.full(view.variables["status"].shape, 1e-3)
     told = limit_cycle_summary(view, view.variables["status"] >= 0)
@@ -392,8 +396,9 @@ def test_show_tells_the_multipliers_of_the_cycles_that_tori_surround():
         told.answer[0] == "of 2 points: stays straight at 1 (F = 50), "
         "beats quasiperiodically (two frequencies) at 1 (F = 60)"
     )
+    modulation = "modulated at 0.170 times the frequency of the oscillation"
     inside = "the unstable cycles inside the tori have a largest |Floquet multiplier| of 1.25"
-    assert f"quasiperiodic motions: {inside}" in told.details
+    assert f"quasiperiodic motions: {modulation}; {inside}" in told.details
 
 
 def test_check_and_show_start_neither_mpi_nor_petsc(tmp_path):
@@ -473,7 +478,7 @@ def chain_solver(missing, kept, solved, stop=None):
         return outcome, Count(0.0 if state is None else state.value + 1)
 
     stop = StopRequest() if stop is None else stop
-    work = ChainedWork(Chains((6,), 0, True), solve_from, Count.from_arrays)
+    work = SweepChains(Chains((6,), 0, True), solve_from, Count.from_arrays)
     return ChainSolver(work, IndexSet(missing), kept, stop)
 
 
@@ -621,7 +626,8 @@ def solve_cycle(point, request, start=None, parameter=None, workspace=None):
     errors = Errors(memory, memory, memory, memory)
     return SimpleNamespace(
         linear_growth_rate=memory, linear_frequency=memory, multiplier=memory, multipliers=None,
-        trivial_multiplier_error=memory, status=status, measures=measures, errors=errors, periods=3,
+        trivial_multiplier_error=memory, modulation_ratio=memory,
+        status=status, measures=measures, errors=errors, periods=3,
         second_state=0, subcritical_F=float("nan"),
         elements=1, order=18, seconds=0.01, message="a message", tip=None, energy=None, shape=None,
         neighbour=CycleStart(memory, F, k2),

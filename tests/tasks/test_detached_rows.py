@@ -209,7 +209,12 @@ LINE, ROWS = PlaneAxis("F", 0.0, 1.0), PlaneAxis("k1", 1.0, 5.0)
 
 def special(row, at):
     return RowSpecialPoint(
-        row_index=row, row_value=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1
+        row_index=row,
+        row_value=float(row),
+        kind=SpecialKind.fold,
+        parameter_value=at,
+        period=1.0,
+        tip_y_max=0.1,
     )
 
 
@@ -218,14 +223,21 @@ def crossing(row, at):
     form = StressForm(Rod(F=1.0, k1=10.0, k2=10.0, gamma3=0.1), mesh.space_mesh)
     values = np.append(np.zeros((1 + 4 * 3) * form.unknown_count), 1.0)
     orbit = Orbit(form, REFLECTION, 4, 3, values)
-    point = SpecialPoint(kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1, error=1e-9, orbit=orbit)
+    point = SpecialPoint(
+        kind=SpecialKind.fold, parameter_value=at, period=1.0, tip_y_max=0.1, error=1e-9, orbit=orbit
+    )
     return RowCrossing(row, point)
 
 
 def half(one, last, near=(), crossings=()):
     points = tuple(
         CurvePoint(
-            at=one.at, row_value=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1
+            parameter_value=one.parameter_value,
+            row_value=row,
+            row_coordinate=(row - 1) / 4,
+            error=0.0,
+            period=1.0,
+            tip_y_max=0.1,
         )
         for row in (one.row_value, last)
     )
@@ -251,22 +263,22 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
 
     results[2] = {"at": np.array([0.2, 0.6])}
     *_, curves = stages.stages(results)
-    assert [(point.row_index, point.at) for point in curves.special_points] == [(3, 0.6)]
-    assert [start.at for start in curves.starts_of_row(3)] == [0.2]
+    assert [(point.row_index, point.parameter_value) for point in curves.special_points] == [(3, 0.6)]
+    assert [start.parameter_value for start in curves.starts_of_row(3)] == [0.2]
     assert curves.items_to_solve(results) == [3, 4]
 
     results[3] = half(curves.special_points[0], 5.0, [0], [crossing(4, 0.6)])
     results[4] = half(curves.special_points[0], 1.0, [0])
     *_, rows = stages.stages(results)
     assert rows.items_to_solve(results) == [5]
-    assert [start.at for start in rows.starts_of_row(4)] == [0.6]
+    assert [start.parameter_value for start in rows.starts_of_row(4)] == [0.6]
     results[5] = {"at": np.array([0.6])}
     assert not stages.stages(results)[-1].items_to_solve(results)
     assert {row: values["at"].tolist() for row, values in stages.changed_rows(results).items()} == {
         3: [0.2, 0.6],
         4: [0.6],
     }
-    assert [curve.points[0].at for curve in stages.curves(results).curves] == [0.2, 0.6]
+    assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2, 0.6]
 
 
 def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
@@ -278,11 +290,11 @@ def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():
         2: {"at": np.array([0.2, 0.3, 0.6])},
     }
     *_, rows, curves = stages.stages(results)
-    assert [start.at for start in rows.starts_of_row(3)] == [0.2, 0.3]
+    assert [start.parameter_value for start in rows.starts_of_row(3)] == [0.2, 0.3]
     results[3] = half(curves.special_points[0], 5.0, [0], [crossing(3, 0.8)])
     results[4] = half(curves.special_points[0], 1.0, [0], [crossing(3, 0.3)])
     *_, rows = stages.stages(results)
-    assert [start.at for start in rows.starts_of_row(3)] == [0.2, 0.3, 0.8]
+    assert [start.parameter_value for start in rows.starts_of_row(3)] == [0.2, 0.3, 0.8]
     # A row whose solver failed is unchanged, and its crossings start nothing else.
     results[5] = {}
     assert stages.changed_rows(results) == {3: results[2]}

@@ -176,7 +176,12 @@ def boundaries():
     """Two curves of folds through the rows 1 to 5, at F = 0.2 and at F = 0.6."""
     special = [
         RowSpecialPoint(
-            row_index=row, row_value=float(row), kind=SpecialKind.fold, at=at, period=1.0, tip_y_max=0.1
+            row_index=row,
+            row_value=float(row),
+            kind=SpecialKind.fold,
+            parameter_value=at,
+            period=1.0,
+            tip_y_max=0.1,
         )
         for row in range(1, 6)
         for at in (0.2, 0.6)
@@ -191,11 +196,18 @@ def half(items, item):
     last = 1.0 if behind else 5.0
     points = tuple(
         CurvePoint(
-            at=one.at, row_value=row, row_coordinate=(row - 1) / 4, error=0.0, period=1.0, tip_y_max=0.1
+            parameter_value=one.parameter_value,
+            row_value=row,
+            row_coordinate=(row - 1) / 4,
+            error=0.0,
+            period=1.0,
+            tip_y_max=0.1,
         )
         for row in (one.row_value, last)
     )
-    near = {i: 0.0 for i, other in enumerate(items.special_points) if other.at == one.at}
+    near = {
+        i: 0.0 for i, other in enumerate(items.special_points) if other.parameter_value == one.parameter_value
+    }
     low, high = sorted((one.row_value, last))
     near = {i: d for i, d in near.items() if low <= items.special_points[i].row_value <= high}
     return TracedHalfCurve(HalfCurve(points, CurveEndReason.edge), near).arrays()
@@ -221,7 +233,7 @@ def test_curves_do_not_depend_on_who_followed_what_in_which_order(ranks):
                 held[rank] = chunk[0]
         found.append(items.curves(pool.results))
     assert all(curves == found[0] for curves in found)
-    assert [curve.points[0].at for curve in found[0].curves] == [0.6, 0.2]
+    assert [curve.points[0].parameter_value for curve in found[0].curves] == [0.6, 0.2]
     assert found[0].untraced_count == 0
 
 

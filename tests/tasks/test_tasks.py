@@ -343,9 +343,14 @@ def test_check_says_what_every_task_would_compute(command, task, words):
 
 
 def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
-    point = CurvePoint(at=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3)
+    point = CurvePoint(
+        parameter_value=60.0, row_value=150.0, row_coordinate=0.5, error=1e-7, period=0.02, tip_y_max=0.3
+    )
     curve = SpecialPointCurve(
-        SpecialKind.fold, (point,), (CurveEndReason.edge, CurveEndReason.not_followed), (None, None)
+        SpecialKind.fold,
+        (point,),
+        (CurveEndReason.edge, CurveEndReason.not_followed),
+        (None, None),
     )
     filled = cycle_curve_values(
         TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
@@ -365,7 +370,9 @@ def test_a_curve_that_is_lost_near_an_extremum_of_the_row_parameter_is_said_to_b
     """As with folds at gamma3 = 0.006, where a closed branch of cycles shrinks to one cycle."""
     places = [(79.16, 133.01457), (80.0, second), (90.0, 133.5), (110.0, 134.0)]
     points = [
-        CurvePoint(at=at, row_value=k1, row_coordinate=k1 - 133, error=1e-7, period=0.02, tip_y_max=0.1)
+        CurvePoint(
+            parameter_value=at, row_value=k1, row_coordinate=k1 - 133, error=1e-7, period=0.02, tip_y_max=0.1
+        )
         for at, k1 in places
     ]
     ends = (CurveEndReason.not_followed, CurveEndReason.edge)
@@ -388,7 +395,7 @@ def test_a_curve_that_is_lost_near_an_extremum_of_the_row_parameter_is_said_to_b
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():
     points = tuple(
-        CurvePoint(at=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)
+        CurvePoint(parameter_value=at, row_value=k1, row_coordinate=x, error=1e-7, period=0.02, tip_y_max=0.3)
         for at, k1, x in ((60.0, 150.0, 0.5), (70.0, 200.0, 1.0))
     )
     curve = SpecialPointCurve(SpecialKind.fold, points, (CurveEndReason.edge,) * 2, (None, None))

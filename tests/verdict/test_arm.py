@@ -20,10 +20,10 @@ from rodsweep.model.arm.drag import (
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
-from rodsweep.solve.changes.along_path import ThresholdSearchResult
 from rodsweep.solve.changes.kinds import ChangeKind, Threshold
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
+from rodsweep.solve.changes.thresholds_along_path import ThresholdSearchResult
 from rodsweep.verdict import flutter
 from rodsweep.verdict.assessment import Assessment
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag

@@ -17,7 +17,7 @@ from ...errors import InputError
 from ...post.figures import draw
 from ...post.figures.grid_slices import checked_slice_values, slice_at_values
 from ...post.figures.request import FIGURE_KINDS, ROOT_CHOICES, FigureClass, FigureLook, ShapeFunction
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
 from ...tasks.cycle_shapes import with_shapes
 from ..dataset import named_file_path
@@ -117,10 +117,10 @@ class CachedShapeSolver:
     """
 
     solve: ShapeFunction = with_shapes
-    solved: dict[tuple[int, ...], View] = field(default_factory=dict)
+    solved: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
     """Views with shapes, by the numbers of the solved points, which are counted from 1."""
 
-    def __call__(self, view: View, numbers: Sequence[int]) -> View:
+    def __call__(self, view: ResultView, numbers: Sequence[int]) -> ResultView:
         """A copy of the view with the shapes of the cycles at the points `numbers`, counted from 1."""
         key = tuple(numbers)
         if key not in self.solved:
@@ -136,7 +136,7 @@ class Picture:
     views: results in the figure. choices: keywords of `draw` that choose its content and look.
     """
 
-    views: Sequence[View] = field(repr=False)
+    views: Sequence[ResultView] = field(repr=False)
     choices: dict[str, Any]
     shown: str
     """Description of the figure in one sentence."""

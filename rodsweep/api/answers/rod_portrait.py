@@ -14,7 +14,7 @@ from ...post.rod_portrait.picture import portrait_figure
 from ...post.rod_portrait.results import RodResults
 from ...post.rod_portrait.writing import require_portrait, write_portrait
 from ...post.tables.alignment import wrap_cell_text
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...solve.solve_lock import one_at_a_time
 from ...tasks.rod_portrait import PortraitRequest, rod_results
 from ...tasks.running.job import Job
@@ -80,7 +80,7 @@ class RodPortrait:
         """Reason for every result that could not be solved, by task."""
         return dict(self.results.missing)
 
-    def _task_answer(self, view: View) -> Answer:
+    def _task_answer(self, view: ResultView) -> Answer:
         return self.answers[view.attributes["config"]]
 
     def _answer(self, task: str) -> Answer | None:
@@ -121,7 +121,7 @@ def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -
     answers: dict[str, Answer] = {}
     plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 
-    def solve(job: Job) -> View:
+    def solve(job: Job) -> ResultView:
         solved = solve_in_process(job, progress=progress)
         answers[job.config_text] = Answer(rod, solved, solved.messages[0])
         return view_of_dataset(solved.dataset, Path(job.title))

@@ -12,7 +12,7 @@ from ...config.document.call_arguments import refusing_wrong_arguments
 from ...config.values import short_repr
 from ...errors import InputError
 from ...post.tables.tables import Tables
-from ...results.file.view import View, read_view
+from ...results.file.view import ResultView, read_view
 from ...solve.solve_lock import one_at_a_time
 from ..dataset import named_file_path, view_of_dataset
 from .answer import Answer
@@ -44,7 +44,7 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
     return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 
-def view_of_result(data: Any, example: str) -> View:
+def view_of_result(data: Any, example: str) -> ResultView:
     """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
     `data` is not a result.
     """

@@ -1,5 +1,5 @@
 """Solution of the points of a run, in work items shared among the ranks; every rank writes its results into a
-journal. A work item is a point, a chain or a stretch of points."""
+journal. A work item is a point, a chain or a group of points."""
 
 import socket
 from collections.abc import Callable, Iterable
@@ -17,8 +17,8 @@ from ...results.run.journal import Journal, journal_directory, kept_points_claus
 from ...sweep.chunk_queue import ChunkQueue
 from ...sweep.loop import Indices, SweepCallbacks, sweep
 from ...sweep.points.chains import ChainSolver
+from ...sweep.points.groups import GroupResult, GroupSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
-from ...sweep.points.stretches import StretchResult, StretchSolver
 from ...sweep.progress import ProgressReporter, SilentProgress
 from ...sweep.stop import StopRequest
 from ...sweep.team import Team
@@ -55,10 +55,10 @@ class ShardSolver:
 
         missing: ranges of the flat indices of all missing points.
         """
-        if self.solver.stretched is not None:
-            stretches = self.solver.stretched[0]
-            items = self.shard.ranges_of_shard(stretches.unsolved_ranges(missing), stretches.count)
-            return items, stretches.missing_total(items, missing)
+        if self.solver.grouped is not None:
+            groups = self.solver.grouped[0]
+            items = self.shard.ranges_of_shard(groups.unsolved_ranges(missing), groups.count)
+            return items, groups.missing_total(items, missing)
         if self.solver.chained is None:
             items = self.shard.ranges_of_shard(missing, self.job.points.count)
             return items, index_count(items)
@@ -83,7 +83,7 @@ class ShardSolver:
 
         def keep(index: Indices, result: Any) -> None:
             is_new = reasons.add(index, result)
-            if isinstance(result, StretchResult):
+            if isinstance(result, GroupResult):
                 journal.append_all(np.asarray(index), result.values, is_new)
             else:
                 journal.append(int(index), solver.record(int(index), result), is_new)
@@ -110,20 +110,20 @@ class ShardSolver:
     def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a stretch) to its results. missing:
+        """Function from the number of a work item (a point, a chain or a group) to its results. missing:
         flat indices of all missing points. directory: journal directory.
         """
         solver = self.solver
-        if solver.stretched:
-            return StretchSolver(*solver.stretched, solver.solve, missing)
+        if solver.grouped:
+            return GroupSolver(*solver.grouped, solver.solve, missing)
         if solver.chained:
             checkpoints = Checkpoints(directory, self.plan.fingerprint, solver.chained.state_from_arrays)
             return ChainSolver(solver.chained, missing, checkpoints, self.stop)
         return lambda index: ((index, solver.solve(index)),)
 
     def _item_name(self, item: int) -> str:
-        """Name of a work item for the progress display. A stretch has the name of its first point."""
+        """Name of a work item for the progress display. A group has the name of its first point."""
         if self.solver.chained:
             return f"chain {item + 1} of {self.solver.chained.chains.count}"
-        first_index = int(self.solver.stretched[0].indices(item)[0]) if self.solver.stretched else item
+        first_index = int(self.solver.grouped[0].indices(item)[0]) if self.solver.grouped else item
         return f"point {first_index + 1} of {self.job.points.count}"

@@ -49,7 +49,7 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     if kind == "invalid_key":
         return f"{short_repr(value)} is not a key; keys are words"
     key_alone = location[-1] if location else ""
-    field = _section_class(config, location[:-1]).model_fields.get(key_alone)
+    field = None if numbers else _section_class(config, location[:-1]).model_fields.get(key_alone)
     allowed = allowed_values_text(field) if field else problem["msg"].removeprefix("Input should be ")
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from ...arrays import Array
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import ROUND_OFF
-from ..parameter_path import Path
+from ..parameter_path import ParameterPath
 from .determinant import CoefficientSamples, coefficient_samples, elements_for
 from .elements.minor_rates import PADDED
 from .elements.propagators import element_propagators
@@ -27,7 +27,7 @@ LINEAR_SCALE = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmFamilySettings(CompiledSettings):
+class ArmFamilySettings(KernelConstants):
     """Settings for the number and spacing of the arms from which a family is interpolated."""
 
     arm_counts: tuple[int, ...] = (12, 17, 24, 24, 34)
@@ -69,7 +69,7 @@ class ArmFamily(NamedTuple):
     entry_sizes: Array
 
 
-def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFamily | None:
+def interpolated_family(path: ParameterPath, low: float, high: float, W: float) -> ArmFamily | None:
     """The family of the arms of `path` with p from `low` to `high`, for |w| <= W; None if the arms are
     not smooth in p, or the propagators have too many entries. Raises ValueError at a p without a valid arm,
     and FloatingPointError if no elements resolve an arm."""
@@ -94,7 +94,7 @@ def interpolated_family(path: Path, low: float, high: float, W: float) -> ArmFam
     return None
 
 
-def has_smooth_coefficients(path: Path, low: float, high: float) -> bool:
+def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> bool:
     """Whether the arms' coefficients are smooth in p from `low` to `high`, as a family needs: a cheap test.
     Raises ValueError at a p without a valid arm."""
     for node_count, tail_fraction in reversed(ARM_FAMILY_SETTINGS.trials()):

@@ -101,7 +101,7 @@ class CoefficientSamples(NamedTuple):
     """Samples of n arms between the breaks of their profile.
 
     points: material coordinates u, (points,). local: `LocalCoefficients` at the points, each (n, points).
-    squares: as in `ArmSamples`, (4, n, points).
+    squares: c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3, (4, n, points).
     """
 
     points: Array

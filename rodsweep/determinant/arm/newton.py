@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
 from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
@@ -19,7 +19,7 @@ from .value import determinant_along_chain
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmRootSettings(CompiledSettings):
+class ArmRootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of arms."""
 
     residual: float = 2.0
@@ -45,13 +45,13 @@ def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex
 @compiled
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
-    rounding = rounding_error_by_chain(w, level[0], level[1], value.S)
+    rounding = rounding_error_by_chain(w, level[0], level[1], value.log_scale)
     e = ARM_ROOT_SETTINGS.residual * abs(value.D) + rounding
     size = abs(value.D_w)
     error = e / max(size, EXPONENT_SETTINGS.least_divisor)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
-        D_ww = abs(_second_derivative(w, value.S, level))
+        D_ww = abs(_second_derivative(w, value.log_scale, level))
         if size**2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
             root_distance = math.sqrt(2 * e / D_ww)
             error = min(max(error, root_distance), size / D_ww + root_distance)

@@ -166,7 +166,7 @@ def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDetermin
             distance = abs(first_root.w - roots[j].w)
             if distance <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
                 value = determinant.value(first_root.w)
-                D_ww = abs(second_derivative(first_root.w, value.S, determinant))
+                D_ww = abs(second_derivative(first_root.w, value.log_scale, determinant))
                 next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.least_divisor)
                 if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)

@@ -19,7 +19,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import ROUND_OFF
 from .elements.evaluation import (
     apply_propagator,
@@ -35,7 +35,7 @@ from .value import divide_by_norm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmRoundingSettings(CompiledSettings):
+class ArmRoundingSettings(KernelConstants):
     """Settings for the rounding error of D."""
 
     error_per_product: float = 1.5
@@ -55,7 +55,8 @@ ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
 def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) -> float:
     """Bound of the rounding error of D exp(-S) at w, to first order.
 
-    polynomials: propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the result.
+    polynomials: propagators valid for |w| <= W, (elements, terms, PADDED). S: logarithm of the scale of the
+    result.
     """
     return error_of_interpolated_chain(w, W, polynomials, S, np.empty((0, 2, PADDED)))
 
@@ -66,9 +67,9 @@ def error_of_interpolated_chain(
 ) -> float:
     """Bound of the rounding and interpolation error of D exp(-S) at w, to first order.
 
-    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: scale of the
-    result. entry_sizes: as in `rodsweep.determinant.arm.arm_family.ArmFamily`; no elements if nothing is
-    interpolated.
+    polynomials: interpolated propagators valid for |w| <= W, (elements, terms, PADDED). S: logarithm of the
+    scale of the result. entry_sizes: sizes to which the interpolation errors of propagator entries are
+    relative, (elements, 2, PADDED); no elements if nothing is interpolated.
     """
     elements, terms, _ = polynomials.shape
     powers = powers_and_derivatives(w / W, terms)

@@ -13,8 +13,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled, compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
-from ..exponents import NOISE_UNIT
+from ...model.compiled.kernel_constants import KernelConstants
+from ..exponents import ROUNDING_UNIT
 from ..parameter_path import PathDeterminantValue
 from ..value import DeterminantValue
 from .elements.evaluation import (
@@ -35,7 +35,7 @@ from .elements.settings import MINORS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmValueSettings(CompiledSettings):
+class ArmValueSettings(KernelConstants):
     """Settings for D from propagators."""
 
     max_norm_ratio: float = 1e100
@@ -181,14 +181,14 @@ def path_value_by_chain(
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
-    PADDED). dD/dp is 0 if `p_derivatives` is empty. noise: rounding error of the products at the tip; the
-    bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_by_chain`.
+    PADDED). dD/dp is 0 if `p_derivatives` is empty. The rounding error is that of the products at the tip;
+    the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_by_chain`.
     """
     if w.imag == 0:
         D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)
     else:
         D, D_w, D_p, S = _multiply_along_chain(w / W, W, polynomials, p_derivatives)
-    return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * NOISE_UNIT)
+    return PathDeterminantValue(D, D_w, D_p, S, (len(polynomials) + 2) * ROUNDING_UNIT)
 
 
 @compiled

@@ -21,13 +21,13 @@ from functools import lru_cache
 from math import exp, inf, log, sqrt
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients, Rod
-from ..parameter_path import Path, coefficient_derivatives, coefficients_at
+from ..parameter_path import ParameterPath, coefficient_derivatives, coefficients_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoxSettings(CompiledSettings):
+class BoxSettings(KernelConstants):
     """Settings for the a-priori box of all eigenvalues."""
 
     padding: float = 0.01
@@ -93,7 +93,7 @@ def frequency_bound(rod: Rod) -> float:
     return min(max(rod.F**2 / rho, (rho * rod.g - rod.nu) ** 2 / (drag * rho)) for rho in weights)
 
 
-def frequency_bound_on_path(path: Path, start: float, stop: float) -> float:
+def frequency_bound_on_path(path: ParameterPath, start: float, stop: float) -> float:
     """An upper bound of `frequency_bound` over all rods of a path with p from start to stop; inf if no
     bound is known.
     """
@@ -128,7 +128,7 @@ def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> flo
     return load**2 * bound if bound < inf else inf
 
 
-def zero_free_radius(path: Path, start: float, stop: float, max_radius: float) -> float:
+def zero_free_radius(path: ParameterPath, start: float, stop: float, max_radius: float) -> float:
     """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
     stop; 0 if r underflows.
     """
@@ -168,7 +168,7 @@ def _zero_free_radius(r: float, T: float, X: float, G: float, max_pull: float) -
 def _distance_from_one_bound(r: float, T: float, X: float, G: float, max_pull: float) -> float:
     """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
 
-    T, X, G, max_pull: as in `_zero_free_radius`.
+    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0.
     """
     exponent = sqrt(max_pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(max_pull):

@@ -25,16 +25,16 @@ from typing import ClassVar, NamedTuple
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along_path
-from ..roots.newton import FAILED_ZERO, LocatedZero, crossing_newton
+from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue, crossing_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class BoxProofSettings(CompiledSettings):
+class BoxProofSettings(KernelConstants):
     """Settings for the proofs about one box of the (eta, p) plane, and for the number of boxes."""
 
     first_radius_ratio: float = 0.45
@@ -100,8 +100,8 @@ def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
     root_plus = cmath.sqrt(centre.z_plus)
     root_minus = cmath.sqrt(centre.z_minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
-    size_plus = math.exp(root_plus.real - centre.S)
-    size_minus = math.exp(root_minus.real - centre.S)
+    size_plus = math.exp(root_plus.real - centre.log_scale)
+    size_minus = math.exp(root_minus.real - centre.log_scale)
     a = size_plus / (size_plus + size_minus)
     b = size_minus / (size_plus + size_minus)
     w_rate = a * centre.slopes_plus[0] / (2 * root_plus) + b * centre.slopes_minus[0] / (2 * root_minus)
@@ -146,7 +146,7 @@ def examine_box(
     D, D_w, D_p, S, rounding_error = determinant_along_path(w, coefficients, direction)
     centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
     mean = mean_growth_rates(centre)
-    rounding = DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
+    rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     if abs(D) > 2 * rounding:
         # The logarithmic derivatives are best where one exponential dominates, the mean where both matter.
         for rates in ((D_w / D, D_p / D), mean):
@@ -192,14 +192,14 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
 @compiled
 def cover_with_boxes(
     first: Array, origin: Coefficients, direction: Coefficients
-) -> tuple[list[LocatedZero], list[Box], int]:
+) -> tuple[list[LocatedEigenvalue], list[Box], int]:
     """Returns (zeros of D(i eta; p) in the boxes `first`, (n, 4); boxes left open; number of examined boxes).
 
     origin, direction: coefficients at p = 0 and their derivative by p.
     """
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
-    zeros = [FAILED_ZERO for _ in range(0)]
+    zeros = [FAILED_EIGENVALUE for _ in range(0)]
     undecided = [Box(0.0, 0.0, 0.0, 0.0) for _ in range(0)]
     count = 0
     while len(stack) > 0:
@@ -239,7 +239,7 @@ def cover_with_boxes(
 
 
 @compiled
-def _box_distance(zero: LocatedZero, eta: float, p: float, half: tuple[float, float]) -> float:
+def _box_distance(zero: LocatedEigenvalue, eta: float, p: float, half: tuple[float, float]) -> float:
     """Distance of a zero from the centre (eta, p) of a box: the larger of the distances in eta and p, in
     units of the half-widths `half`."""
     return max(abs(zero.eta_or_x - eta) / half[0], abs(zero.p - p) / half[1])

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import CoefficientDerivatives, exponent_slopes
@@ -19,12 +19,12 @@ from ..value import exponent_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DiscBoundSettings(CompiledSettings):
+class DiscBoundSettings(KernelConstants):
     """Settings for upper bounds of D over discs in w and bidiscs in (w, p)."""
 
-    rounding_over_noise: float = 4.0
-    """|rounding error of D| <= this number times `noise`; the largest ratio of 20 000 unfavourable values was
-    0.7."""
+    rounding_safety_factor: float = 4.0
+    """|rounding error of D| <= this number times `rounding_error` of the value; the largest ratio of 20 000
+    unfavourable values was 0.7."""
     max_relative_change: float = 0.9
     """A proof needs a change of D over the disc below this number times |D|; below 1, so that D is not 0."""
     max_expansion_change: float = 0.5
@@ -51,14 +51,14 @@ BidiscRadii = tuple[float, float]
 class BidiscCentre(NamedTuple):
     """The centre (w, p) of a bidisc, with the exponents of D at the centre.
 
-    coefficients: (F, nu, c2, gamma3) at p. derivatives: of T, N, G and X by p. S: scale of D. P, z_plus,
-    z_minus: P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
+    coefficients: (F, nu, c2, gamma3) at p. derivatives: of T, N, G and X by p. S: logarithm of the scale of
+    D. P, z_plus, z_minus: P, z+ and z-. slopes_plus, slopes_minus: (dz/dw, dz/dp) of z+ and of z-.
     """
 
     w: complex
     coefficients: Coefficients
     derivatives: CoefficientDerivatives
-    S: float
+    log_scale: float
     P: complex
     z_plus: complex
     z_minus: complex
@@ -70,8 +70,8 @@ class BidiscCentre(NamedTuple):
 def bidisc_centre(
     w: complex, coefficients: Coefficients, coefficient_derivatives: CoefficientDerivatives, S: float
 ) -> BidiscCentre:
-    """The centre of a bidisc at w. coefficient_derivatives: derivatives by p of T, N, G and X. S: scale of D
-    at w."""
+    """The centre of a bidisc at w. coefficient_derivatives: derivatives by p of T, N, G and X. S: logarithm
+    of the scale of D at w."""
     exponents = exponent_derivatives(w, coefficients)
     p_slope_plus, p_slope_minus = exponent_slopes(w, exponents, coefficient_derivatives)
     drag = coefficients.c2 + coefficients.gamma3
@@ -111,10 +111,10 @@ def bounds_of_E_on_bidisc(
 ) -> BidiscRadii:
     """Bounds of |E(z)| and |dE/dz| over a bidisc about z, both times |exp(-L dw - K dp)| exp(-S).
 
-    slopes: (dz/dw, dz/dp). rates: (L, K). nonlinear_change: bound of the nonlinear change of z. S: scale of
-    D. The exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from z = 0, by the
-    Taylor polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and |dE/dz| <=
-    cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
+    slopes: (dz/dw, dz/dp). rates: (L, K). nonlinear_change: bound of the nonlinear change of z. S: logarithm
+    of the scale of D. The exponents +-sqrt(z) - L dw - K dp are bounded by means of |sqrt(z)| and, away from
+    z = 0, by the Taylor polynomial of sqrt(z); the smaller bound is used. Then |E| <= exp(Re sqrt z)/2 and
+    |dE/dz| <= cosh(Re sqrt z)/24; closed forms give smaller bounds for large z.
     """
     root = cmath.sqrt(z)
     rate_change = abs(rates[0]) * radii[0] + abs(rates[1]) * radii[1]
@@ -151,7 +151,7 @@ def bounds_of_E_on_bidisc(
 def bound_for_equal_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """`bound_on_bidisc` for nearly equal z+ and z-, from |E(z+) - E(z-)| <= 4 |P| max |dE/dz|."""
     w = centre.w
-    S = centre.S
+    S = centre.log_scale
     F, nu, c2, gamma3 = centre.coefficients
     T_p, N_p, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives
     rho, sigma = radii
@@ -191,7 +191,7 @@ def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, ra
     |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e).
     """
     w = centre.w
-    S = centre.S
+    S = centre.log_scale
     P = centre.P
     F, nu, c2, gamma3 = centre.coefficients
     T_p, _, N_pp, G_p, G_pp, X_p, X_pp = centre.derivatives

@@ -17,14 +17,14 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..value import exponent_derivatives, scaled_determinant
 from .discs import DISC_BOUND_SETTINGS, bounds_of_E_on_bidisc, nonlinear_root_bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DominanceSettings(CompiledSettings):
+class DominanceSettings(KernelConstants):
     """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25

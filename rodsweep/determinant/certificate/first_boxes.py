@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ..parameter_path import Path, coefficients_at
+from ..parameter_path import ParameterPath, coefficients_at
 from .box import BOX_SETTINGS, frequency_bound_on_path, zero_free_radius
 
 
@@ -38,7 +38,7 @@ class CoveringSettings:
 COVERING_SETTINGS = CoveringSettings()
 
 
-def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, float]]:
+def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple[float, float]]:
     """Intervals (start, end) of p from `start` to `stop`; over each interval nu at most halves, and a drag or
     compliance at most doubles, except on the shortest intervals.
     """
@@ -58,7 +58,7 @@ def path_intervals(path: Path, start: float, stop: float) -> list[tuple[float, f
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
-def first_boxes(path: Path, start: float, stop: float) -> Array | None:
+def first_boxes(path: ParameterPath, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
 
     None if no a-priori bound exists, or if the lower bound of eta underflows, or almost.

@@ -6,10 +6,10 @@ of the box suffices: count = (change of arg D along the upper half)/pi.
 
 The change of phase is proved. Where one exponential of D dominates, large discs without a zero of D are
 proved (`rodsweep.determinant.certificate.dominance`); elsewhere the contour is covered by smaller discs about
-points called nodes. Within the `reach` of a node D has no zero, and the phase of D, without a linear part,
-changes by less than pi/2. A step between two nodes is accepted only if one node lies within the reach of the
-other node. If the reach is 0, the rounding error of D cannot separate a zero of D from the node, and the
-count fails.
+points called nodes. Within the zero-free radius of a node D has no zero, and the phase of D, without a linear
+part, changes by less than pi/2. A step between two nodes is accepted only if one node lies within the
+zero-free radius of the other node. If the zero-free radius is 0, the rounding error of D cannot separate a
+zero of D from the node, and the count fails.
 """
 
 import cmath
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients, Rod
 from ..value import scaled_determinant
 from .box import eigenvalue_box, zero_free_radius_of_rod
@@ -27,7 +27,7 @@ from .zero_free_disc import zero_free_disc_at
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WindingSettings(CompiledSettings):
+class WindingSettings(KernelConstants):
     """Settings for the contour around which the winding number of D is computed."""
 
     width_factor: float = 4.0
@@ -43,12 +43,14 @@ class WindingSettings(CompiledSettings):
     """After a failed proof of dominance at w, the phase is followed by nodes over this length times |w|
     before dominance is tried again. The length doubles after each failure."""
     max_step: float = 1.9
-    """The first step tried from a node is this number times its reach. A step beyond the reach needs a next
-    node whose reach covers the step."""
+    """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
+    radius needs a next node whose zero-free radius covers the step."""
     safe_step: float = 0.999
-    """If the first step fails, the step is this number times the reach: below 1, because of rounding."""
-    min_reach: float = 1e-13
-    """The count fails if the reach of a node is below this number times |w|: a zero of D is too close."""
+    """If the first step fails, the step is this number times the zero-free radius: below 1, because of
+    rounding."""
+    min_zero_free_radius: float = 1e-13
+    """The count fails if the zero-free radius of a node is below this number times |w|: a zero of D is too
+    close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
     ranges: ClassVar = {"safe_step": (0.0, 1.0)}
@@ -117,7 +119,8 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     """Returns (change of arg D along the segment from `start` to `end`, number of nodes), by zero-free discs
     about successive nodes on the segment.
 
-    If the reach of a node is too small, or too many nodes are needed, returns (0, -number of nodes).
+    If the zero-free radius of a node is too small, or too many nodes are needed, returns (0, -number of
+    nodes).
     """
     length = abs(end - start)
     direction = (end - start) / length
@@ -127,24 +130,27 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     node = zero_free_disc_at(start, coefficients)
     while t < length:
         if (
-            not node.reach > WINDING_SETTINGS.min_reach * abs(node.w)
+            not node.zero_free_radius > WINDING_SETTINGS.min_zero_free_radius * abs(node.w)
             or node_count > WINDING_SETTINGS.max_edge_nodes
         ):
             return 0.0, -node_count
-        # The next node may lie beyond the reach of this node if its own reach covers the step.
-        distance = min(WINDING_SETTINGS.max_step * node.reach, length - t)
+        # The next node may lie outside the zero-free disc of this node if its own disc covers the step.
+        distance = min(WINDING_SETTINGS.max_step * node.zero_free_radius, length - t)
         while True:
-            is_in_disc = distance < node.reach
+            is_in_disc = distance < node.zero_free_radius
             next_node = zero_free_disc_at(
                 start + direction * (t + distance) if distance < length - t else end, coefficients
             )
             node_count += 1
-            if is_in_disc or abs(next_node.w - node.w) < max(node.reach, next_node.reach):
+            if is_in_disc or abs(next_node.w - node.w) < max(
+                node.zero_free_radius, next_node.zero_free_radius
+            ):
                 break
-            distance = WINDING_SETTINGS.safe_step * node.reach
+            distance = WINDING_SETTINGS.safe_step * node.zero_free_radius
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         linear_change = (
-            (node.L if node.reach >= next_node.reach else next_node.L) * (next_node.w - node.w)
+            (node.L if node.zero_free_radius >= next_node.zero_free_radius else next_node.L)
+            * (next_node.w - node.w)
         ).imag
         total += linear_change + cmath.phase(next_node.D / node.D * cmath.exp(complex(0.0, -linear_change)))
         t = length if next_node.w == end else t + distance

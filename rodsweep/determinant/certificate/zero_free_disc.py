@@ -1,4 +1,5 @@
-"""The reach of a node: the radius of a disc about a point w within which D is proved to have no zero.
+"""The zero-free radius of a node: the radius of a disc about a point w within which D is proved to have no
+zero.
 
 About a node c the function f(w) = D(w) exp(-L (w - c)), L = D'(c)/D(c), has f'(c) = 0, so Cauchy's estimate
 on the disc of radius rho, where |f| <= M, gives
@@ -7,7 +8,8 @@ on the disc of radius rho, where |f| <= M, gives
 
 If the bound is below 0.9 |D(c)| minus the rounding error of D, no zero lies within r and the phase of f
 changes by less than pi/2. (The remaining tenth allows for the rounding error of L, and therefore of f'(c).)
-The largest such r is the reach. It is 0 if the rounding error of D cannot separate a zero of D from the node.
+The largest such r is the zero-free radius. It is 0 if the rounding error of D cannot separate a zero of D
+from the node.
 """
 
 import cmath
@@ -16,7 +18,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
 from ..parameter_path import CoefficientDerivatives
@@ -28,7 +30,7 @@ NO_COEFFICIENT_CHANGE = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NodeDiscSettings(CompiledSettings):
+class NodeDiscSettings(KernelConstants):
     """Settings for the disc about a node on which D is bounded."""
 
     branch_distance: float = 3.0
@@ -44,12 +46,12 @@ NODE_DISC_SETTINGS = NodeDiscSettings()
 
 
 class ZeroFreeDiscNode(NamedTuple):
-    """A point w with D exp(-S), L = D'/D, and the reach: radius of a disc about w proved free of zeros."""
+    """A point w with D exp(-S), L = D'/D, and the radius of a disc about w that is proved free of zeros."""
 
     w: complex
     D: complex
     L: complex
-    reach: float
+    zero_free_radius: float
 
 
 @compiled
@@ -57,7 +59,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     """Radius of a disc about w that avoids branch points and over which the exponents of D change by order
     one.
 
-    L: D'/D at w. S: scale of D at w.
+    L: D'/D at w. S: logarithm of the scale of D at w.
     """
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
@@ -86,15 +88,15 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 
 @compiled
 def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
-    """The point w with its reach, for a uniform rod. Within the reach the phase of D exp(-L dw) changes by
-    less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
+    """The point w with its zero-free radius, for a uniform rod. Within the zero-free radius the phase of D
+    exp(-L dw) changes by less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
     """
     D, D_w, S, rounding_error = scaled_determinant(w, coefficients)
     max_remainder = (
         DISC_BOUND_SETTINGS.max_relative_change * abs(D)
-        - DISC_BOUND_SETTINGS.rounding_over_noise * rounding_error
+        - DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     )
-    # |D| below its rounding error proves nothing; the reach of 0 ends the walk.
+    # |D| below its rounding error proves nothing; the zero-free radius of 0 ends the walk.
     if not max_remainder > 0:
         return ZeroFreeDiscNode(w, D, 0j, 0.0)
     L = D_w / D

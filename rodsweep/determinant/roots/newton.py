@@ -18,7 +18,7 @@ from ..value import scaled_determinant
 from .settings import ROOT_NEWTON_SETTINGS
 
 
-class LocatedZero(NamedTuple):
+class LocatedEigenvalue(NamedTuple):
     """A crossing at w = i eta, or a double eigenvalue at w = x, on a path at p; all fields are nan after a
     failure.
 
@@ -31,19 +31,19 @@ class LocatedZero(NamedTuple):
     error_of_p: float
 
 
-FAILED_ZERO = LocatedZero(math.nan, math.nan, math.nan, math.nan)
+FAILED_EIGENVALUE = LocatedEigenvalue(math.nan, math.nan, math.nan, math.nan)
 """Returned when Newton's method fails: all fields are nan."""
 
 
 @compiled
 def crossing_newton(
     eta: float, p: float, origin: Coefficients, direction: Coefficients, scale: tuple[float, float]
-) -> LocatedZero:
+) -> LocatedEigenvalue:
     """The zero of D(i eta; p) near the guess (eta, p), with errors from rounding and the last Newton step.
 
     origin, direction: coefficients at p = 0 and their derivative by p. scale: expected sizes of eta and p.
-    Returns `FAILED_ZERO` if a step exceeds `ROOT_NEWTON_SETTINGS.max_relative_step`, if eta <= 0, if the
-    Jacobian is singular, or if the method does not converge."""
+    Returns `FAILED_EIGENVALUE` if a step exceeds `ROOT_NEWTON_SETTINGS.max_relative_step`, if eta <= 0, if
+    the Jacobian is singular, or if the method does not converge."""
     last = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_steps):
         coefficients = coefficients_at(p, origin, direction)
@@ -53,7 +53,7 @@ def crossing_newton(
         # The determinant of the real 2 x 2 system (Re, Im), written with complex products.
         cross = (a * D_p.conjugate()).imag
         if cross == 0:
-            return FAILED_ZERO
+            return FAILED_EIGENVALUE
         eta_step = -(D * D_p.conjugate()).imag / cross
         p_step = (D * a.conjugate()).imag / cross
         # The rounding errors of p and eta add to the rounding error of D.
@@ -63,7 +63,7 @@ def crossing_newton(
         step = max(abs(eta_step) / scale[0], abs(p_step) / scale[1])
         # Negated comparisons are also true for NaN.
         if not step < ROOT_NEWTON_SETTINGS.max_relative_step or not eta + eta_step > 0:
-            return FAILED_ZERO
+            return FAILED_EIGENVALUE
         eta += eta_step
         p += p_step
         if (
@@ -73,20 +73,20 @@ def crossing_newton(
             step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
             and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)
         ):
-            return LocatedZero(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
+            return LocatedEigenvalue(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
         last = step
-    return FAILED_ZERO
+    return FAILED_EIGENVALUE
 
 
 @compiled
 def double_eigenvalue_newton(
     x: float, p: float, origin: Coefficients, direction: Coefficients, expected_distance: float
-) -> LocatedZero:
+) -> LocatedEigenvalue:
     """The double real eigenvalue D = D_w = 0 near the guess (x, p).
 
     origin, direction: coefficients at p = 0 and their derivative by p. expected_distance: expected distance
-    of p from the guess. Returns `FAILED_ZERO` if p moves by more than twice `expected_distance`, if the sign
-    of x changes, if the Jacobian is singular, or without convergence.
+    of p from the guess. Returns `FAILED_EIGENVALUE` if p moves by more than twice `expected_distance`, if
+    the sign of x changes, if the Jacobian is singular, or without convergence.
     """
     start = x
     first = p
@@ -103,7 +103,7 @@ def double_eigenvalue_newton(
         D_wp = (after * math.exp(S_after - S) - D_w_before * math.exp(S_before - S)) / (2 * k)
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
-            return FAILED_ZERO
+            return FAILED_EIGENVALUE
         x_step = (D_p * D_w - D_wp * D) / cross
         p_step = (D_ww * D - D_w * D_w) / cross
         rounding = rounding_error + ROUND_OFF * abs(p * D_p)
@@ -115,14 +115,14 @@ def double_eigenvalue_newton(
         p += p_step
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * expected_distance or not x * start > 0:
-            return FAILED_ZERO
+            return FAILED_EIGENVALUE
         if abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
             abs(x_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_x
             or abs(x_step) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
         ):
-            return LocatedZero(x, p, max(e_x, abs(x_step)), max(e_p, abs(p_step)))
+            return LocatedEigenvalue(x, p, max(e_x, abs(x_step)), max(e_p, abs(p_step)))
         last = abs(x_step)
-    return FAILED_ZERO
+    return FAILED_EIGENVALUE
 
 
 @compiled
@@ -172,4 +172,4 @@ def eigenvalue_newton(
     """
     w = refine_eigenvalue(w, coefficients)
     value = determinant_along_path(w, coefficients, direction)
-    return w, -value.D_p / value.D_w, max(abs(value.D), value.noise) / abs(value.D_w)
+    return w, -value.D_p / value.D_w, max(abs(value.D), value.rounding_error) / abs(value.D_w)

@@ -60,7 +60,7 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     error, length, wave = newton_correction_and_scales(w, coefficients)
     if error > ROOT_SETTINGS.double_root_correction * abs(w):
         D, D1, S, rounding_error = scaled_determinant(w, coefficients)
-        e = max(abs(D), DETERMINANT_SETTINGS.typical_noise * rounding_error)
+        e = max(abs(D), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error)
         D_ww = abs(second_derivative(w, S, coefficients))
         # Close to a double root Newton's correction is useless: the roots of the parabola bound the distance.
         if abs(D1) ** 2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RootSettings(CompiledSettings):
+class RootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of a mesh to roots of D."""
 
     max_correction: float = 1e-2
@@ -42,7 +42,7 @@ ROOT_SETTINGS = RootSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RootNewtonSettings(CompiledSettings):
+class RootNewtonSettings(KernelConstants):
     """Settings of Newton's method for eigenvalues, crossings and double eigenvalues."""
 
     max_steps: int = 15
@@ -55,8 +55,8 @@ class RootNewtonSettings(CompiledSettings):
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     jacobian_step: float = 1e-5
-    """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the reach
-    for p. The Jacobian need not be accurate."""
+    """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the
+    expected distance for p. The Jacobian need not be accurate."""
     converging_step_ratio: float = 0.5
     """A Newton step of at least this number times the previous step is rounding error: the method has
     converged as far as rounding allows."""

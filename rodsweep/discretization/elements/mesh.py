@@ -67,8 +67,8 @@ def uniform_mesh(elements: int, order: int) -> Mesh:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[float, ...] = ()) -> Mesh:
-    """The mesh whose elements lie between neighbouring `edges`; cached. order, order_ratios: orders of the
-    elements, as in `Elements`."""
+    """The mesh whose elements lie between neighbouring `edges`; cached. order: largest order of an element.
+    order_ratios: order of each element divided by `order`; empty if all orders are equal."""
     elements = Elements(edges, order, order_ratios=order_ratios)
     nodes = elements.node_count
     weighted = np.zeros((nodes + 1, nodes + 1))

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import COMPLEX_NAN, Array, Complex
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Rod
 from ..elements.basis import differentiation_matrix, lagrange_interpolation_matrix
 from ..elements.elements import ELEMENT_SETTINGS, Elements, equal_edges
@@ -34,7 +34,7 @@ from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PencilNormSettings(CompiledSettings):
+class PencilNormSettings(KernelConstants):
     """Settings of the norm of a pencil (weights of the unknowns), and of the normalisation of modes."""
 
     shear_weight: float = 1e-9

@@ -34,8 +34,13 @@ from ...arrays import Array
 from ...model.algebra import Algebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
-from ...model.material.jump import stress_at_jump, stress_change_at_jump
-from ...model.material.stress_strain import LINEAR_LAW, LocalSection, stress_beyond_rest, stress_change
+from ...model.material.jump import stress_at_jump, stress_parameter_derivative_at_jump
+from ...model.material.stress_strain import (
+    LINEAR_LAW,
+    LocalSection,
+    stress_beyond_rest,
+    stress_parameter_derivative,
+)
 from ..elements.mesh import NodeMatrices
 from ..nodal_rod import NodalRod, NodalRodDerivative
 from ..state_layout import stress_index, velocity_index
@@ -175,14 +180,16 @@ def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: Nod
         # At the tip S = 0.
         q1, q3 = (x[stress_index(0, i, n)], x[stress_index(2, i, n)]) if i < n else (0.0, 0.0)
         if k < len(c.jumps) and c.jumps[k] == i:
-            dS[0, i], dS[2, i] = stress_change_at_jump(c.law, c.jump_sides[k], change.jump_sides[k], q1, q3)
+            dS[0, i], dS[2, i] = stress_parameter_derivative_at_jump(
+                c.law, c.jump_sides[k], change.jump_sides[k], q1, q3
+            )
             k += 1
             continue
         material = LocalSection(c.rest_strain[0, i], c.compliance[0, i], c.compliance[2, i])
         material_derivative = LocalSection(
             change.rest_strain[0, i], change.compliance[0, i], change.compliance[2, i]
         )
-        dS[0, i], dS[2, i] = stress_change(c.law, material, material_derivative, q1, q3)
+        dS[0, i], dS[2, i] = stress_parameter_derivative(c.law, material, material_derivative, q1, q3)
 
 
 @UnrolledOverAlgebra

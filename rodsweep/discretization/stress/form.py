@@ -82,12 +82,12 @@ class StressForm(RodOnMesh):
             return self.layout.interpolate(x, interpolation_matrix(self.mesh, target))
         return self._state_on_mesh(target, self.stresses_on_mesh(target, x), x)
 
-    def changes_on_mesh(self, target: Mesh, change: Array) -> Array:
-        """Changes of states, (..., unknowns), interpolated to the mesh `target` by a linear map, (...,
+    def increments_on_mesh(self, target: Mesh, change: Array) -> Array:
+        """Increments of states, (..., unknowns), interpolated to the mesh `target` by a linear map, (...,
         unknowns on target)."""
         if self.has_continuous_stresses:
             return self.states_on_mesh(target, change)
-        return self._state_on_mesh(target, self.stress_changes_on_mesh(target, change), change)
+        return self._state_on_mesh(target, self.stress_increments_on_mesh(target, change), change)
 
     def _state_on_mesh(self, target: Mesh, S: Array, x: Array) -> Array:
         """States on the mesh `target`, (..., unknowns on target), with the stresses S at all nodes of

@@ -107,7 +107,7 @@ def _write_velocity_derivatives(
     blocks of slopes.
 
     slopes: (d, d, nodes + 1), mobility times the derivative B of ad*_E Sigma; the term with D is not
-    included. fields, compliance: as in `_write_linear_law_jacobian`.
+    included. fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1).
     """
     E, S, _ = fields
     for i in range(slopes.shape[2]):
@@ -135,7 +135,8 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
 ) -> None:
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
 
-    fields, compliance: as in `_write_linear_law_jacobian`. slopes: result of `_write_velocity_derivatives`.
+    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1). slopes: result
+    of `_write_velocity_derivatives`.
     """
     n = len(m.weights) - 1
     E, _, V = fields
@@ -207,7 +208,7 @@ def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
 
-    fields, compliance: as in `_write_linear_law_jacobian`.
+    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1).
     """
     size = len(m.weights)
     n = len(m.weights) - 1

@@ -33,7 +33,8 @@ def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices)
 
 @compiled_for_vectors
 def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
-    """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: as in `write_rate`."""
+    """Writes the stresses S = C^(-1/2) z into x; x, z: (unknowns,). roots: square roots of the
+    compliances at the nodes, (d, nodes + 1)."""
     d = roots.shape[0]
     n = roots.shape[1] - 1
     for a in range(d):
@@ -46,7 +47,8 @@ def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
 def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns).
 
-    out is column-major as in LAPACK: out[column, row]. roots: as in `write_rate`.
+    out is column-major as in LAPACK: out[column, row]. roots: square roots of the
+    compliances at the nodes, (d, nodes + 1).
     """
     d, size = c.drag.shape
     unknowns = len(z)
@@ -72,7 +74,8 @@ def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: Node
 
 @compiled_for_vectors
 def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt of n states z into out; states, out: (n, unknowns). roots: as in `write_rate`."""
+    """Writes dz/dt of n states z into out; states, out: (n, unknowns). roots: square roots of the
+    compliances at the nodes, (d, nodes + 1)."""
     for i in range(len(states)):
         write_rate(states[i], out[i], roots, c, m)
 
@@ -82,7 +85,8 @@ def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m
     """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out,
     (n, unknowns, unknowns).
 
-    roots: as in `write_rate`.
+    roots: square roots of the
+    compliances at the nodes, (d, nodes + 1).
     """
     for i in range(len(states)):
         write_rate_jacobian(states[i], out[i], roots, c, m)

@@ -23,8 +23,9 @@ class TipMatrices(NamedTuple):
     values_at_gauss_points: interpolation from the nodes of an element to its Gauss points, (m, g).
     angles_at_gauss_points: integrals of nodal polynomials from 0 to the Gauss points, (m, g). gauss_weights:
     Gauss weights, (g,). element_integrals: integrals of nodal polynomials over the element, (m,).
-    element_lengths: lengths of all elements, (elements,). element_nodes: as in `Elements`, (m,).
-    element_starts: index in m of the first node of each element, then m, (elements + 1,)."""
+    element_lengths: lengths of all elements, (elements,). element_nodes: index of the node of the mesh at
+    each node of every element, (m,). element_starts: index in m of the first node of each element, then m,
+    (elements + 1,)."""
 
     values_at_gauss_points: Array
     angles_at_gauss_points: Array

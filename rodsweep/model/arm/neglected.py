@@ -242,7 +242,7 @@ def _effect_independent_of_viscosity(
     name: str, value: Array, limit: float, of_cycles_only: bool = False
 ) -> Effect:
     """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
-    `value` exceeds `limit`, otherwise 0. of_cycles_only: as in `Effect`.
+    `value` exceeds `limit`, otherwise 0. of_cycles_only: whether the effect changes only limit cycles.
     """
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     factor = np.where(value > limit, inf, 0.0)

@@ -62,7 +62,8 @@ class Circle:
 @dataclass(frozen=True, slots=True)
 class Tube:
     """A circular cross-section of radius a with a bore of radius b, in m. The bore is closed at the tip.
-    formula, shear_formula, pressure_force_formula: as in `Circle`."""
+    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
+    coefficient, and on the tip force under a pressure p."""
 
     radius: float
     inner_radius: float
@@ -114,7 +115,8 @@ class Tube:
 @dataclass(frozen=True, slots=True)
 class Rectangle:
     """A solid rectangular cross-section, in m: height in the plane of motion, width across this plane.
-    formula, shear_formula, pressure_force_formula: as in `Circle`."""
+    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
+    coefficient, and on the tip force under a pressure p."""
 
     width: float
     height: float

@@ -18,7 +18,7 @@ import numpy as np
 from numba import types
 from numba.core.dispatcher import Dispatcher
 
-from .settings import CompiledSettings
+from .kernel_constants import KernelConstants
 
 VARIADIC_FLAGS = inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 """Flags of a code object for *args and **kwargs; no other flags change the compiled code."""
@@ -99,7 +99,7 @@ def _text_of_function(function: FunctionType, options: str) -> FunctionText:
 
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
-    """Global values of `function` that `instructions` read, by name; of a `CompiledSettings` object only the
+    """Global values of `function` that `instructions` read, by name; of a `KernelConstants` object only the
     fields that are read.
 
     Raises NameError for a name that is neither a global name nor a builtin.
@@ -108,7 +108,7 @@ def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]
     for instruction, next_instruction in pairwise(instructions):
         if instruction.opname in GLOBAL_READ_INSTRUCTIONS and instruction.argval in function.__globals__:
             value = function.__globals__[instruction.argval]
-            if isinstance(value, CompiledSettings) and next_instruction.opname == "LOAD_ATTR":
+            if isinstance(value, KernelConstants) and next_instruction.opname == "LOAD_ATTR":
                 values[f"{instruction.argval}.{next_instruction.argval}"] = getattr(
                     value, next_instruction.argval
                 )

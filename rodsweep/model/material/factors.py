@@ -10,7 +10,7 @@ from ...arrays import Array
 from .profile import FACTOR_NAMES, RADIUS_POWERS, Profile
 
 FACTOR_SAMPLE_COUNT = 256
-"""Number of samples between neighbouring u of a profile in the search for the smallest factor."""
+"""Number of samples between two neighbouring breaks of a profile in the search for the smallest factor."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -18,10 +18,11 @@ class FactorCacheSettings:
     """Limits of the cache of factors along an arm, which takes at most 13 MB."""
 
     max_points: int = 1024
-    """Largest number of points at which factors are cached. More points are those of a mesh that is used
+    """Largest number of points at which factors are cached. Larger arrays come from meshes that are used only
     once."""
     max_entries: int = 256
-    """Maximum number of arrays of points; a sweep needs about ten."""
+    """Maximum number of cached results, one for each profile, taper and array of points; a sweep along F
+    needs about ten."""
 
 
 FACTOR_CACHE_SETTINGS = FactorCacheSettings()
@@ -29,8 +30,9 @@ FACTOR_CACHE_SETTINGS = FactorCacheSettings()
 
 def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Array]:
     """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the shape of
-    u, which must not be changed. taper: a number, or an array for n arms, (n, 1, ...); factors that depend on
-    the taper then have the shape (n, *u.shape).
+    u. Callers must not write into these arrays, because they may be shared through the cache. taper: a
+    number, or an array for n arms, (n, 1, ...), with which factors that depend on the taper have the shape
+    (n, *u.shape).
     """
     if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
         return _factors_along(profile, taper, u)

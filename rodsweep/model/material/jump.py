@@ -25,7 +25,7 @@ from .stress_strain import (
     Stress,
     Tangent,
     stress_beyond_rest,
-    stress_change,
+    stress_parameter_derivative,
     stress_tangent,
 )
 
@@ -70,7 +70,7 @@ def _largest_step_fraction(material: LocalSection, q1: float, step: float) -> fl
     """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STRETCH_RATIO times h1 before the
     step.
 
-    material, q1: section and unknown before the step. step: change of q1.
+    material, q1: section and unknown before the step. step: increment of q1.
     """
     h = material.nu + material.c1 * q1
     change = material.c1 * step
@@ -159,13 +159,13 @@ def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) 
 
 
 @compiled
-def changes_beside_jump(
+def side_increments_at_jump(
     law: int, sides: Array, q: LawUnknowns, change: LawUnknowns
 ) -> tuple[LawUnknowns, LawUnknowns]:
-    """Returns (change of a, change of b): changes of the unknowns on the base side and the tip side of a
-    jump.
+    """Returns (increment of a, increment of b): increments of the unknowns on the base side and the tip side
+    of a jump.
 
-    law: number of the constitutive law. q: mean unknowns. change: infinitesimal change of q. sides: both
+    law: number of the constitutive law. q: mean unknowns. change: infinitesimal increment of q. sides: both
     sides, (2, 7).
     """
     a = unknowns_before_jump(law, sides, q)
@@ -191,7 +191,9 @@ def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
 
 
 @compiled
-def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: float) -> Stress:
+def stress_parameter_derivative_at_jump(
+    law: int, sides: Array, change: Array, q1: float, q3: float
+) -> Stress:
     """Derivatives of the stresses N and M at a jump with respect to a parameter, at fixed mean unknowns q1,
     q3.
 
@@ -207,11 +209,11 @@ def stress_change_at_jump(law: int, sides: Array, change: Array, q1: float, q3: 
     for i in range(2):
         material = _section_of_side(sides[i])
         unknowns = a if i == 0 else b
-        stress_derivative = stress_change(
+        stress_derivative = stress_parameter_derivative(
             law, material, _section_of_side(change[i]), unknowns.q1, unknowns.q3
         )
-        # At fixed stress the unknowns of this side would change by -back. A change of the stress keeps the
-        # mean unknowns fixed.
+        # At fixed stress this is minus the derivative of the unknowns of this side. The derivative of the
+        # stress keeps the mean unknowns fixed.
         unknowns_derivative = _solve_tangent_system(
             stress_tangent(law, material, unknowns.q1, unknowns.q3), stress_derivative.N, stress_derivative.M
         )

@@ -95,7 +95,9 @@ def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Ta
 
 
 @compiled
-def stress_change(law: int, material: LocalSection, change: LocalSection, q1: float, q3: float) -> Stress:
+def stress_parameter_derivative(
+    law: int, material: LocalSection, change: LocalSection, q1: float, q3: float
+) -> Stress:
     """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3.
 
     change: derivatives of the fields of `material` with respect to the parameter. law: number of the law.
@@ -103,7 +105,7 @@ def stress_change(law: int, material: LocalSection, change: LocalSection, q1: fl
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
     h = material.nu + material.c1 * q1
-    h_derivative = change.nu + change.c1 * q1  # change of h
+    h_derivative = change.nu + change.c1 * q1
     a = 1 / material.nu
     b = 1 / h
     # Derivatives of the secant [W'(h) - W'(nu)]/(h - nu) with respect to nu and h.

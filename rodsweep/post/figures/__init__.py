@@ -13,7 +13,7 @@ from matplotlib import rc_params_from_file
 from matplotlib.figure import Figure
 
 from ...errors import EnvironmentIncomplete, InputError
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from .arm.map import can_draw_arm_map, draw_arm_map
 from .branch import draw_branch
 from .criticality import draw_criticality
@@ -86,7 +86,7 @@ def _draw_and_describe(request: FigureRequest) -> str:
 
 
 def draw(
-    views: View | Sequence[View],
+    views: ResultView | Sequence[ResultView],
     output: Path,
     *,
     look: FigureLook = DEFAULT_LOOK,
@@ -102,7 +102,7 @@ def draw(
     InputError for options that do not fit the files and for files without a result that can be drawn,
     EnvironmentIncomplete if `output` cannot be written or a program of the style, such as LaTeX, fails.
     """
-    views = [views] if isinstance(views, View) else views
+    views = [views] if isinstance(views, ResultView) else views
     if look.width and choices.get("what") == "animation":
         raise InputError("--width is for printed figures, not for an animation; remove --width")
     if not look.title:
@@ -135,7 +135,7 @@ def draw(
     return f"wrote {output}: {caption}{_omitted_points_clause(views)}"
 
 
-def _omitted_points_clause(views: Sequence[View]) -> str:
+def _omitted_points_clause(views: Sequence[ResultView]) -> str:
     """Clause on the number of points that the figure omits; empty if the figure shows all points."""
     statuses = np.concatenate([view.status_names for view in views])
     counts = (

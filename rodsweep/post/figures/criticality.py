@@ -12,7 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...arrays import Array
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
 from . import style
 from .arm.quantities import constant_quantities_text
@@ -74,7 +74,7 @@ def draw_criticality(request: FigureRequest) -> str:
     return request.write(_maps_figure(view, points, request.look.is_narrow), caption, MAP_ASPECT)
 
 
-def _curves_figure(view: View, name: str) -> Figure:
+def _curves_figure(view: ResultView, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
     `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
     """
@@ -117,7 +117,7 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
     return handles
 
 
-def _maps_figure(view: View, points: PointMap, is_narrow: bool) -> Figure:
+def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
     whether the maps are stacked. Raises InputError if nothing can be drawn.
     """
@@ -162,7 +162,7 @@ def _class_indices(criticality: Array) -> Array:
     return np.where((first_criticality == -1) & has_later_subcritical, 2.0, classes)
 
 
-def draw_predictions(view: View) -> tuple[Figure, str]:
+def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
     rods. Raises InputError if nothing can be drawn.
     """

@@ -14,7 +14,7 @@ from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.units import quantity_in_si
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from .point_lists import OTHER_DIMENSIONS
 
 TYPED_TOLERANCE = 1e-6
@@ -25,7 +25,7 @@ MAX_LISTED_VALUES = 8
 """Largest number of values that an error message lists."""
 
 
-def slice_at_values(view: View, typed_values: Mapping[str, float | str]) -> View:
+def slice_at_values(view: ResultView, typed_values: Mapping[str, float | str]) -> ResultView:
     """View of the points at which parameters, or quantities of an arm, have the values `typed_values`, by
     name.
 
@@ -53,7 +53,7 @@ def _number_in_si(name: str, value: float | str) -> float:
         raise InputError(f"--at {name}={value} must be a parameter with a number, such as k1=150") from None
 
 
-def _slice_at_value(view: View, name: str, value: float) -> View:
+def _slice_at_value(view: ResultView, name: str, value: float) -> ResultView:
     """View of the points at which `name` has the given value. Raises InputError if there is no such point."""
     quantity_names = [n for n, v in view.quantities.items() if np.ndim(v) and n not in UNITS_OF_ARM]
     if view.is_grid:  # quantities that are stored along an axis of a parameter
@@ -78,7 +78,7 @@ def _slice_at_value(view: View, name: str, value: float) -> View:
     return replace(view, variables=variables)
 
 
-def _axes_sentence(view: View, name: str, axes: Sequence[str]) -> str:
+def _axes_sentence(view: ResultView, name: str, axes: Sequence[str]) -> str:
     """Predicate that says that `name` is none of the axes `axes`, with a similar name, or with the names of
     the axes that have several values."""
     similar = similar_keys(name, list(axes))
@@ -100,7 +100,7 @@ def _values_text(values: np.ndarray, requested: float) -> str:
     return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest}"
 
 
-def _grid_at(view: View, name: str, is_chosen: np.ndarray) -> View:
+def _grid_at(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:
     """View of a grid restricted to some values of the axis `name`. is_chosen: mask of these values."""
     names = view.arm_axes or view.parameters
     shape = view.variables["status"].shape
@@ -120,7 +120,7 @@ def _grid_at(view: View, name: str, is_chosen: np.ndarray) -> View:
     return replace(view, variables=variables)
 
 
-def without_infinite_values(view: View) -> View:
+def without_infinite_values(view: ResultView) -> ResultView:
     """View of a grid without the infinite values of its axes, which a figure cannot show."""
     for name, values in view.parameter_values.items():
         finite = np.isfinite(values)

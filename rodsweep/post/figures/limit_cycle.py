@@ -5,7 +5,7 @@ file.
 import numpy as np
 
 from ...errors import InputError
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
 from .cycle.amplitudes.amplitude import BRANCH_LOOKS, draw_amplitude
 from .cycle.amplitudes.branches import abscissa_parameter
@@ -54,7 +54,7 @@ def draw_limit_cycle(request: FigureRequest) -> str:
     return request.write(*FEW_POINT_FIGURES[name](view, points, request.look.is_narrow), STRIP_ASPECT)
 
 
-def _with_needed_variables(request: FigureRequest, name: str) -> View:
+def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
     `request.shapes`, if given, computes them.
     """
@@ -113,7 +113,7 @@ def _default_figure_kind(request: FigureRequest) -> str:
     return "amplitude" if "F" in names or (names and is_cycle.size > MAX_CYCLES) else "cycle"
 
 
-def _has_many_lines(view: View) -> bool:
+def _has_many_lines(view: ResultView) -> bool:
     """Whether the points form a map that has more lines than a figure of amplitudes can show."""
     if not varies_two_parameters_on_grid(view):
         return False

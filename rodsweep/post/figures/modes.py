@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from .arm.quantities import constant_quantities_text
 from .request import FigureRequest
 from .style import BLUE, VERMILION, heading_text, legend_below, number_in_tex, parameter_text, require_content
@@ -57,7 +57,7 @@ def draw_modes(request: FigureRequest) -> str:
     return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
 
 
-def _part_entries(view: View, points: np.ndarray) -> list[Line2D]:
+def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
     """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
     (dotted). points: indices of the drawn points, (n,).
     """
@@ -66,7 +66,7 @@ def _part_entries(view: View, points: np.ndarray) -> list[Line2D]:
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in line_styles]
 
 
-def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[str, str], ...]) -> None:
+def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:
     """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
     height. point: index of the point. fields: (field, label) of the two fields.
     """
@@ -91,7 +91,7 @@ def _draw_mode_fields(panel: Axes, view: View, point: int, fields: tuple[tuple[s
     panel.set_xlim(0, 1)
 
 
-def _point_texts(view: View, point: int) -> tuple[str, str]:
+def _point_texts(view: ResultView, point: int) -> tuple[str, str]:
     """Returns (parameters, leading eigenvalue), as TeX, of the point with the index `point`."""
     parameters = {name: values[point] for name, values in view.point_columns.items()}
     eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from ...arrays import Array
 from ...config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS
 from ...model.parameters import LINEAR_PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
@@ -99,7 +99,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
 
 
-def _draw_stored_curves(axes: Axes, view: View, palette: Palette, line: str, row: str) -> list[Any]:
+def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: str, row: str) -> list[Any]:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
     their legend entries. line, row: parameters along a row, and constant on a row.
     """
@@ -113,7 +113,7 @@ def _draw_stored_curves(axes: Axes, view: View, palette: Palette, line: str, row
     return handles
 
 
-def _constant_parameters_text(view: View, line: str, row: str) -> str:
+def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
     criticality. line, row: parameters on the axes.
     """
@@ -136,7 +136,7 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]
     return [Line2D([], [], color="0.4", lw=1.2, label="crushing force")]
 
 
-def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
+def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
     parameter. line, row: parameters along a row, and constant on a row.
     """
@@ -168,7 +168,7 @@ def _draw_rows(view: View, palette: Palette, line: str, row: str) -> Figure:
     return figure
 
 
-def _class_of_pixels(view: View, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
+def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
     curves of the file and by the crushing force.
 

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES, ARM_SCALES
 from ...model.units import with_si_prefix
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..summary.arm.arm import quantity_words
 
 OTHER_DIMENSIONS = ("mode", "u", "crossing")
@@ -20,8 +20,8 @@ MAX_LABELLED_POINTS = 12
 """With at most this number of points, every point has a tick label."""
 
 
-def as_grid_if_possible(view: View) -> View:
-    """View as a grid, if the points of the list form a grid, in any order; else the view itself.
+def as_grid_if_possible(view: ResultView) -> ResultView:
+    """The view as a grid, if the points of the list form a grid, in any order; else the view itself.
 
     The grid has at most two varied parameters, and each combination of the values of the parameters once.
     """
@@ -44,13 +44,13 @@ def as_grid_if_possible(view: View) -> View:
     return replace(view, variables=variables)
 
 
-def shared_parameters(view: View) -> dict[str, float]:
+def shared_parameters(view: ResultView) -> dict[str, float]:
     """Parameters that are equal at all points, by name."""
     columns = view.point_columns
     return {name: float(column[0]) for name, column in columns.items() if len(np.unique(column)) == 1}
 
 
-def label_point_numbers(axes: Axes, view: View, count: int) -> None:
+def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
     """Labels the horizontal axis with the numbers of the points of a list, from 1. count: number of points.
 
     For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
@@ -68,7 +68,7 @@ def label_point_numbers(axes: Axes, view: View, count: int) -> None:
         axes.set_xlabel("\n".join(["point of the list", *range_texts]))
 
 
-def _varied_quantities(view: View) -> list[tuple[str, list[str]]]:
+def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
     varies.
     """

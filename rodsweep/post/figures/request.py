@@ -9,14 +9,14 @@ from matplotlib.figure import Figure
 
 from ...errors import InputError
 from ...model.units import quantity_in_si
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..output_files import save_figure
 from .arm.axes import add_arm_scales
 from .arm.validity_hatches import hatch_invalid_points
 from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout
 
-ShapeFunction = Callable[[View, Sequence[int]], View]
+ShapeFunction = Callable[[ResultView, Sequence[int]], ResultView]
 """Function that computes the shapes of cycles. Arguments: view of a file, and numbers of points, from 1.
 Returns a view with the shapes."""
 FigureClass = Figure
@@ -104,7 +104,7 @@ class FigureRequest:
     `FigureChoices`; look: appearance).
     """
 
-    views: Sequence[View]
+    views: Sequence[ResultView]
     output: Path
     roots: str | None = None
     what: str | None = None
@@ -117,7 +117,7 @@ class FigureRequest:
     figure_callback: Callable[[Figure], None] | None = None
     """Callback for the finished figure; if given, no file is written."""
 
-    def only_view(self, *kinds: str) -> View:
+    def only_view(self, *kinds: str) -> ResultView:
         """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
         of --what that is not in `kinds`, and for an invalid output name.
         """
@@ -125,7 +125,7 @@ class FigureRequest:
         self.require_output()
         return self.views[0]
 
-    def refuse_choices(self, view: View, kinds: Sequence[str] = ()) -> None:
+    def refuse_choices(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
         values of --what that the task has.
         """
@@ -136,7 +136,7 @@ class FigureRequest:
                 "thresholds can share a figure"
             )
 
-    def refuse_points(self, view: View, kinds: Sequence[str] = ()) -> None:
+    def refuse_points(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for chosen points, and for a value of --what that is not in `kinds`. view: file
         whose task does not have these options.
         """

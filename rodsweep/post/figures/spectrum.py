@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...errors import InputError
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import constant_quantities_text
 from .grid_slices import left_out_clause, slice_at_values, without_infinite_values
@@ -85,7 +85,7 @@ def draw_spectrum(request: FigureRequest) -> str:
     return request.write(_growth_map(view, long), f"the leading growth rate{omissions}", MAP_ASPECT)
 
 
-def _refuse_roots(view: View, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
+def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
     """Raises InputError if the user's choice of roots is neither None nor in `allowed`. figure: noun for the
     figure of `view`, which does not follow roots.
     """
@@ -95,7 +95,7 @@ def _refuse_roots(view: View, roots: str | None, figure: str, allowed: Sequence[
         )
 
 
-def _draw_line_per_value(view: View, curve_parameter: str, request: FigureRequest) -> str:
+def _draw_line_per_value(view: ResultView, curve_parameter: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
     for a map; returns a sentence."""
     lines = [
@@ -109,7 +109,7 @@ def _draw_line_per_value(view: View, curve_parameter: str, request: FigureReques
     )
 
 
-def _draw_line_panels(views: Sequence[View], request: FigureRequest, panel_noun: str) -> str:
+def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel_noun: str) -> str:
     """Draws a panel for each view, a line of spectra; returns a sentence. panel_noun: noun for a view, and a
     clause on what is left out."""
     roots = roots_to_follow(views, request.roots)
@@ -133,7 +133,7 @@ def _draw_files(request: FigureRequest) -> str:
     return _draw_line_panels(views, request, f"of {len(views)} files{max(omissions, key=len)}")
 
 
-def _line_of_spectra(view: View, request: FigureRequest) -> View:
+def _line_of_spectra(view: ResultView, request: FigureRequest) -> ResultView:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
     a line of spectra.
     """
@@ -150,7 +150,7 @@ def _line_of_spectra(view: View, request: FigureRequest) -> View:
     return view
 
 
-def _growth_map(view: View, names: list[str]) -> Figure:
+def _growth_map(view: ResultView, names: list[str]) -> Figure:
     """Map of the largest growth rate over the two parameters `names`."""
     horizontal, vertical = names
     growth = view.variables["growth_rate"][..., 0].squeeze()
@@ -196,7 +196,7 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
     axes.axis(limits)
 
 
-def draw_panels(views: Sequence[View], roots: str, is_narrow: bool) -> Figure:
+def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
     """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. is_narrow:
     whether the panels are stacked.
     """

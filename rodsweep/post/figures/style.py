@@ -13,7 +13,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.variables import MISSING_STATUS
 from ..material_texts import material_words
 
@@ -76,7 +76,7 @@ def escape_dollar_signs(text: object) -> str:
     return str(text).replace("$", r"\$")
 
 
-def heading_text(view: View, *lines: str) -> str:
+def heading_text(view: ResultView, *lines: str) -> str:
     """Text above a figure: title of the result file (if requested), constitutive law, profile and
     segments (if not standard), and `lines`, one below the other.
     """
@@ -84,7 +84,7 @@ def heading_text(view: View, *lines: str) -> str:
     return "\n".join(filter(None, (title, material_words(view), *lines)))
 
 
-def file_label(view: View, views: Sequence[View]) -> str:
+def file_label(view: ResultView, views: Sequence[ResultView]) -> str:
     """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
     title if all titles differ, else file name.
     """
@@ -125,14 +125,14 @@ def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
     )
 
 
-def constant_parameters_text(view: View, *axis_names: str) -> str:
+def constant_parameters_text(view: ResultView, *axis_names: str) -> str:
     """Constant parameters with their values, as text. axis_names: names of the parameters on axes."""
     return parameter_text(
         {name: values[0] for name, values in view.parameter_values.items() if name not in axis_names}
     )
 
 
-def varied_axes(view: View) -> list[str]:
+def varied_axes(view: ResultView) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
     parameter, or more than two, have several values.
     """
@@ -150,7 +150,7 @@ def varied_axes(view: View) -> list[str]:
     return long
 
 
-def require_content(view: View, available: object, noun: str) -> None:
+def require_content(view: ResultView, available: object, noun: str) -> None:
     """Raises InputError if `available` is false or empty. noun: noun for the missing content."""
     if not available:
         if (view.variables["status"] == MISSING_STATUS).all():

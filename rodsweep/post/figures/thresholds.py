@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from ...errors import InputError
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from . import style
 from .arm.quantities import constant_quantities_text
 from .cycle.maps import label_maps, map_panels
@@ -94,14 +94,14 @@ def _draw_files(request: FigureRequest) -> str:
     return request.write(*draw_lines_of_files(views, names[0], searched_range_clause(*views)))
 
 
-def searched_range_clause(*views: View) -> str:
+def searched_range_clause(*views: ResultView) -> str:
     """Clause on the searched range of forces: a threshold that is not shown may lie outside this range."""
     ends = np.concatenate([view.variables["F_end"].ravel() for view in views])
     low, high = (f"{end(ends):.{SEARCH_DIGITS}g}" for end in (np.nanmin, np.nanmax))
     return rf"searched up to $\tilde F = {low}$" + (f" to ${high}$" if low != high else "")
 
 
-def _threshold_maps(view: View, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
+def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
     `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
     Raises InputError if nothing can be drawn.

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts import layout_of
 from ...results.layouts.arm import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
@@ -111,7 +111,7 @@ class OneRod:
     exist.
     """
 
-    def __init__(self, view: View):
+    def __init__(self, view: ResultView):
         self.view = view
         self.tables = Tables(view)
         self.si_names = _si_variable_names(view)
@@ -169,7 +169,7 @@ class OneRod:
         return self.list_texts[table].columns[name].texts()
 
 
-def _si_variable_names(view: View) -> dict[str, str]:
+def _si_variable_names(view: ResultView) -> dict[str, str]:
     """Name of the SI variable of an arm, by dimensionless variable; empty for a rod."""
     if view.config["parameters"].get("arm") is None:
         return {}

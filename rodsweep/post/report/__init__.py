@@ -16,7 +16,7 @@ from markupsafe import Markup, escape
 
 from ... import __version__
 from ...results.file.provenance import utc_time
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import counted
 from ..figures.request import ShapeFunction
 from ..output_files import atomic_write, require_output_path
@@ -36,7 +36,7 @@ def require_page(output: Path, inputs: Sequence[Path]) -> None:
     require_output_path(output, (".html",), "page", inputs)
 
 
-def write_report(views: Sequence[View], output: Path, shapes: ShapeFunction | None = None) -> str:
+def write_report(views: Sequence[ResultView], output: Path, shapes: ShapeFunction | None = None) -> str:
     """Writes an HTML page about results to the file `output`, and returns a sentence about the page.
 
     shapes: function that computes the shapes of cycles for figures, if the file has no shapes. Raises

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..tables.column import Column
 from ..tables.table_names import DEFAULT_TABLE, POINTS
 from ..tables.tables import Table, Tables
@@ -43,7 +43,7 @@ class PageTable:
     constant_columns: tuple[tuple[str, Cell, str, str], ...]
 
 
-def page_tables(view: View) -> Iterator[PageTable]:
+def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
     then the other tables.
     """

@@ -10,7 +10,7 @@ from pathlib import Path
 from matplotlib.figure import Figure
 
 from ...errors import InputError
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..figures import draw
 from ..figures.request import FIGURE_KINDS_BY_TASK, ShapeFunction
 from .vector_picture import VectorPicture, vector_picture
@@ -39,7 +39,7 @@ class Pictures:
     refusal: str = ""
 
 
-def pictures_of(views: Sequence[View], shapes: ShapeFunction | None, numbers: "count[int]") -> Pictures:
+def pictures_of(views: Sequence[ResultView], shapes: ShapeFunction | None, numbers: "count[int]") -> Pictures:
     """Figures of every kind that show all `views`, the default figure of `rodsweep plot` first.
 
     shapes: function that computes the shapes of cycles for the default figure, if the file has no shapes.

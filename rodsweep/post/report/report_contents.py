@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ...config.document.reading import tree_yaml
 from ...config.values import printable
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..summary import summary_of
 from ..summary.summary_lines import Summary, TextTable, region_text
 from .page_tables import PageTable, page_tables
@@ -56,7 +56,7 @@ class ReportContents:
     """(printed name, value) of the attributes in VERSION_WORDS."""
 
 
-def report_contents(view: View, pictures: Pictures) -> ReportContents:
+def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
     """Contents of the page about the result `view`. pictures: figures of this result."""
     a = view.attributes
     summary = summary_of(view)
@@ -75,7 +75,7 @@ def report_contents(view: View, pictures: Pictures) -> ReportContents:
     )
 
 
-def _with_parameter_ranges(view: View, statuses: TextTable) -> TextTable:
+def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     """Table of statuses. If there are several statuses, a column with the parameter ranges of each status is
     added.
     """

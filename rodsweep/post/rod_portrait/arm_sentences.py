@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...model.arm.neglected import Validity
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.arm import VALIDITY_VARIABLES
 from ..summary.arm.validity_sentences import plane_lines, validity_caveat, validity_sentence
 from .results import RodResults
@@ -30,7 +30,7 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
     yield from (f"{sentence[0].upper()}{sentence[1:]}." for sentence in sentences)
 
 
-def cycle_caveat(view: View) -> str:
+def cycle_caveat(view: ResultView) -> str:
     """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
     empty text. view: result with one limit cycle."""
     validity = view.variables.get("model_applies")

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES
 from ..figures import style
 from ..figures.branch import BRANCH_COLOURS, draw_branch_curves, draw_straight_rod, stability_entries
@@ -223,7 +223,7 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.tick_params(labelleft=axes is panels[0])
 
 
-def _status_meaning(view: View) -> str:
+def _status_meaning(view: ResultView) -> str:
     """Meaning of the status of the only point in `view`."""
     word = str(view.status_names[0])
     return view.sentences.get(word, word)

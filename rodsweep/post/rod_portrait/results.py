@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..branch_curves import RodBranches
 from .units import PortraitUnits, portrait_units
 
@@ -47,12 +47,12 @@ class RodResults:
     rod: DescribedRod
     F_max: float
     """Requested largest force of the searches, in k3/L^2."""
-    views: Mapping[str, View]
+    views: Mapping[str, ResultView]
     """Results by task, for the tasks "thresholds", "criticality" and "branch"; a missing result has no
     entry."""
-    modes: Mapping[str, tuple[float, View]]
+    modes: Mapping[str, tuple[float, ResultView]]
     """(force, modes at this force) at the first threshold of a kind, by kind of threshold."""
-    cycles: Sequence[tuple[float, View]]
+    cycles: Sequence[tuple[float, ResultView]]
     """(force, limit cycle at this force), in increasing order of the force."""
     missing: Mapping[str, str]
     """Reason, as a sentence, for every task of which a result is missing, by task."""

@@ -10,7 +10,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from ...model.arm.quantities import SCALE_NAME
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..figures import style
 from ..range_unions import ParameterRange
 from ..summary.arm.arm import printing_unit
@@ -103,7 +103,7 @@ ROD_UNITS = PortraitUnits(
 """Units of the portrait of a rod; forces are in k3/L^2."""
 
 
-def portrait_units(view: View, load: str, largest: float) -> PortraitUnits:
+def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits:
     """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
     the prefix of the load is chosen.
     """

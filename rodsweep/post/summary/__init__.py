@@ -16,7 +16,7 @@ from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...model.units import value_in_unit
 from ...results.file.provenance import FAILURE_REASONS_ATTRIBUTE, failure_sentence
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS
 from ...wording import counted, is_or_are, plural
@@ -34,7 +34,7 @@ from .spectrum import spectrum_summary
 from .summary_lines import Summary, SummaryLines, TextTable
 from .thresholds import thresholds_summary
 
-SUMMARIES: dict[str, Callable[[View, np.ndarray], SummaryLines]] = {
+SUMMARIES: dict[str, Callable[[ResultView, np.ndarray], SummaryLines]] = {
     "spectrum": spectrum_summary,
     "thresholds": thresholds_summary,
     "phase_diagram": phase_diagram_summary,
@@ -51,7 +51,7 @@ POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phas
 """Noun for a point of a task's result, for tasks whose noun is not "point"."""
 
 
-def summary_of(view: View, every_status: bool = False) -> Summary:
+def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     """Summary of a result file. every_status: whether the list of statuses includes statuses that no point
     has.
     """
@@ -81,7 +81,7 @@ def summary_of(view: View, every_status: bool = False) -> Summary:
     )
 
 
-def show_summary(view: View, every_status: bool = False) -> None:
+def show_summary(view: ResultView, every_status: bool = False) -> None:
     """Prints the summary of a result file. every_status: whether the list of statuses includes statuses that
     no point has.
 
@@ -135,7 +135,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
             console.print(line, soft_wrap=True)
 
 
-def _answer_lines(view: View, computed: np.ndarray, summary: SummaryLines) -> list[str]:
+def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. computed: mask of the computed
     points, of the shape of the points. summary: lines of the task.
     """
@@ -145,7 +145,7 @@ def _answer_lines(view: View, computed: np.ndarray, summary: SummaryLines) -> li
     return [*lines, "", "the same in dimensionless numbers:", *summary.answer] if summary.answer else lines
 
 
-def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
+def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
     missing: number of missing points. noun: noun for a point.
     """
@@ -174,7 +174,7 @@ def _unfinished_lines(view: View, missing: int, noun: str) -> list[str]:
     return lines
 
 
-def _failure_sentences(view: View) -> Iterable[str]:
+def _failure_sentences(view: ResultView) -> Iterable[str]:
     """Yields one sentence for each distinct reason for which points failed, with one failed point as an
     example.
     """
@@ -198,7 +198,7 @@ def _terminal_table(table: TextTable) -> Table:
     return rich_table
 
 
-def _axes_table(view: View) -> TextTable:
+def _axes_table(view: ResultView) -> TextTable:
     """Table of the quantities of an arm and of the parameters, with their values or ranges over the
     points.
     """
@@ -239,7 +239,7 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
-def _status_rows(view: View, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
+def _status_rows(view: ResultView, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
     """Yields (status, number of points, meaning of the status). is_every_shown: whether statuses that no
     point has are included.
     """

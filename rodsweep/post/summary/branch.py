@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from ...arrays import Array
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import count_of_total, counted, is_or_are
 from ..branch_curves import RodBranches, StoredBranch, followed_parameter
 from ..crushing import uncrushed_ranges
@@ -41,7 +41,7 @@ BRANCH_END_WORDS = {
 """Phrase for the end of a branch, by reason of the end."""
 
 
-def branch_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of branches. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
         return SummaryLines(list(_one_rod_lines(RodBranches(view))), [searched_range_line(view, computed)])
@@ -144,7 +144,7 @@ def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
     return f"{start} to {BRANCH_END_WORDS[last.reason]}, {parameter} = {rounded_text(last.at, last.error)}"
 
 
-def _sizes_text(view: View, computed: np.ndarray) -> str:
+def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
     empty if there is no cycle.
     """

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.thresholds import CROSSING_KINDS
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
@@ -31,7 +31,7 @@ HOPF_NUMBERS = {
 """Symbol and unit of each number of a Hopf point, by variable."""
 
 
-def criticality_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of Hopf points. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     if computed.size == 1:
@@ -124,7 +124,7 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     )
 
 
-def _subcritical_lines(view: View) -> Iterator[str]:
+def _subcritical_lines(view: ResultView) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
     first.
     """
@@ -154,7 +154,7 @@ def _count_text(signs: np.ndarray) -> str:
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
-def _searched_range_line(view: View, computed: np.ndarray) -> str:
+def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points. computed: mask of
     the computed points.
     """

@@ -5,7 +5,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.detached_branches import DETACHED_ROW
 from ...wording import count_of_total
 from .number_texts import axis_values_text
@@ -15,7 +15,7 @@ MAX_ROW_DISTANCE = 0.01
 the row, divided by the length of the row."""
 
 
-def detached_branch_lines(view: View, row: str) -> list[str]:
+def detached_branch_lines(view: ResultView, row: str) -> list[str]:
     """List with a line about the rows with cycles on detached branches; empty if there are none. row:
     parameter that is constant on a row."""
     if DETACHED_ROW not in view.variables:
@@ -29,7 +29,9 @@ def detached_branch_lines(view: View, row: str) -> list[str]:
     ]
 
 
-def rows_without_cycles_of_curve(view: View, line: str, row: str, indices: NDArray[np.intp]) -> list[str]:
+def rows_without_cycles_of_curve(
+    view: ResultView, line: str, row: str, indices: NDArray[np.intp]
+) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
     has this special point. line: parameter that varies along a row. row: parameter that is constant on a row.
     indices: indices of the points of the curve, (points,).

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
@@ -45,7 +45,7 @@ END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
 
-def curve_lines(view: View, line: str, row: str) -> list[str]:
+def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
     cycles. line: parameter that varies along a row. row: parameter that is constant on a row.
     """
@@ -60,7 +60,7 @@ def curve_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
+def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line:
     parameter that varies along a row. row: parameter that is constant on a row.
     """
@@ -85,7 +85,7 @@ def cycle_curve_lines(view: View, line: str, row: str) -> list[str]:
     return lines + detached_branch_lines(view, row)
 
 
-def _extremum_clause(view: View, line: str, row: str, points: NDArray[np.intp]) -> str:
+def _extremum_clause(view: ResultView, line: str, row: str, points: NDArray[np.intp]) -> str:
     """Clause on an extremum of the row parameter near which a curve ends; empty for all other ends. points:
     indices of the points of the curve, from this end on, (n,).
 
@@ -102,7 +102,7 @@ def _extremum_clause(view: View, line: str, row: str, points: NDArray[np.intp]) 
     return f"; {row} is almost extremal there" if slope < MAX_SLOPE_AT_EXTREMUM else ""
 
 
-def curve_count_lines(view: View, line: str) -> list[str]:
+def curve_count_lines(view: ResultView, line: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
     along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
     v = view.variables
@@ -126,7 +126,7 @@ def curve_count_lines(view: View, line: str) -> list[str]:
     return lines
 
 
-def incomplete_curve_lines(view: View, line: str, row: str) -> list[str]:
+def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
     list was full. line: parameter that varies along a row. row: parameter that is constant on a row.
     """
@@ -151,7 +151,7 @@ def _on_no_curve_clause(count: int, noun: str) -> str:
     )
 
 
-def fold_lines(view: View, line: str, row: str) -> list[str]:
+def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
     line: parameter that varies along a row. row: parameter that is constant on a row.
     """
@@ -169,7 +169,7 @@ def fold_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def _position_text(view: View, prefix: str, i: int, names: tuple[str, str]) -> str:
+def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
     variables, "fold" or "bautin". names: parameters.
     """
@@ -180,7 +180,7 @@ def _position_text(view: View, prefix: str, i: int, names: tuple[str, str]) -> s
     )
 
 
-def criticality_lines(view: View) -> list[str]:
+def criticality_lines(view: ResultView) -> list[str]:
     """List with a line on gamma1 and on the numbers of points of the Hopf curves by criticality, including
     undecided and unknown."""
     v = view.variables
@@ -199,7 +199,7 @@ def criticality_lines(view: View) -> list[str]:
     ]
 
 
-def bautin_lines(view: View, line: str, row: str) -> list[str]:
+def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
     line: parameter that varies along a row. row: parameter that is constant on a row.
     """
@@ -214,7 +214,7 @@ def bautin_lines(view: View, line: str, row: str) -> list[str]:
     return lines
 
 
-def bautin_curve_lines(view: View) -> list[str]:
+def bautin_curve_lines(view: ResultView) -> list[str]:
     """Lines about curves of generalised Hopf points along a third parameter, with the reasons for their
     ends."""
     v = view.variables

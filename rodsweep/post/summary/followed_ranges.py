@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import count_of_total
 from ..branch_curves import branch_ends, followed_parameter
 from ..crushing import uncrushed_ranges
@@ -16,20 +16,19 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: View, is_computed: np.ndarray, parameter: str, prefix: str) -> str:
-    """Sentence on the range in which branches are followed where they may enter the range of the file, and on
-    the branches that are missed. is_computed: mask of the computed points, (...,). parameter:
-    parameter along which branches are followed. prefix: first part of the names of the two variables."""
-    places = [view.variables[f"{prefix}{end}"][is_computed] for end in ("from", "to")]
-    if not all(np.isfinite(place).any() for place in places):
+def followed_range_text(view: ResultView, computed: np.ndarray, parameter: str, prefix: str) -> str:
+    """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
+    the cycles that are missed. computed: mask of the computed points, (...,). parameter: parameter along
+    which branches are followed. prefix: the variables are named `prefix` + "from" and `prefix` + "to"."""
+    limits = [view.variables[f"{prefix}{end}"][computed] for end in ("from", "to")]
+    if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
-    low, high = map(span_text, places)
-    limits = f"down to {parameter} = {low} and up to {high}"
-    followed = f"branches that may enter the range are followed {limits}"
+    low, high = map(span_text, limits)
+    followed = f"branches that may enter the range are followed down to {parameter} = {low} and up to {high}"
     return f"{followed}; {MISSED_CYCLES_TEXT}"
 
 
-def searched_range_line(view: View, computed: np.ndarray) -> str:
+def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
     computed: mask of the computed points, (...,).
     """

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.limit_cycle import CYCLE_STATUSES, SECOND_STATES
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
@@ -42,7 +42,7 @@ CYCLE_NUMBERS = (
 """(printed name, variable, unit) of the numbers printed for a single cycle."""
 
 
-def limit_cycle_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def limit_cycle_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of limit cycles. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     beats = computed & view.has_status("cycle")
@@ -75,7 +75,9 @@ def limit_cycle_summary(view: View, computed: np.ndarray) -> SummaryLines:
     return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
-def outcome_line(view: View, computed: np.ndarray, region: Callable[[View, np.ndarray], str]) -> str:
+def outcome_line(
+    view: ResultView, computed: np.ndarray, region: Callable[[ResultView, np.ndarray], str]
+) -> str:
     """Line on the number of points with each outcome, and on the region of parameters of these points.
 
     computed: mask of the computed points, of the shape of the points. region: function that describes the
@@ -99,7 +101,7 @@ def outcome_line(view: View, computed: np.ndarray, region: Callable[[View, np.nd
     return f"of {total}: {', '.join(counts)}"
 
 
-def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
+def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
     varied parameters if F is not varied.
     """
@@ -115,7 +117,7 @@ def _threshold_lines(view: View) -> tuple[list[str], list[str]]:
     return lines, arm_sentences
 
 
-def _proof_lines(view: View) -> list[str]:
+def _proof_lines(view: ResultView) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
     searched.
     """
@@ -149,7 +151,7 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     return TextTable(("", "value", "+-", "unit"), tuple(rows))
 
 
-def _second_state_lines(view: View, computed: np.ndarray) -> list[str]:
+def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
     is stable but the motion ended in no stable state. computed: mask of the computed points.
     """

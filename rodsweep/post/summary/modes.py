@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .number_texts import NONE_TEXT, span_text
@@ -19,7 +19,7 @@ from .spectrum import (
 from .summary_lines import SummaryLines
 
 
-def modes_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of modes. computed: mask of the computed points, of the shape of the points."""
     unknowns = unknowns_lines(view, computed)
     if computed.size == 1:
@@ -43,7 +43,7 @@ def modes_summary(view: View, computed: np.ndarray) -> SummaryLines:
     )
 
 
-def growth_lines(view: View, computed: np.ndarray) -> list[str]:
+def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
     fewer if no growth is stored. computed: mask of the computed points, of the shape of the points.
     """

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...model.parameters import LINEAR_PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS
@@ -36,7 +36,7 @@ GRID_RESOLUTION = 1e-8
 """Spacing, in the unit of the parameter, of a uniform grid with which the cost of the rows is compared."""
 
 
-def phase_diagram_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of a phase diagram. computed: mask of the computed rows, of the shape of the rows."""
     v = view.variables
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
@@ -72,7 +72,7 @@ def count_lines(classes: np.ndarray) -> list[str]:
     return [f"of {counted(classes.size, 'grid point')} on the rows: {', '.join(counts)}"]
 
 
-def cost_saving_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
+def cost_saving_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
@@ -100,7 +100,7 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
     return [f"behaviour of the straight rod, in % of the grid points: {texts}"]
 
 
-def row_start_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
+def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
     computed: mask of the computed rows, (...,). line: parameter along a row.
     """
@@ -112,7 +112,7 @@ def row_start_lines(view: View, computed: np.ndarray, line: str) -> list[str]:
     return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(texts)}"]
 
 
-def lines_about_rows(view: View, computed: np.ndarray, line: str, row: str) -> list[str]:
+def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
     undecided ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a
     row.
@@ -159,7 +159,7 @@ def lines_about_rows(view: View, computed: np.ndarray, line: str, row: str) -> l
     return lines
 
 
-def crossings_of_arms(view: View, computed: np.ndarray) -> list[str]:
+def crossings_of_arms(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the thresholds of the straight arms along F, by kind, in the arms' units; an empty list for
     a rod, and for rows along another parameter. computed: mask of the computed rows, of the shape of the
     rows."""

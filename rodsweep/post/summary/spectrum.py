@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.rods import estimates_counts, has_standard_rods
 from ...results.layouts.variables import ANGULAR_UNIT
 from ...wording import count_of_total, counted
@@ -24,7 +24,7 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 """Phrase that says whether the number of unstable modes is proved, for a file with one point."""
 
 
-def spectrum_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of spectra. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
         return SummaryLines(
@@ -36,7 +36,7 @@ def spectrum_summary(view: View, computed: np.ndarray) -> SummaryLines:
     return SummaryLines([stable_line(view, computed), *lines], reliability, details, arm_sentences)
 
 
-def stable_line(view: View, computed: np.ndarray) -> str:
+def stable_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
     computed: mask of the computed points, of the shape of the points.
     """
@@ -53,7 +53,7 @@ def stable_line(view: View, computed: np.ndarray) -> str:
     return f"straight rod, of {point_count}: {', '.join(counts)}"
 
 
-def leading_lines(view: View, computed: np.ndarray) -> list[str]:
+def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the leading eigenvalues; empty if none is known. computed: mask of the computed
     points, of the shape of the points."""
     v = view.variables
@@ -66,7 +66,7 @@ def leading_lines(view: View, computed: np.ndarray) -> list[str]:
     return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
 
 
-def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
+def threshold_lines(view: ResultView) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
     empty lists if F does not vary.
     """
@@ -75,7 +75,7 @@ def threshold_lines(view: View) -> tuple[list[str], list[str], list[str]]:
     return lines, [f"thresholds: {location_note}"] if lines else [], arm_sentences
 
 
-def eigenvalue_table(view: View) -> TextTable | None:
+def eigenvalue_table(view: ResultView) -> TextTable | None:
     """Table of the eigenvalues at the only point of a file, with errors; None if no eigenvalue is stored."""
     columns = (view.variables[name].ravel() for name in ("growth_rate", "frequency", "error_estimate"))
     rows = [
@@ -87,7 +87,7 @@ def eigenvalue_table(view: View) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def unstable_count_line(view: View) -> str:
+def unstable_count_line(view: ResultView) -> str:
     """Line on the number of unstable modes at the only point of a file."""
     v = view.variables
     unstable = int(v["unstable_count"].max())
@@ -97,7 +97,7 @@ def unstable_count_line(view: View) -> str:
     return f"unstable modes: {unstable}, {proof}" if unstable >= 0 else "unstable modes: not known"
 
 
-def error_lines(view: View, computed: np.ndarray) -> list[str]:
+def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
     computed points, of the shape of the points.
     """
@@ -112,7 +112,7 @@ def error_lines(view: View, computed: np.ndarray) -> list[str]:
     ]
 
 
-def unknowns_lines(view: View, computed: np.ndarray) -> list[str]:
+def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the number of unknowns per point, and on the number of points without a mesh.
     computed: mask of the computed points, of the shape of the points.
     """
@@ -128,7 +128,7 @@ def unknowns_lines(view: View, computed: np.ndarray) -> list[str]:
     return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{followed_clause}"]
 
 
-def stability_line(view: View, computed: np.ndarray) -> str:
+def stability_line(view: ResultView, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
     estimate; the number of points at which it is unknown. computed: mask of the computed points, of the

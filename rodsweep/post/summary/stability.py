@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...sweep.points.points import ParameterLine, lines_along
 from ...wording import count_of_total, counted
 from ..located_thresholds import LocatedThreshold, UnlocatedThreshold
@@ -30,7 +30,7 @@ Threshold = LocatedThreshold | UnlocatedThreshold
 
 
 def stability_lines(
-    view: View, name: str, thresholds_on: Callable[[ParameterLine], Sequence[Threshold]]
+    view: ResultView, name: str, thresholds_on: Callable[[ParameterLine], Sequence[Threshold]]
 ) -> tuple[list[str], list[str]]:
     """Returns (sentences, sentences in an arm's units), one for each kind of threshold along the parameter
     `name`. The second list is empty unless the parameter is F; both lists are empty if the parameter does not

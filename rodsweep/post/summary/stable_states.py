@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import STABLE_STATES
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
@@ -28,7 +28,7 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 """Stored numbers of special points that are no change of cycles beside the changes of the straight rod."""
 
 
-def state_lines(view: View, computed: np.ndarray, line: str, row: str) -> list[str]:
+def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter
     constant on a row.
@@ -70,7 +70,7 @@ def state_lines(view: View, computed: np.ndarray, line: str, row: str) -> list[s
     return lines
 
 
-def _both_between_grid_points(view: View, line: str) -> np.ndarray:
+def _both_between_grid_points(view: ResultView, line: str) -> np.ndarray:
     """Mask of rows, (...,), with two neighbouring grid points between which straight rod and cycle are both
     stable though not at these points: one stable state at each, and between them first the beginning of one
     and then the end of the other. line: parameter along a row.

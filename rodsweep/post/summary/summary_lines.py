@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.rods import has_standard_rods
 from ...wording import counted
 from .number_texts import axis_values_text
@@ -60,12 +60,12 @@ class Summary:
     """Table of numbers below the answer."""
 
 
-def varied_parameters_at_points(view: View) -> dict[str, np.ndarray]:
+def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
     """Parameters that differ between points of a file, by name: values at all points, (points,)."""
     return {name: column for name, column in view.point_columns.items() if len(np.unique(column)) > 1}
 
 
-def region_text(view: View, mask: np.ndarray) -> str:
+def region_text(view: ResultView, mask: np.ndarray) -> str:
     """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
     varies.
     """
@@ -75,7 +75,7 @@ def region_text(view: View, mask: np.ndarray) -> str:
     return ", ".join(range_texts)
 
 
-def point_text(view: View, index: int) -> str:
+def point_text(view: ResultView, index: int) -> str:
     """Varied parameters at the point with the given index, as text."""
     return ", ".join(
         f"{name} = {column[index]:.6g}" for name, column in varied_parameters_at_points(view).items()
@@ -96,7 +96,7 @@ def in_brackets(text: str) -> str:
     return f" ({text})" if text else ""
 
 
-def proof_clause(view: View) -> str:
+def proof_clause(view: ResultView) -> str:
     """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
     material, else "is confirmed by counts of unstable modes".
     """

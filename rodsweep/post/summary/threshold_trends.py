@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...wording import count_of_total
 from .summary_lines import in_brackets
 
@@ -38,7 +38,7 @@ def _trend(forces: np.ndarray) -> Trend:
     return Trend.rises if has_rise else Trend.falls if has_fall else Trend.constant
 
 
-def monotony_lines(view: View) -> list[str]:
+def monotony_lines(view: ResultView) -> list[str]:
     """Lines on whether the first thresholds rise or fall with each parameter that has more than two values
     (for gamma3: with 1/gamma3); empty for a list of points."""
     lines = []

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...model.parameters import PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.rods import has_standard_rods
 from ...results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...results.layouts.variables import ANGULAR_UNIT
@@ -47,7 +47,7 @@ def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
     return indices[1:]  # the first is the end of the first window
 
 
-def thresholds_summary(view: View, computed: np.ndarray) -> SummaryLines:
+def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of thresholds. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
         details = cost_lines(view, computed)
@@ -63,7 +63,7 @@ def thresholds_summary(view: View, computed: np.ndarray) -> SummaryLines:
     return SummaryLines(answer, reliability, [*monotony_lines(view), *cost_lines(view, computed)])
 
 
-def first_threshold_line(view: View, computed: np.ndarray, event: str) -> str:
+def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
     with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
     points.
@@ -92,7 +92,7 @@ def first_threshold_line(view: View, computed: np.ndarray, event: str) -> str:
     )
 
 
-def unknown_beyond_clause(view: View, F: float) -> str:
+def unknown_beyond_clause(view: ResultView, F: float) -> str:
     """Clause that says that the search for a single rod ended early at the force F; empty for a complete
     search.
     """
@@ -100,7 +100,7 @@ def unknown_beyond_clause(view: View, F: float) -> str:
     return clause if view.has_status(ENDED_EARLY).all() else ""
 
 
-def crossing_errors(view: View, F: np.ndarray, force_name: str) -> np.ndarray:
+def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndarray:
     """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
     not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
     force_name: variable with the forces of the list.
@@ -109,7 +109,7 @@ def crossing_errors(view: View, F: np.ndarray, force_name: str) -> np.ndarray:
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
 
-def crossing_lines(view: View) -> list[str]:
+def crossing_lines(view: ResultView) -> list[str]:
     """Lines about the first thresholds and the number of crossings of the only rod in a file, and the meaning
     of the kinds of crossings."""
     v = view.point_values(0)
@@ -130,7 +130,7 @@ def crossing_lines(view: View) -> list[str]:
     return [f"{none} up to {end}"]
 
 
-def crossing_table(view: View) -> TextTable | None:
+def crossing_table(view: ResultView) -> TextTable | None:
     """Table of the crossings of the only rod in a file; None if there is no crossing."""
     v = view.point_values(0)
     rows = []
@@ -152,7 +152,7 @@ def crossing_table(view: View) -> TextTable | None:
     return TextTable(headings, tuple(rows)) if rows else None
 
 
-def completeness_lines(view: View) -> list[str]:
+def completeness_lines(view: ResultView) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
     the only rod in a file.
     """
@@ -183,7 +183,7 @@ def unstored_clause(count: int) -> str:
     return f"; {count} more {verb} not stored, raise the option crossings" if count > 0 else ""
 
 
-def search_lines(view: View, computed: np.ndarray, noun: str) -> list[str]:
+def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]:
     """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
     noun: noun for a point.
 
@@ -207,7 +207,7 @@ def search_lines(view: View, computed: np.ndarray, noun: str) -> list[str]:
     ]
 
 
-def cost_lines(view: View, computed: np.ndarray) -> list[str]:
+def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the cost of the searches. computed: mask of the computed points, of the shape of
     the points.
 

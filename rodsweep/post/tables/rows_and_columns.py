@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
 from .column import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
@@ -21,7 +21,7 @@ Rows = tuple[NDArray[np.int64], ...]
 list."""
 
 
-def item_rows(view: View, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
+def item_rows(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
     """Indices of all items of a list that are not missing. variables: variables of the list. is_sweep_wide:
     whether the list belongs to the whole file, not to single points."""
     points = 1 if is_sweep_wide else view.variables["status"].size
@@ -35,7 +35,9 @@ def item_rows(view: View, variables: Sequence[Variable], is_sweep_wide: bool) ->
     return np.nonzero(is_present)
 
 
-def point_columns(view: View, variables: Sequence[Variable], points: NDArray[np.int64]) -> Iterator[Column]:
+def point_columns(
+    view: ResultView, variables: Sequence[Variable], points: NDArray[np.int64]
+) -> Iterator[Column]:
     """Yields the columns of points: parameters, quantities of an arm, then the variables `variables`. points:
     index of the point of each row, (rows,).
     """
@@ -54,7 +56,7 @@ def point_columns(view: View, variables: Sequence[Variable], points: NDArray[np.
 
 
 def list_columns(
-    view: View, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
+    view: ResultView, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
 ) -> Iterator[Column]:
     """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
     is_sweep_wide: whether the list belongs to the whole file, not to single points.
@@ -78,7 +80,10 @@ def list_columns(
 
 
 def si_columns(
-    view: View, variables: Sequence[Variable], columns: Sequence[Column], points: NDArray[np.int64] | None
+    view: ResultView,
+    variables: Sequence[Variable],
+    columns: Sequence[Column],
+    points: NDArray[np.int64] | None,
 ) -> Iterator[Column]:
     """Yields columns in SI units for the `variables` of a list (such as the crossings) that the file stores
     only in dimensionless form; nothing for a rod.
@@ -107,7 +112,7 @@ def si_columns(
             yield replace(column_of(si_values, values), absent=column.absent)
 
 
-def line_columns(view: View, rows: Rows) -> Iterator[Column]:
+def line_columns(view: ResultView, rows: Rows) -> Iterator[Column]:
     """Yields columns of the quantities of an arm that vary along a row of a diagram, such as the pressure if
     F varies. rows: indices of the grid points.
     """
@@ -122,19 +127,19 @@ def quantity_column(name: str, values: NDArray) -> Column:
     return replace(column, flag_meanings=dict(enumerate(DRAG_NAMES))) if name == "drag" else column
 
 
-def _is_of_points(view: View, variable: Variable) -> bool:
+def _is_of_points(view: ResultView, variable: Variable) -> bool:
     """Whether a variable of a list is stored for each point. The declaration of such a variable omits the
     dimensions of the points.
     """
     return variable.extra[0] not in ("point", *view.parameters)
 
 
-def _axis_indices(view: View, parameter: str) -> NDArray[np.int64]:
+def _axis_indices(view: ResultView, parameter: str) -> NDArray[np.int64]:
     """Index of each point along the axis of `parameter`, (points,)."""
     return np.searchsorted(view.parameter_values[parameter], view.point_columns[parameter])
 
 
-def quantities_at_points(view: View) -> dict[str, NDArray]:
+def quantities_at_points(view: ResultView) -> dict[str, NDArray]:
     """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
     a diagram.
     """

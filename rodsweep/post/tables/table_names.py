@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ...config.document.refusals import unknown_key_hint
 from ...errors import InputError
 from ...model.parameters import PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts import layout_of, sweep_wide_variables
 from ...results.layouts.variables import Variable
 
@@ -80,7 +80,7 @@ class TableContents:
         return self.lists[table][0].extra if table in self.lists else ()
 
 
-def table_contents_of(view: View) -> TableContents:
+def table_contents_of(view: ResultView) -> TableContents:
     """Names and variables of the tables of a result."""
     config = view.config
     point_variables: list[Variable] = []
@@ -111,7 +111,9 @@ def table_name_of(dimensions: tuple[str, ...]) -> str:
     return GRID if dimensions[0] in PARAMETERS else TABLE_NAMES[dimensions]
 
 
-def chosen_table(view: View, contents: TableContents, table: str | None, columns: tuple[str, ...]) -> str:
+def chosen_table(
+    view: ResultView, contents: TableContents, table: str | None, columns: tuple[str, ...]
+) -> str:
     """Name of the table that the user requests: `table` if given, else the list that has the columns
     `columns`, else POINTS if only columns of points are named, else the default table of the task. Raises
     InputError for an unknown name, and for columns of two tables."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...model.arm.quantities import LOADS
 from ...model.parameters import PARAMETERS
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ..branch_curves import followed_parameter
 from . import table_names
 from .column import Column
@@ -38,7 +38,7 @@ class Table:
 class Tables:
     """All tables of the result `view`; a table is made when it is requested."""
 
-    view: View
+    view: ResultView
 
     def __post_init__(self) -> None:
         """Replaces a grid over an arm's quantities by the list of its points."""
@@ -113,7 +113,7 @@ class Tables:
         return points, merged_columns(of_cycles, special_columns, cycle_indices, at_special, parameter)
 
 
-def merged_rows(view: View, cycles: Rows, special_points: Rows) -> tuple[NDArray, NDArray, NDArray]:
+def merged_rows(view: ResultView, cycles: Rows, special_points: Rows) -> tuple[NDArray, NDArray, NDArray]:
     """Returns (points, of_cycle, of_special), (rows,) each, for the rows of the table `branches` in order.
 
     points: index of the point. of_cycle, of_special: row in `cycles` and in `special_points`; -1 if the row
@@ -172,7 +172,7 @@ def _special_point_variable(cycle_variable: str, parameter: str) -> str:
     return f"special_{cycle_variable}"
 
 
-def _values_at_items(view: View, name: str, count: int, rows: Rows) -> NDArray:
+def _values_at_items(view: ResultView, name: str, count: int, rows: Rows) -> NDArray:
     """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
     of the items.
     """

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...sweep.points.chains import Chains
+from ...sweep.points.groups import PointGroups
 from ...sweep.points.points import Points
-from ...sweep.points.stretches import Stretches
 from ..layouts.variables import (
     MISSING_STATUS,
     FilledVariable,
@@ -51,8 +51,8 @@ class FilePlan:
     the points."""
     chains: Chains | None = None
     """Chains of points; None if no point starts from the state of another point."""
-    stretches: Stretches | None = None
-    """Stretches of points that are solved together; None if no points are solved together."""
+    groups: PointGroups | None = None
+    """Groups of points that are solved together; None if no points are solved together."""
     variables_from_points: Callable[[Mapping[str, Any]], tuple[FilledVariable, ...]] = lambda values: ()
     """Returns variables computed from the variables of all points; called when no point is missing."""
 

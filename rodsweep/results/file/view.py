@@ -55,7 +55,7 @@ class FileVariables(Mapping[str, np.ndarray]):
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class ResultView:
     """Contents of a result file and its journals. path: the file. attributes: its attributes. variables: its
     variables as NumPy arrays, by name.
     """
@@ -111,7 +111,7 @@ class View:
         return load_kind_of(self.config.get("parameters", {}).get("arm") or {})
 
     @property
-    def as_list(self) -> "View":
+    def as_list(self) -> "ResultView":
         """This view with a grid over an arm's quantities turned into a list of points; for all other points,
         this view unchanged.
         """
@@ -179,7 +179,7 @@ def status_sentences_in(attributes: Mapping[str, Any]) -> dict[str, str]:
     return dict(line.split(": ", 1) for line in lines if ": " in line)
 
 
-def read_view(path: Path) -> View:
+def read_view(path: Path) -> ResultView:
     """View of the result file at `path`, which stays open, with journalled points.
 
     Raises InputError if the file is no result.
@@ -187,7 +187,7 @@ def read_view(path: Path) -> View:
     return read_file_and_journals(path, lambda: _view(path))
 
 
-def _view(path: Path) -> View:
+def _view(path: Path) -> ResultView:
     """View from reading the file and its journals once; see `read_view`."""
     refuse_absent(path)
     # Opened only once, because a run may replace the file at any instant.
@@ -202,4 +202,6 @@ def _view(path: Path) -> View:
         units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
     layout = header.layout
     attributes = header.attributes | journalled_reasons(header)
-    return View(path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units)
+    return ResultView(
+        path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units
+    )

@@ -1,7 +1,7 @@
 """Journals: append-only files next to the result file, one per rank, to which finished points are written at
 once.
 
-The records of a point, or of a stretch of points, are written by a single call. A kill at any instant
+The records of a point, or of a group of points, are written by a single call. A kill at any instant
 therefore loses only the points in progress. Every record has a checksum, which reveals an incomplete record.
 Reasons why points failed are written by the same call, as text in records with a negative index.
 """

@@ -12,7 +12,7 @@ from numba.extending import get_cython_function_address
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 
 _ADDRESS = types.intp
 binding.add_symbol("rodsweep_dgeev", get_cython_function_address("scipy.linalg.cython_lapack", "dgeev"))
@@ -21,7 +21,7 @@ _dgeev = types.ExternalFunction("rodsweep_dgeev", typing.signature(types.void, *
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SmallEigenvalueSettings(CompiledSettings):
+class SmallEigenvalueSettings(KernelConstants):
     """Size of the work array of LAPACK's dgeev."""
 
     work_array_ratio: int = 12

@@ -19,7 +19,7 @@ from ..cycle.accuracy.refinement import (
     cycle_with_calibrated_errors,
     newton_tolerance,
 )
-from ..cycle.along_parameter import interpolated_change
+from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
 from ..orbit.orbit import Orbit

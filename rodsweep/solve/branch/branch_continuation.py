@@ -114,7 +114,9 @@ def _branch_progress(curve: BranchCurve, start: BranchCycle, limits: BranchLimit
     value = PARAMETERS[name].value(start.parameter_coordinate)
     end_value = PARAMETERS[name].value(end_coordinate)
     text = f"{name} = {value:.5g} on the way to {end_value:.5g}, {counted(len(curve.points), 'cycle')}"
-    start_value = curve.special_points[0].at if curve.special_points else curve.points[0].at
+    start_value = (
+        curve.special_points[0].parameter_value if curve.special_points else curve.points[0].parameter_value
+    )
     return SolvePosition(
         text,
         fraction_done(PARAMETERS[name].coordinate(start_value), start.parameter_coordinate, end_coordinate),
@@ -184,7 +186,7 @@ def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint
     """The special point for the end of a branch at its last cycle `point`, at an end of the range. reason:
     reason for this end of the range."""
     special = branch_end_point(point, reason)
-    return replace(special, error=BRANCH_END_SETTINGS.range_end_error * abs(special.at))
+    return replace(special, error=BRANCH_END_SETTINGS.range_end_error * abs(special.parameter_value))
 
 
 def _add_special_points(

@@ -19,10 +19,11 @@ from .symmetry_breaking import SymmetryBreaking
 class BranchPoint:
     """Stored quantities of one cycle of a branch."""
 
-    at: float
+    parameter_value: float
     """Value of the continuation parameter."""
-    at_error: float
-    """Relative difference of `at` from the parameter value of the exact cycle with the same deflection."""
+    parameter_value_error: float
+    """Relative difference of `parameter_value` from the parameter value of the exact cycle with the same
+    deflection."""
     measures: CycleMeasures
     errors: CycleErrors
     """Errors relative to the exact cycle at the same value of the parameter."""
@@ -39,8 +40,8 @@ class BranchPoint:
         cycle = point.cycle
         least, most = unstable_count_bounds(point)
         return cls(
-            at=getattr(point.orbit.form.rod, point.scale.parameter_name),
-            at_error=point.calibration.parameter_error(accuracy),
+            parameter_value=getattr(point.orbit.form.rod, point.scale.parameter_name),
+            parameter_value_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
             multiplier=cycle.largest_multiplier,

@@ -10,7 +10,7 @@ from ...determinant.exponents import EXPONENT_SETTINGS
 from ..cycle.accuracy.calibration import Calibration, calibration_of
 from ..cycle.accuracy.cycle_errors import MULTIPLIER_INDEX
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
-from ..cycle.along_parameter import interpolated_change
+from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.measures import CyclePath
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
 from ..orbit.orbit import Orbit

@@ -22,7 +22,7 @@ def branch_end_point(point: BranchCycle, reason: BranchEndReason, message: str =
     value = getattr(point.orbit.form.rod, point.scale.parameter_name)
     return SpecialPoint(
         kind=SpecialKind.end,
-        at=value,
+        parameter_value=value,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         error=nan,
@@ -80,7 +80,7 @@ class BranchRecord:
         special = end.special_point
         last = curve.points[-1]
         if np.isnan(special.error):
-            special = replace(special, error=last.at_error * abs(special.at))
+            special = replace(special, error=last.parameter_value_error * abs(special.parameter_value))
         if np.isnan(special.period_error):  # the end is the last cycle
             errors = last.errors
             special = replace(

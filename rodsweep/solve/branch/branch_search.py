@@ -96,7 +96,7 @@ class BranchSearch:
         for start in starts:
             if lies_on_any(start, self.curves):
                 continue
-            place = f"{_WORDS[start.kind]} at {self.name} = {start.at:.9g}"
+            place = f"{_WORDS[start.kind]} at {self.name} = {start.parameter_value:.9g}"
             with solve_part(f"branch {len(self.curves) + 1}, through the {place}"):
                 try:
                     self._follow_detached(start)
@@ -149,7 +149,7 @@ class BranchSearch:
         breakings = symmetry_breakings_in([curve.special_points for curve in self.curves])
         limits = replace(self._limits_left(), breakings=breakings)
         if limits.max_cycles < 1:
-            raise Unsolvable("the branches of the rod have the maximum number of cycles")
+            raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
         curve = follow_detached_branch(start, self.name, limits)
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
         inner = (point for point in curve.special_points if point.kind != SpecialKind.end)

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 from functools import cache
 from math import nan
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
-from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .branch_curve import BranchCurve
@@ -102,7 +102,7 @@ def _solve_branches_or_raise(
     if not low < high:
         reason = f"the force crushes the rod everywhere in the range of {request.along}"
         return BranchesOfRod(status=BranchStatus.ok, message=reason, proved=True)
-    path = Path(rod.with_values(**{request.along: low}), request.along)
+    path = ParameterPath(rod.with_values(**{request.along: low}), request.along)
     crossings = find_axis_crossings(path, low, high, request.certify)
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
@@ -137,7 +137,7 @@ def _end_reason(is_crushed: bool) -> BranchEndReason:
 
 
 def _hopf_branch_starts(
-    path: Path, crossings: ThresholdSearchResult, keeps_omega: bool, unit: float
+    path: ParameterPath, crossings: ThresholdSearchResult, keeps_omega: bool, unit: float
 ) -> tuple[list[HopfBranchStart], list[str]]:
     """(Hopf points with normal form, messages on Hopf points without). keeps_omega, unit: as in
     `hopf_branch_start`."""
@@ -159,7 +159,7 @@ def _status_and_message(
     and all messages. crossings: result of the search for Hopf points. curves: the branches. failures:
     messages on Hopf points without a normal form, and on known special points without a branch."""
     messages = [
-        f"branch {number}: {special.message} at {request.along} = {special.at:.9g}"
+        f"branch {number}: {special.message} at {request.along} = {special.parameter_value:.9g}"
         for number, curve in enumerate(curves, 1)
         for special in curve.special_points
         if special.message
@@ -167,7 +167,7 @@ def _status_and_message(
     count = sum(len(curve.special_points) for curve in curves)
     special = [point for curve in curves for point in curve.special_points]
     tolerance = max(request.accuracy, SPECIAL_POINT_SETTINGS.accuracy)
-    inaccurate = any(point.error > tolerance * abs(point.at) for point in special)
+    inaccurate = any(point.error > tolerance * abs(point.parameter_value) for point in special)
     if any(not curve.unit_circle_crossings_explained for curve in curves):
         messages.append("multipliers cross the unit circle where no special point was found")
     verdicts = {

@@ -65,8 +65,8 @@ def solve_coexistence(
     """Stable states along one row of a phase diagram; a failure becomes a status, never an exception. At F =
     0 there is no cycle.
 
-    max_special_points: maximum number of stored special points. workspace, starts: memory of Newton's
-    matrices, and special points of further branches, as in `solve_branches`.
+    max_special_points: maximum number of stored special points. workspace: memory of Newton's
+    matrices. starts: special points from which further branches are followed.
     """
     row = solve_row(rod, request)
     start = _first_searched_value(row, request)
@@ -99,7 +99,7 @@ def row_branches(
 ) -> BranchesOfRod:
     """All branches of cycles that start at Hopf points of a row, and those through the special points
     `starts`. max_special_points: maximum number of stored special points. workspace: memory of Newton's
-    matrices, as in `solve_branches`."""
+    matrices."""
     start = float(request.values[0])
     if request.parameter_name == "F" and start < 0:
         start = _first_searched_value(solve_row(rod, request), request)
@@ -208,12 +208,12 @@ def stability_intervals(curve: BranchCurve) -> list[StabilityInterval]:
             stable = 1
         elif signs and 0 not in signs:
             stable = 0
-        low, high = sorted((first, second), key=lambda point: point.at)
+        low, high = sorted((first, second), key=lambda point: point.parameter_value)
         inner_interval = (
-            low.at + _end_error_sign(low) * low.error,
-            high.at - _end_error_sign(high) * high.error,
+            low.parameter_value + _end_error_sign(low) * low.error,
+            high.parameter_value - _end_error_sign(high) * high.error,
         )
-        outer_interval = low.at - low.error, high.at + high.error
+        outer_interval = low.parameter_value - low.error, high.parameter_value + high.error
         intervals.append(StabilityInterval(inner_interval, outer_interval, stable))
     return intervals
 
@@ -227,8 +227,8 @@ def _end_error_sign(point: SpecialPoint) -> int:
 def stable_states(rod_classes: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
     """`StableStates` at each parameter value, (values,).
 
-    rod_classes: `RodClass` of the straight rod at each parameter value, (values,). cycles: existence of a
-    stable cycle as in `stable_cycles_at`, (values,).
+    rod_classes: `RodClass` of the straight rod at each parameter value, (values,). cycles: 1 if a stable
+    cycle exists at the parameter value, 0 if none exists, -1 if undecided, (values,).
     """
     straight = (rod_classes == RodClass.monotone) | (rod_classes == RodClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)

@@ -12,11 +12,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from math import isnan
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...solve_progress import solve_part
-from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
@@ -34,9 +34,9 @@ from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_b
 class BeyondRangeSettings:
     """Settings for the continuation of branches beyond the range."""
 
-    relative_reach: float = 0.5
+    relative_extent: float = 0.5
     """Branches are followed up to (1 + this number) times the largest coordinate of the range and down to its
-    smallest coordinate divided by (1 + this number); along F down to 0, as there is no cycle without
+    smallest coordinate divided by (1 + this number); along F down to 0, because there is no cycle without
     force."""
     max_cycles: int = 200
     """Maximum number of cycles on all branches beyond one end of the range."""
@@ -52,15 +52,17 @@ BEYOND_RANGE_SETTINGS = BeyondRangeSettings()
 
 @dataclass(slots=True, eq=False)
 class RegionBeyond:
-    """The region beyond the end of the range with the given index: 0 below the smallest coordinate, 1 above
-    the largest. path: path of the continuation parameter. range_limits: limits of the branches within the
-    range. limits: limits of the branches in the region; their range is the region."""
+    """The region beyond one end of the range of the continuation parameter.
 
-    path: Path
+    path: all rods that differ only in this parameter. index: 0 below the smallest coordinate of the range, 1
+    above the largest. range_limits: limits of the branches within the range. limits: limits of the branches
+    in the region; their range is the region."""
+
+    path: ParameterPath
     index: int
     range_limits: BranchLimits
     limits: BranchLimits
-    work_left: float = field(init=False)
+    remaining_work: float = field(init=False)
     """Work that may still be done in the region, in multiplications."""
     followed_to: float = field(init=False)
     """Coordinate in the region up to which branches are followed: a branch that enters the range but was not
@@ -71,8 +73,8 @@ class RegionBeyond:
     def __post_init__(self) -> None:
         self.followed_to = self.limits.coordinate_range[self.index]
         settings = BEYOND_RANGE_SETTINGS
-        within = settings.work_ratio * self.limits.workspace.work
-        self.work_left = max(within, WORK_UNIT * settings.min_work_limit)
+        work_limit = settings.work_ratio * self.limits.workspace.work
+        self.remaining_work = max(work_limit, WORK_UNIT * settings.min_work_limit)
         self._add_hopf_points()
 
     @property
@@ -86,10 +88,10 @@ class RegionBeyond:
         self.followed_to = farther(self.range_end, nearer(self.followed_to, coordinate))
 
     def entry_after(self, passage: RangePassage) -> RangePassage | None:
-        """The place where a branch that leaves the range at `passage` enters it again; None if it ends
-        before, leaves the region at its other end, or is not followed further."""
-        least, most = unstable_count_bounds(passage.cycle)
-        if not least <= 1 <= most:
+        """The place where a branch that leaves the range at `passage` enters it again; None if the branch
+        ends, leaves the region at its other end, or cannot come back stable."""
+        min_count, max_count = unstable_count_bounds(passage.cycle)
+        if not min_count <= 1 <= max_count:
             return None
         with solve_part(f"a branch beyond {self.path.text_at(self.range_end)}"), self._limited_work():
             start = self._with_step_into_region(passage)
@@ -98,21 +100,21 @@ class RegionBeyond:
         return None
 
     def entries_from_hopf_points(self) -> Iterator[RangePassage]:
-        """Yields the places where branches from the Hopf points of the region enter the range. A Hopf point
-        at which a followed branch ends is left out."""
+        """Yields the places where branches from the Hopf points of the region enter the range. Hopf points
+        at which a followed branch ends are omitted."""
         for number, hopf in enumerate(self.limits.hopfs):
             if number in self._ended_hopfs:
                 continue
-            where = self.path.text_at(hopf.parameter_coordinate)
+            place = self.path.text_at(hopf.parameter_coordinate)
             entry = None
-            with solve_part(f"branch from the Hopf point at {where}"), self._limited_work():
+            with solve_part(f"branch from the Hopf point at {place}"), self._limited_work():
                 entry = self._entry_from_hopf_point(number, hopf)
             if entry is not None:
                 yield entry
 
     def _with_step_into_region(self, passage: RangePassage) -> BranchCycle | None:
-        """The cycle of `passage` with a step so short that the next cycle lies in the region, before a fold
-        there; None, and the region ends here, if no step is so short."""
+        """The cycle of `passage`, with a next step that ends in the region although a fold may follow
+        closely. Returns None and closes the region if even the shortest step does not end there."""
         start = passage.cycle
         length = start.next_arc_length
         while length >= ARC_STEP_CONTROL.min_length:
@@ -147,11 +149,11 @@ class RegionBeyond:
             return self._entry(BranchCurve(start_hopf=number), first, accuracy)
         # The Hopf point is so close to the range that the first cycle lies within the range.
         limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
-        there = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
-        if there is None or there.index != self.index:
+        passage = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
+        if passage is None or passage.index != self.index:
             self.stop_at(hopf.parameter_coordinate)
             return None
-        return replace(there, cycle=turned_back(there.cycle))
+        return replace(passage, cycle=turned_back(passage.cycle))
 
     def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
         """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
@@ -161,39 +163,38 @@ class RegionBeyond:
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)
         if not curve.complete:
-            coordinates = [self.path.coordinate(point.at) for point in curve.points]
+            coordinates = [self.path.coordinate(point.parameter_value) for point in curve.points]
             self.stop_at(max(coordinates) if self.index == 1 else min(coordinates))
-        there = curve.end_passage
-        return None if there is None or there.index == self.index else replace(there, index=self.index)
+        passage = curve.end_passage
+        return None if passage is None or passage.index == self.index else replace(passage, index=self.index)
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:
-        """Counts the work of the `with` block, and limits it to `work_left`. If the block fails, it ends, and
-        the region is not searched further."""
+        """Counts the work of the `with` block, and limits it to `remaining_work`. A failure
+        in the block is caught, and closes the region."""
         workspace = self.limits.workspace
-        before = workspace.work
+        initial_work = workspace.work
         try:
-            with workspace.further_limit(self.work_left):
+            with workspace.further_limit(self.remaining_work):
                 yield
         except FAILURES:
             self.stop_at(self.range_end)
         finally:
-            self.work_left -= workspace.work - before
+            self.remaining_work -= workspace.work - initial_work
 
     def _add_hopf_points(self) -> None:
         """Finds the Hopf points of the region and their normal forms."""
-        value = self.path.parameter.value
-        low, high = sorted(map(value, self.limits.coordinate_range))
+        low, high = sorted(map(self.path.parameter.value, self.limits.coordinate_range))
         try:
-            found = find_axis_crossings(self.path, low, high, certify=False)
+            search = find_axis_crossings(self.path, low, high, certify=False)
         except FAILURES:
             self.stop_at(self.range_end)
             return
-        self._stop_where_search_is_incomplete(found)
+        self._stop_where_search_is_incomplete(search)
         hopfs = []
-        for crossing in found.thresholds:
-            known = (hopf.crossing for hopf in self.range_limits.hopfs)
-            if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in known):
+        for crossing in search.thresholds:
+            others = (hopf.crossing for hopf in self.range_limits.hopfs)  # the Hopf points within the range
+            if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in others):
                 continue
             try:
                 unit = self.limits.min_coordinate_unit
@@ -202,39 +203,38 @@ class RegionBeyond:
                 self.stop_at(self.path.coordinate(crossing.value))
         self.limits = replace(self.limits, hopfs=hopfs)
 
-    def _stop_where_search_is_incomplete(self, search_result: ThresholdSearchResult) -> None:
-        """Moves `followed_to` to the place beyond which `search_result` may lack Hopf points."""
-        if search_result.ended_early:
+    def _stop_where_search_is_incomplete(self, search: ThresholdSearchResult) -> None:
+        """Moves `followed_to` to the place beyond which `search` may lack Hopf points."""
+        if search.ended_early:
             # The search begins at the smallest coordinate.
-            reached = max(map(self.path.coordinate, search_result.searched_interval))
-            self.stop_at(reached if self.index == 1 else self.range_end)
-        if not isnan(search_result.open_range[0]):
-            gap = [self.path.coordinate(value) for value in search_result.open_range]
-            self.stop_at(min(gap) if self.index == 1 else max(gap))
+            end = max(map(self.path.coordinate, search.searched_interval))
+            self.stop_at(end if self.index == 1 else self.range_end)
+        if not isnan(search.open_range[0]):
+            unsearched = [self.path.coordinate(value) for value in search.open_range]
+            self.stop_at(min(unsearched) if self.index == 1 else max(unsearched))
 
 
-def regions_beyond(path: Path, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
+def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
     """The regions beyond the ends of the range of `limits`. margin: smallest relative distance from the
     crushing force."""
-    regions = (_region_beyond(path, index, limits, margin) for index in (0, 1))
+    regions = (_region(path, index, limits, margin) for index in (0, 1))
     return [region for region in regions if region is not None]
 
 
-def _region_beyond(path: Path, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
+def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
     """The region beyond the end with the given index of the range of `limits`; None if no branch leads on
     from there, because the force crushes the rod, the force is 0 or a pull, or the coordinate is 0. margin:
     smallest relative distance from the crushing force."""
     end = limits.coordinate_range[index]
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
-    factor = 1 + BEYOND_RANGE_SETTINGS.relative_reach
+    factor = 1 + BEYOND_RANGE_SETTINGS.relative_extent
     far = end * factor if index == 1 else end / factor * (path.name != "F")
-    value = path.parameter.value
-    least, largest = sorted((value(end), value(far)))
+    low, high = sorted(map(path.parameter.value, (end, far)))
     rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
-    low, high = uncrushed_interval(path.rod.build, rod, (path.name, least, largest), margin)
-    reached = [path.coordinate(low), path.coordinate(high)]
-    far = max(reached) if index == 1 else min(reached)
+    low, high = uncrushed_interval(path.rod.build, rod, (path.name, low, high), margin)
+    ends = [path.coordinate(low), path.coordinate(high)]
+    far = max(ends) if index == 1 else min(ends)
     # The unknowns of a branch cannot change within the branch.
     is_small = has_small_rotational_drag(path.rod_at(far))
     if not low < high or is_small and not limits.keeps_omega:

@@ -11,7 +11,9 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from ...determinant.parameter_path import Path  # for annotations only: the module imports solvers
+    from ...determinant.parameter_path import (
+        ParameterPath,  # for annotations only: the module imports solvers
+    )
 
 
 class ChangeKind(IntEnum):
@@ -61,7 +63,7 @@ class Threshold:
     frequency_error: float = math.nan
 
 
-def crossing_kind(path: "Path", grows_with_path_variable: bool) -> ChangeKind:
+def crossing_kind(path: "ParameterPath", grows_with_path_variable: bool) -> ChangeKind:
     """Kind of a crossing of the imaginary axis by a pair: hopf if the growth rate Re w increases with the
     parameter of `path`, otherwise hopf_reverse. grows_with_path_variable: whether Re w increases with the
     path variable p, which decreases as the parameter increases along a stiffness, p = 1/k."""

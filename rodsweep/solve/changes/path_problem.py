@@ -4,15 +4,15 @@ from abc import ABC, abstractmethod
 
 from ...determinant.certificate.first_boxes import path_intervals
 from ...determinant.certificate.winding_number import EigenvalueCount, count_right_of
-from ...determinant.parameter_path import Path, coefficients_at
-from ...determinant.roots.newton import LocatedZero, double_eigenvalue_newton, eigenvalue_newton
+from ...determinant.parameter_path import ParameterPath, coefficients_at
+from ...determinant.roots.newton import LocatedEigenvalue, double_eigenvalue_newton, eigenvalue_newton
 from ..spectrum.search import Spectrum, SpectrumRequest, solve_spectrum
 
 
 class PathProblem(ABC):
     """Eigenvalues of the straight rods along a path, as functions of the path variable p."""
 
-    def __init__(self, path: Path):
+    def __init__(self, path: ParameterPath):
         self.path = path
         self.solve_count = 0
         """Number of eigenvalue problems solved so far."""
@@ -37,7 +37,7 @@ class PathProblem(ABC):
         """Returns (eigenvalue w near `guess`, dw/dp, error of w) of the rod at p."""
 
     @abstractmethod
-    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         """The double real eigenvalue near w = x at a path variable within `expected_distance` of p; its path
         variable is nan if no double eigenvalue is found."""
 
@@ -68,7 +68,7 @@ class UniformPath(PathProblem):
         coefficients = coefficients_at(p, self.path.origin, self.path.direction)
         return eigenvalue_newton(guess, coefficients, self.path.direction)
 
-    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         return double_eigenvalue_newton(x, p, self.path.origin, self.path.direction, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:

@@ -4,13 +4,13 @@ import math
 from dataclasses import dataclass
 from functools import cache
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
 from ..point_outcome import outcome_or_failure
-from .along_path import ThresholdSearchResult, find_thresholds
 from .kinds import ChangeKind, Threshold
 from .search_range import end_below_crushing
 from .status import ThresholdStatus
+from .thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ def solve_thresholds(rod: Rod, request: ThresholdsRequest) -> Thresholds:
     end = end_below_crushing(rod, request.F_max)
 
     def search() -> Thresholds:
-        result = find_thresholds(Path(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
+        result = find_thresholds(ParameterPath(rod, "F"), 0.0, end, request.certify, request.max_thresholds)
         return thresholds_with_status(result, request.accuracy, request.certify, request.max_thresholds)
 
     return outcome_or_failure(search, lambda cause: empty_thresholds(ThresholdStatus.failed, math.nan, cause))
@@ -90,5 +90,5 @@ def warm_up() -> None:
 def filament_flutter_force() -> float:
     """Critical force Fc, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De
     Canio et al. 2017)."""
-    result = find_thresholds(Path(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
+    result = find_thresholds(ParameterPath(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
     return next(c.value for c in result.thresholds if c.kind == ChangeKind.hopf)

@@ -122,7 +122,7 @@ def _angle(cosine: float) -> float:
     return acos(min(1.0, max(-1.0, cosine)))
 
 
-class CurveStop(Enum):
+class StopReason(Enum):
     """Reason for the end of a curve."""
 
     zero_margin = "a margin is zero"
@@ -141,7 +141,7 @@ class Curve(Generic[Solution]):
     """
 
     solutions: list[Solution]
-    end_reason: CurveStop
+    end_reason: StopReason
     margin_index: int = -1
 
 
@@ -178,7 +178,7 @@ def follow_curve(
         try:
             result, length = advance(partial(problem.step, solutions), length, control)
         except FAILURES:
-            return Curve(solutions, CurveStop.no_further_solution)
+            return Curve(solutions, StopReason.no_further_solution)
         new_margins = problem.margins(result.solution)
         crossed_margin = first_crossed_margin(margins, new_margins)
         if crossed_margin >= 0:
@@ -186,19 +186,21 @@ def follow_curve(
                 last = problem.located_zero(solutions, result.solution, crossed_margin)
             except FAILURES:
                 if length / 2 < control.min_length:
-                    return Curve(solutions, CurveStop.no_further_solution)
+                    return Curve(solutions, StopReason.no_further_solution)
                 length /= 2
                 continue
             return Curve(
-                solutions if last is None else [*solutions, last], CurveStop.zero_margin, crossed_margin
+                solutions if last is None else [*solutions, last],
+                StopReason.zero_margin,
+                crossed_margin,
             )
         if problem.is_closed_by(solutions, result.solution):
             # `start` is appended again, so that the curve is closed exactly.
-            return Curve([*solutions, start], CurveStop.closed)
+            return Curve([*solutions, start], StopReason.closed)
         solutions.append(result.solution)
         margins = new_margins
         length = control.next_length(length, result, len(solutions))
-    return Curve(solutions, CurveStop.max_solutions)
+    return Curve(solutions, StopReason.max_solutions)
 
 
 def first_crossed_margin(margins_before: Array, margins_after: Array) -> int:

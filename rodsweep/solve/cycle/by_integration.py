@@ -122,7 +122,7 @@ class _IntegrationUntilSettled:
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
         row = tip_angle_row(self.beam)
         step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
-        distances = ReturnDistances(INTEGRATION_SETTINGS.return_noise_ratio * self.scheme.tolerance)
+        distances = ReturnDistances(INTEGRATION_SETTINGS.return_error_over_tolerance * self.scheme.tolerance)
         max_periods = self.request.most_periods
         while self.return_count < max_periods:
             report(lambda: SolvePosition(f"{self.return_count} of at most {max_periods} returns of the tip"))

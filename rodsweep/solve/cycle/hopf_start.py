@@ -11,7 +11,7 @@ from math import isfinite, isnan
 
 import numpy as np
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...discretization.elements.mesh import interpolation_matrix
 from ...discretization.stress.form import StressForm
 from ...discretization.stresses_at_jumps import interpolate_stress
@@ -26,7 +26,7 @@ from ..orbit.symmetry import REFLECTION
 from ..spectrum.candidates import CANDIDATE_SETTINGS
 from ..spectrum.problem import transverse_problem
 from ..unsolvable import Unsolvable
-from .along_parameter import orbit_in_steps, predictor_from
+from .cycles_along_parameter import orbit_in_steps, predictor_from
 from .hopf_start_settings import HOPF_START_SETTINGS, normal_form_accuracy
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import coarse_mesh_along_branch
@@ -74,7 +74,7 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
     Newton's method on the characteristic determinant, started by linear interpolation, finds a candidate. If
     Newton's method fails or another eigenvalue leads at the candidate, the interval is bisected.
     """
-    problem = path_problem(Path(rod, "F"))
+    problem = path_problem(ParameterPath(rod, "F"))
     (a, lower_w), (b, upper_w) = low, high
     while b - a > HOPF_START_SETTINGS.hopf_tolerance * b:
         fraction = lower_w.real / (lower_w.real - upper_w.real)
@@ -153,7 +153,7 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
     """
     if not (w.real > 0 and w.imag > 0):
         raise Unsolvable("the leading eigenvalues are not a growing complex pair")
-    slope = path_problem(Path(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
+    slope = path_problem(ParameterPath(form.rod, "F")).eigenvalue(w, form.rod.F)[1]
     rate = form.rod.F * slope.real
     if not w.real <= HOPF_START_SETTINGS.max_direct_force_distance * rate:
         raise Unsolvable(f"F = {form.rod.F:g} is too far from a Hopf point for the normal form")

@@ -20,11 +20,12 @@ class IntegrationSettings:
     settled_distance_ratio: float = 0.1
     """A motion has settled if its relative distance from the cycle is at most this fraction of the
     accuracy."""
-    return_noise_ratio: float = 10.0
+    return_error_over_tolerance: float = 10.0
     """Relative distance between two returns that integration errors alone may cause, divided by the local
     tolerance."""
-    tests_below_noise: int = 3
-    """Number of successive distances below this noise that show that the integration errors are smaller."""
+    tests_below_error: int = 3
+    """Number of successive distances below the distance that integration errors may cause, which show that
+    the integration errors are smaller."""
     difference_safety_factor: float = 2.0
     """Safety factor: error estimate divided by the difference between the results of two integrations."""
     max_error_ratio_for_limiting_rod: float = 0.5

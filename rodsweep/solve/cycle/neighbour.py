@@ -32,7 +32,7 @@ from .accuracy.refinement import (
     cycle_with_measured_errors,
     newton_tolerance,
 )
-from .along_parameter import (
+from .cycles_along_parameter import (
     CyclePredictor,
     orbit_in_steps,
     orbit_near_prediction,

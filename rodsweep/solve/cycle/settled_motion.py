@@ -50,34 +50,34 @@ class ReturnClock:
 class ReturnDistances:
     """Relative distances between the returns of a motion that approaches a cycle, at successive tests.
 
-    noise: distance that integration errors alone may cause. contraction_rate: upper estimate of the factor by
-    which the distance from the cycle changes in one period. last: distance at the last test; NaN before the
-    first test."""
+    integration_error: distance that integration errors alone may cause. contraction_rate: upper estimate of
+    the factor by which the distance from the cycle changes in one period. last: distance at the last test;
+    NaN before the first test."""
 
-    def __init__(self, noise: float) -> None:
-        self.noise = noise
+    def __init__(self, integration_error: float) -> None:
+        self.integration_error = integration_error
         self.contraction_rate = 0.0
         self.last = nan
-        self._last_above_noise = nan
-        self._below_noise: list[float] = []
+        self._last_above_error = nan
+        self._below_error: list[float] = []
 
     def record_test(self, distance: float, periods: float) -> None:
         """Records the distance at a test. periods: one period over the time between two tests."""
-        if self.last > self.noise:
-            # Below the noise the quotient of two distances is not the contraction rate.
-            self.contraction_rate = min(max(distance, self.noise) / self.last, 1.0) ** periods
+        if self.last > self.integration_error:
+            # Below the integration error the quotient of two distances is not the contraction rate.
+            self.contraction_rate = min(max(distance, self.integration_error) / self.last, 1.0) ** periods
         elif isnan(self.last):
-            self.contraction_rate = 0.0 if distance <= self.noise else 1.0
-        if distance > self.noise:
-            self._last_above_noise = distance
-            self._below_noise = []
+            self.contraction_rate = 0.0 if distance <= self.integration_error else 1.0
+        if distance > self.integration_error:
+            self._last_above_error = distance
+            self._below_error = []
         else:
-            self._below_noise.append(distance)
-        last_distances = self._below_noise[-INTEGRATION_SETTINGS.tests_below_noise :]
-        if len(last_distances) == INTEGRATION_SETTINGS.tests_below_noise and isfinite(self._last_above_noise):
-            # Distances that stay small are no coincidence, so the noise is smaller than assumed.
-            reduction = max(last_distances) / self._last_above_noise
-            rate = reduction ** (periods / len(self._below_noise))
+            self._below_error.append(distance)
+        last_distances = self._below_error[-INTEGRATION_SETTINGS.tests_below_error :]
+        if len(last_distances) == INTEGRATION_SETTINGS.tests_below_error and isfinite(self._last_above_error):
+            # Distances that stay small are no coincidence, so the integration_error is smaller than assumed.
+            reduction = max(last_distances) / self._last_above_error
+            rate = reduction ** (periods / len(self._below_error))
             self.contraction_rate = min(self.contraction_rate, rate)
         self.last = distance
 

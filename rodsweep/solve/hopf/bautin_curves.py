@@ -17,14 +17,14 @@ from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...determinant.stability_boundary import Boundary
 from ...model.rod import Rod
 from ...solve_progress import SolvePosition, report
-from ..continuation.curve import CurveStop, StepResult, follow_curve
+from ..continuation.curve import StepResult, StopReason, follow_curve
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfCurve
 from .bautin_settings import BAUTIN_SETTINGS, BAUTIN_STEP_CONTROL
 
 
-class BautinEnd(IntEnum):
+class BautinEndReason(IntEnum):
     """Reason why a curve ends. none: no end. range_end: end of the third parameter's range. plane_edge: end
     of another range. not_found: no further point. list_full: too many points. closed: at its first point."""
 
@@ -37,11 +37,11 @@ class BautinEnd(IntEnum):
 
 
 END_BY_STOP_REASON = {
-    CurveStop.closed: BautinEnd.closed,
-    CurveStop.no_further_solution: BautinEnd.not_found,
-    CurveStop.max_solutions: BautinEnd.list_full,
+    StopReason.closed: BautinEndReason.closed,
+    StopReason.no_further_solution: BautinEndReason.not_found,
+    StopReason.max_solutions: BautinEndReason.list_full,
 }
-"""`BautinEnd` for each `CurveStop` except `zero_margin`, which means an end of a parameter's range."""
+"""Bautin curve's end by `StopReason`, except `zero_margin`: an end of a parameter's range."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -60,7 +60,7 @@ class BautinCurve:
     """Points of a curve in order, and the reasons for its two ends."""
 
     points: tuple[BautinCurvePoint, ...]
-    end_reasons: tuple[BautinEnd, BautinEnd]
+    end_reasons: tuple[BautinEndReason, BautinEndReason]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +95,8 @@ class BautinProblem:
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
         plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
         boundary = Boundary(plane, 0.0)
-        # Without points of the curve: the search needs only Hopf points near a guess.
         accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
-        hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)
+        hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]
         point = self._zero_by_secants(hopf, start, boundary.tangent(start))
         point_values = np.empty(3)
@@ -189,10 +188,10 @@ class BautinProblem:
 def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve:
     """The curve of generalised Hopf points through `start`, followed in both directions."""
     start_point = _CurvePoint(problem.scaled_coordinates(start.values, start.frequency), start)
-    backward, first = _follow_in_direction(replace(problem, direction=-1.0), start_point)
-    if first is BautinEnd.closed:
+    backward, first = _half_curve(replace(problem, direction=-1.0), start_point)
+    if first is BautinEndReason.closed:
         return BautinCurve(tuple(point.point for point in backward), (first, first))
-    forward, last = _follow_in_direction(problem, start_point)
+    forward, last = _half_curve(problem, start_point)
     # Both lists begin with the start, which is taken once.
     return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, last))
 
@@ -214,20 +213,21 @@ def lies_on_curve(problem: BautinProblem, point: BautinCurvePoint, curve: Bautin
     return any(float(np.abs(v - other).max()) < BAUTIN_SETTINGS.same_point_distance for other in others)
 
 
-def _follow_in_direction(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEnd]:
+def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_CurvePoint], BautinEndReason]:
     """(points from `start` in the direction `problem.direction` of the third parameter, including points
     at its requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
-        return [start], BautinEnd.range_end
+        return [start], BautinEndReason.range_end
     curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, _report_point_count)
     points = curve.solutions[:1]
     for point, next_point in pairwise(curve.solutions):
         try:
             points += [*_requested_points(problem, point, next_point), next_point]
         except (*FAILURES, ValueError):
-            return points, BautinEnd.not_found
-    if curve.end_reason is CurveStop.zero_margin:
-        return points, BautinEnd.range_end if curve.margin_index // 2 == 2 else BautinEnd.plane_edge
+            return points, BautinEndReason.not_found
+    if curve.end_reason is StopReason.zero_margin:
+        is_range_end = curve.margin_index // 2 == 2
+        return points, BautinEndReason.range_end if is_range_end else BautinEndReason.plane_edge
     return points, END_BY_STOP_REASON[curve.end_reason]
 
 

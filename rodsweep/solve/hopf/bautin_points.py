@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...determinant.parameter_plane import Plane
 from ...determinant.stability_boundary import Boundary, BoundarySolution
 from ...solve_progress import SolvePosition, report
@@ -150,7 +150,7 @@ class HopfCurve:
         x, y, h = map(float, solution.v)
         rod = self.boundary.plane.rod_at(x, y)
         w = complex(0.0, math.exp(h))
-        slope = path_problem(Path(rod, "F")).eigenvalue(w, rod.F)[1]
+        slope = path_problem(ParameterPath(rod, "F")).eigenvalue(w, rod.F)[1]
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)

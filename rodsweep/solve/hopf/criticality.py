@@ -8,11 +8,11 @@ import math
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
-from ..changes.along_path import ThresholdSearchResult, find_axis_crossings
 from ..changes.kinds import Threshold
 from ..changes.search_range import end_below_crushing
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients
 from .status import CriticalityStatus
@@ -60,7 +60,7 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
 
     def search() -> Criticality:
         # Without gamma1 and the force: rods that differ only in these two share the search.
-        path = Path(replace(rod.without_nonlinear_parameters, F=0.0), "F")
+        path = ParameterPath(replace(rod.without_nonlinear_parameters, F=0.0), "F")
         hopf_points = _hopf_points(path, end, request.certify, request.max_hopf_points)
         coefficients = tuple(
             _coefficients(rod, hopf, request) for hopf in hopf_points.thresholds[: request.max_hopf_points]
@@ -84,7 +84,7 @@ def warm_up() -> None:
 
 
 @lru_cache(maxsize=HOPF_COEFFICIENT_SETTINGS.max_cached_searches)
-def _hopf_points(path: Path, end: float, certify: bool, max_crossings: int) -> ThresholdSearchResult:
+def _hopf_points(path: ParameterPath, end: float, certify: bool, max_crossings: int) -> ThresholdSearchResult:
     return find_axis_crossings(path, 0.0, end, certify, max_crossings)
 
 

@@ -11,7 +11,7 @@ before as the error estimate.
 import math
 from dataclasses import dataclass, replace
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...discretization.elements.elements import Elements
 from ...discretization.straight.elements import TRANSVERSE
 from ...discretization.straight.whole_matrices import straight_matrices
@@ -177,7 +177,7 @@ def _coefficients_with_errors(
 def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     """(dw/dF, |d^2w/dF^2|) of the root near w of the determinant D of `rod`."""
     step = HOPF_COEFFICIENT_SETTINGS.relative_force_step * abs(rod.F)
-    problem = path_problem(Path(rod, "F"))
+    problem = path_problem(ParameterPath(rod, "F"))
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, slope_before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
     return complex(slope), abs(slope - slope_before) / step

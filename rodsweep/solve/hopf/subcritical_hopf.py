@@ -7,10 +7,10 @@ state; mostly it approaches a stable cycle on the same branch beyond a fold.
 
 from dataclasses import dataclass, replace
 
-from ...determinant.parameter_path import Path
+from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
-from ..changes.along_path import find_axis_crossings
 from ..changes.search_range import end_below_crushing
+from ..changes.thresholds_along_path import find_axis_crossings
 from .hopf_coefficients import hopf_coefficients
 
 
@@ -56,7 +56,7 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     max_force = end_below_crushing(rod, rod.F * SUBCRITICAL_HOPF_SETTINGS.max_force_ratio)
     if not 0 < min_force < max_force:
         return None
-    crossings = find_axis_crossings(Path(rod, "F"), min_force, max_force, certify=False).thresholds
+    crossings = find_axis_crossings(ParameterPath(rod, "F"), min_force, max_force, certify=False).thresholds
     crossings_above = [crossing for crossing in crossings if crossing.value > rod.F]
     crossings_below = [crossing for crossing in crossings if crossing.value <= rod.F]
     nearest = crossings_above[:1] + crossings_below[-1:]

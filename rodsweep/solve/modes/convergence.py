@@ -113,5 +113,5 @@ def eigenvalue_separation(rod: Rod, w: complex) -> float:
         return distance_to_next_root(w, rod.coefficients)
     determinant = arm_determinant(rod)
     value = determinant.value(w)
-    D_ww = abs(second_derivative(w, value.S, determinant))
+    D_ww = abs(second_derivative(w, value.log_scale, determinant))
     return 2 * abs(value.D_w) / max(D_ww, ulp(0.0))

@@ -141,7 +141,8 @@ def null_vectors(A: NDArray, B: NDArray, w: complex) -> tuple[NDArray, NDArray]:
 
 def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
     """Null vector of a nearly singular matrix by inverse iteration, (unknowns,), with largest entry 1.
-    inverse: inverse of the matrix, (unknowns, unknowns). B: as in `null_vectors`.
+    inverse: inverse of the matrix, (unknowns, unknowns). B: diagonal matrix of the pencil
+    A - w B, (unknowns,).
 
     A larger growth in an iteration means a smaller residual of the result. At a double eigenvalue the inverse
     almost annihilates its last result, and the next iteration gives rounding errors: of the last two results,

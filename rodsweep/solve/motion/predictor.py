@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from .context import AT_BASE, CONTEXT_DTYPE, MAX_STAGE_POINTS, MAX_STAGES, OUTPUTS_OFFSET, states_of, times_of
 from .petsc_calls import context_of_ts, read_array, release_read, solution_of, time_of, time_step_of
@@ -22,7 +22,7 @@ from .time_scheme import EXTRAPOLATION_POINTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StagePredictorSettings(CompiledSettings):
+class StagePredictorSettings(KernelConstants):
     """Settings for the prediction of Runge-Kutta stages and for the state at which Newton's matrix is
     evaluated."""
 

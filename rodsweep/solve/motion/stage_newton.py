@@ -16,7 +16,7 @@ from numba import types
 from ...arrays import Array
 from ...discretization.stress.rates import write_rate
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.c_functions import INT, POINTER, c_function, doubles_at, integers_at, pointer, record_at
 from .context import (
     AT_BASE,
@@ -48,7 +48,7 @@ from .predictor import predict_stage, store_stage
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StageNewtonSettings(CompiledSettings):
+class StageNewtonSettings(KernelConstants):
     """Settings of Newton's method for a stage of a time step. The contraction is the ratio of successive
     Newton steps."""
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.compiled.compilation import compiled
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.c_functions import POINTER, c_function, doubles_at, integers_at, record_at
 from ..backend.petsc import PETSc
 from .context import CONTEXT_DTYPE, OUTPUTS_OFFSET
@@ -25,7 +25,7 @@ from .petsc_calls import (
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class StepRecordSettings(CompiledSettings):
+class StepRecordSettings(KernelConstants):
     """Settings for the memory in which the time steps of a run are stored."""
 
     first_capacity: int = 256

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Complex
-from ...discretization.element_strains import write_element_strain_changes, write_element_strains
-from ...discretization.elements.periodic import (
+from ...discretization.element_strains import write_element_strain_rates, write_element_strains
+from ...discretization.elements.trigonometric import (
     hermite_coefficients_of_columns,
     series_maxima,
     series_minima,
@@ -19,9 +19,9 @@ from ...discretization.plane_equations import write_balance
 from ...discretization.state_layout import stress_index
 from ...discretization.stress.tip_motion import TipMatrices, write_tip_motion
 from ...model.compiled.compilation import compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ...model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
-from .semidiscrete import SemidiscreteEquations
+from .equations import OrbitEquations
 
 REFLECTION_SIGNS = np.array([1.0, -1.0, -1.0])
 """Signs of (x, y, theta), and of (h1, h2, Pi), under the reflection: half a period later, a symmetric orbit
@@ -29,7 +29,7 @@ has the values multiplied by these signs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TipExtremumSettings(CompiledSettings):
+class TipExtremumSettings(KernelConstants):
     """Settings for the extrema of the tip's coordinates over a period."""
 
     oversampling: int = 4
@@ -68,7 +68,7 @@ class OrbitMeans(NamedTuple):
 
 
 @compiled_for_vectors
-def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatrices) -> TipPath:
+def tip_path(states: Array, period: float, p: OrbitEquations, m: TipMatrices) -> TipPath:
     """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
     period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
     of `tip_matrices`."""
@@ -82,7 +82,7 @@ def tip_path(states: Array, period: float, p: SemidiscreteEquations, m: TipMatri
     write_strain_rates(states, rates, p)
     rates *= period
     write_element_strains(S, p.rod, m.element_nodes, strains[0])
-    write_element_strain_changes(S, rates, p.rod, m.element_nodes, strains[1])
+    write_element_strain_rates(S, rates, p.rod, m.element_nodes, strains[1])
     write_tip_motion(strains[0], strains[1], m, tip, velocity)
     # For an orbit without symmetry the signs are 0, because its values cover the whole period.
     c = hermite_coefficients_of_columns(tip, velocity, REFLECTION_SIGNS * (p.period_parts - 1))
@@ -107,8 +107,9 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
     """Size of each harmonic from the first, (count - 1,): square root of the sum of squared moduli over all
     columns of `values`.
 
-    values, slopes: as in `hermite_coefficients_of_columns`. sign: factor by which every column changes in
-    half a period of a symmetric orbit; 0 for an orbit without symmetry."""
+    values, slopes: values and time derivatives at equidistant nodes of a period, or of half a period, (nodes,
+    columns). sign: factor by which every column changes in half a period of a symmetric orbit; 0 for an orbit
+    without symmetry."""
     c = hermite_coefficients_of_columns(values, slopes, np.full(values.shape[1], sign))
     sizes = np.zeros(len(c) - 1)
     for k in range(1, len(c)):
@@ -118,7 +119,7 @@ def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
 
 
 @compiled_for_vectors
-def power_means_and_least_stretch(stages: Array, weights: Array, p: SemidiscreteEquations) -> OrbitMeans:
+def power_means_and_least_stretch(stages: Array, weights: Array, p: OrbitEquations) -> OrbitMeans:
     """Means and rms deviations of the powers over a period, and the smallest h1 at the nodes and stages.
     stages: states at the stages, (K, s, n). weights: quadrature weights of the stages, (s,). p: equations of
     the orbit."""
@@ -158,7 +159,7 @@ def _stretch_at_jump(state: Array, node: int, sides: Array, rod: NodalRod) -> fl
 
 
 @compiled_for_vectors
-def write_strain_rates(states: Array, out: Array, p: SemidiscreteEquations) -> None:
+def write_strain_rates(states: Array, out: Array, p: OrbitEquations) -> None:
     """Writes the strain rates dE/dt at all nodes of `states`, (m, n), into `out`, (3, m, nodes + 1); at the
     tip 0 is written. p: equations of the orbit."""
     size = len(p.node_matrices.weights)
@@ -173,7 +174,7 @@ def write_strain_rates(states: Array, out: Array, p: SemidiscreteEquations) -> N
 
 
 @compiled_for_vectors
-def write_powers(states: Array, out: Array, p: SemidiscreteEquations) -> None:
+def write_powers(states: Array, out: Array, p: OrbitEquations) -> None:
     """Writes two powers for `states`, (m, n), into `out`, (2, m): row 0, the power of the follower force,
     computed from the reaction at the tip; row 1, the power lost by drag. p: equations of the orbit."""
     size = len(p.node_matrices.weights)

@@ -17,15 +17,16 @@ class OrderRatioSettings:
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
     added_order: int = 0
-    """Order of an element, minus the order at which its coefficients fall below their aim. With 0 the errors
-    of a mesh are those of the elements of the largest order; with 2 the elements of two to five segments had
-    a tenth more unknowns at equal errors."""
+    """Order of an element, minus the order at which its coefficients fall below the aim `max_tail`. With 0
+    the errors of a mesh are those of the elements of the largest order; with 2 the elements of two to five
+    segments had a tenth more unknowns at equal errors."""
     min_order: int = 4
     """Smallest order of an element that is chosen from coefficients."""
     min_ratio: float = 0.2
     """Smallest ratio. Elements of short and stiff segments reach 0.25."""
-    steps: int = 64
-    """Ratios are rounded up to multiples of 1/steps: less than one order at any order that is allowed."""
+    ratios_per_unit: int = 64
+    """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
+    order."""
     ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
 
 
@@ -33,7 +34,7 @@ ORDER_RATIO_SETTINGS = OrderRatioSettings()
 
 
 def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
-    """Ratios of the orders of all elements to the largest order, as in `Elements`; () if all are 1.
+    """Ratio of the order that each element needs to the largest order, at least `min_ratio`; () if all are 1.
 
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
     times the largest coefficient.
@@ -48,14 +49,15 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
     )
     settings = ORDER_RATIO_SETTINGS
     orders = np.maximum(orders, settings.min_order)
-    ratios = np.ceil(settings.steps * np.maximum(orders / max(orders), settings.min_ratio)) / settings.steps
+    ratios = np.maximum(orders / max(orders), settings.min_ratio)
+    ratios = np.ceil(settings.ratios_per_unit * ratios) / settings.ratios_per_unit
     return () if min(ratios) == 1 else tuple(ratios.tolist())
 
 
 def _needed_order(c: Array, max_tail: float, order: int) -> int:
-    """Order of an element, at most `order`, beyond which two neighbouring coefficients fall below `max_tail`.
-    c: moduli of the coefficients of orders 0 to p, (p + 1,). Two coefficients, because one may vanish by
-    parity."""
+    """Lowest order of an element at which it and the next order have coefficients of at most `max_tail`; at
+    most `order`. Two orders are tested, because one coefficient may vanish by parity. c: moduli of the
+    coefficients of orders 0 to p, (p + 1,)."""
     small_indices = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= max_tail)
     return (
         order

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...discretization.element_strains import index_before_jump
-from ...discretization.elements.periodic import series_maxima, series_samples
+from ...discretization.elements.trigonometric import series_maxima, series_samples
 
 if TYPE_CHECKING:
     from .measures import CyclePath

@@ -15,13 +15,13 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
-from ...discretization.elements.periodic import (
+from ...discretization.elements.quadrature import lobatto_points
+from ...discretization.elements.trigonometric import (
     hermite_coefficients,
     hermite_coefficients_of_columns,
     series_samples,
     time_of_rise_through_mean,
 )
-from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.stress.tip_motion import tip_matrices
 from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, tip_path, write_powers
 from .least_stretch import least_stretch_between_nodes
@@ -57,15 +57,16 @@ class CycleMeasures:
 
 
 class CyclePath:
-    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients, tip_samples:
-    as in `TipPath`."""
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients: Fourier
+    coefficients of the tip's (x, y, theta), (count, 3). tip_samples: (x, y, theta) at equidistant times of
+    the period, (m, 3)."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
         mesh = orbit.form.mesh
         self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
         matrices = tip_matrices(mesh)
-        self._path = tip_path(self._equidistant_states, orbit.period, orbit.semidiscrete_equations, matrices)
+        self._path = tip_path(self._equidistant_states, orbit.period, orbit.orbit_equations, matrices)
         self.tip_coefficients = self._path.tip_coefficients
         self.tip_samples = self._path.tip_samples
 
@@ -94,7 +95,7 @@ class CyclePath:
 
     @cached_property
     def extrema(self) -> dict[str, float]:
-        """tip_x_min, tip_x_max, tip_y_max and tip_theta_max as in `CycleMeasures`, by name."""
+        """Extrema of the tip over the period: tip_x_min, tip_x_max, tip_y_max and tip_theta_max, by name."""
         minima = self._path.least_tip_values.tolist()
         maxima = self._path.largest_tip_values.tolist()
         return {
@@ -145,7 +146,7 @@ class CyclePath:
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
         U = self.orbit.form.elastic_energy(self._equidistant_states)
         power = np.empty((2, len(self._equidistant_states)))
-        write_powers(self._equidistant_states, power, self.orbit.semidiscrete_equations)
+        write_powers(self._equidistant_states, power, self.orbit.orbit_equations)
         rates = (power[0] - power[1]) * period
         if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.

@@ -124,7 +124,8 @@ def with_matrix_within_distance(
     solved: ConvergedOrbit, distance: float, parameter: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
-    more than `distance` from the orbit. parameter: as in `newton`."""
+    more than `distance` from the orbit. parameter: name of the parameter for
+    the `tangent` of the matrix, or None."""
     if solved.matrix_distance <= distance:
         return solved
     return newton_step(solved, parameter)
@@ -132,7 +133,8 @@ def with_matrix_within_distance(
 
 def newton_step(solved: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
     """The orbit `solved` after one more Newton step, with the matrix at the orbit before this step.
-    parameter: as in `newton`."""
+    parameter: name of the parameter for
+    the `tangent` of the matrix, or None."""
     orbit = solved.orbit
     matrix = Linearisation(orbit, solved.workspace, parameter)
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))

@@ -18,7 +18,7 @@ from ...discretization.elements.mesh import Mesh
 from ...discretization.elements.time_collocation import CollocationMethod, radau_method
 from ...discretization.stress.form import StressForm
 from .compiled_measures import OrbitMeans, power_means_and_least_stretch
-from .semidiscrete import SemidiscreteEquations
+from .equations import OrbitEquations
 from .symmetry import Symmetry
 
 
@@ -91,14 +91,14 @@ class Orbit:
         return self.symmetry.period_parts > 1
 
     @property
-    def semidiscrete_equations(self) -> SemidiscreteEquations:
-        return _semidiscrete(self.form, self.symmetry, self.interval_count, self.stage_count)
+    def orbit_equations(self) -> OrbitEquations:
+        return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count)
 
     @cached_property
     def means(self) -> OrbitMeans:
         """Mean powers over a period, and the smallest h1."""
         return power_means_and_least_stretch(
-            np.ascontiguousarray(self.stage_states), self.collocation.weights, self.semidiscrete_equations
+            np.ascontiguousarray(self.stage_states), self.collocation.weights, self.orbit_equations
         )
 
     @property
@@ -138,7 +138,7 @@ class Orbit:
         time intervals with `stages` stages each by a linear map, (N on this mesh,)."""
         points = self._at_times_of(change, (intervals, stages))
         if target != self.form.mesh:
-            points = self.form.changes_on_mesh(target, points)
+            points = self.form.increments_on_mesh(target, points)
         return np.append(points.ravel(), change[-1])
 
     def _at_times_of(self, values: Array, target: tuple[int, int]) -> Array:
@@ -150,14 +150,14 @@ class Orbit:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
-def _semidiscrete(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> SemidiscreteEquations:
+def _orbit_equations(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> OrbitEquations:
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
     d = radau_method(stages).differentiation_matrix
     lengths = interval_lengths(intervals)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.period_parts)
-    return SemidiscreteEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
+    return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

@@ -78,9 +78,9 @@ def mesh_limit() -> MeshLimitReached:
 
 @dataclass(frozen=True, slots=True)
 class OrbitMesh:
-    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order, order_ratios: orders of
-    the elements, as in `Elements`. interval_count: number of time intervals. stage_count: number of Radau
-    stages of each interval."""
+    """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: largest order of an
+    element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
+    interval_count: number of time intervals. stage_count: number of Radau stages of each interval."""
 
     edges: tuple[float, ...]
     order: int

@@ -19,12 +19,12 @@ from ...discretization.elements.time_collocation import radau_method
 from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...discretization.stresses_at_jumps import stresses_by_element
 from ...model.compiled.compilation import compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from .orbit import Orbit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CoefficientTailSettings(CompiledSettings):
+class CoefficientTailSettings(KernelConstants):
     """Settings for the tails of an orbit and for the decay of its coefficients."""
 
     min_decay: float = 0.2
@@ -162,8 +162,9 @@ def _last_columns_of_analysis_matrix(order: int) -> Array:
 
 @compiled_for_vectors
 def largest_norms(values: Array, analysis: Array) -> Array:
-    """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values,
-    analysis: as in `largest_coefficients`."""
+    """Largest 2-norm of the coefficients of each field in one element over all states, (3,). values: fields
+    at the nodes of the element, (3, m, p + 1), for m states. analysis: matrix from values at the nodes to
+    coefficients, (p + 1, c)."""
     components, states, size = values.shape
     norms = np.zeros(components)
     c = np.empty(analysis.shape[1])

@@ -14,7 +14,7 @@ from ...arrays import Complex
 from ...determinant.certificate.winding_number import EigenvalueCount
 from ...determinant.roots.roots import Roots
 from ...discretization.straight.transverse_mesh import AnyMesh
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 from ..backend.petsc import PETSC_ERRORS
 from ..backend.solver_pools import destroy_pooled_solvers
 from ..point_outcome import cause_of
@@ -22,7 +22,7 @@ from .problem import TransverseProblem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CandidateSettings(CompiledSettings):
+class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the vertical lines to the right of which eigenvalues
     are counted.
     """

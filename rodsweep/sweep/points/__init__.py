@@ -1,2 +1,2 @@
 """The points of a sweep: grids of parameters or of arm quantities, lists; loads relative to flutter; lines,
-stretches, chains and shards."""
+groups, chains and shards."""

@@ -80,7 +80,7 @@ class Chains:
 
 
 @dataclass(frozen=True, slots=True)
-class ChainedWork:
+class SweepChains:
     """The chains of a sweep, and how to solve them.
 
     solve_from: solves a point from a state. state_from_arrays: makes a state from the arrays of
@@ -100,7 +100,7 @@ class ChainSolver:
     a stop request ends the chain after the current point.
     """
 
-    work: ChainedWork
+    work: SweepChains
     missing: IndexSet
     checkpoints: CheckpointStore
     stop: StopRequest

@@ -17,8 +17,8 @@ from ...results.layouts.arm import VALIDITY_VARIABLES
 from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
+from ...sweep.points.groups import GroupResult
 from ...sweep.points.points import Points
-from ...sweep.points.stretches import StretchResult
 from ..protocol import Solver
 
 MODEL_APPLIES_NAME = VALIDITY_VARIABLES[0].name
@@ -110,9 +110,9 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
     rod.
 
     In chains, an outcome is used again if the rods are equal and both points start from the same state.
-    Points of stretches are always solved, because a point takes less than a millisecond.
+    Points of groups are always solved, because a point takes less than a millisecond.
     """
-    rods = None if solver.stretched else rod_numbers(points)
+    rods = None if solver.grouped else rod_numbers(points)
     if rods is None:
         return solver
     memory = _OutcomeCache(max(1, int(CACHE_BYTES // max(layout.bytes_per_point, MIN_OUTCOME_BYTES))))
@@ -171,7 +171,7 @@ class SkippingSolver:
         values to the other points."""
         statuses = (*self.rod_solver.statuses, *OutsideModelStatus)
         return self.rod_solver.with_wrapper(
-            self._solve, self._solve_stretch, record=self._record, statuses=statuses
+            self._solve, self._solve_group, record=self._record, statuses=statuses
         )
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
@@ -193,18 +193,18 @@ class SkippingSolver:
         """Every variable of a point to which the rod model does not apply, except its status."""
         return self.layout.empty_point | {SECONDS.name: 0.0, MODEL_APPLIES_NAME: Validity.does_not_apply}
 
-    def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Results for the points of a stretch at flat indices, (n,); only points to which the rod model
+    def _solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
+        """Results for the points of a group at flat indices, (n,); only points to which the rod model
         applies are solved."""
-        assert self.rod_solver.stretched is not None
+        assert self.rod_solver.grouped is not None
         arm_statuses = self.arm_statuses[indices]
         rod_indices = np.flatnonzero(arm_statuses == SLENDER)
         values = {name: np.stack([value] * len(indices)) for name, value in self._empty_values.items()}
         values[STATUS.name][...] = arm_statuses
-        result = self.rod_solver.stretched[1](indices[rod_indices]) if len(rod_indices) else None
+        result = self.rod_solver.grouped[1](indices[rod_indices]) if len(rod_indices) else None
         for name, column in result.values.items() if result else ():
             values[name][rod_indices] = column
         is_solved = arm_statuses != FLUTTER_UNKNOWN
         if result:
             is_solved[rod_indices] = result.is_solved
-        return StretchResult(values, is_solved)
+        return GroupResult(values, is_solved)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ...config.axis import Axis
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.variables import FilledVariable
 from .curve_variables import bautin_curve_values
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from ...solve.hopf.bautin_points import CurveCriticality
 
 
-def boundary_curves(plane: "Plane", view: View, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
+def boundary_curves(plane: "Plane", view: ResultView, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
     """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
     every row, (rows,).
     """

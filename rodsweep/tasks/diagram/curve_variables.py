@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import (
     CYCLE_SPECIAL_DIMENSION,
     MAX_CYCLE_SPECIAL_POINTS,
@@ -118,7 +118,9 @@ def cycle_curve_values(
         start, end = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
         points: list[tuple[dict[str, float], Any]] = [*start, *(({}, point) for point in curve.points), *end]
         for (further, point), reasons in zip(points, _end_reasons(curve.ends, len(points)), strict=True):
-            columns = dict(zip(plane, (point.at, point.row_value), strict=True)) | further | reasons
+            columns = (
+                dict(zip(plane, (point.parameter_value, point.row_value), strict=True)) | further | reasons
+            )
             rows.append((SimpleNamespace(number=number, kind=int(curve.kind), **columns), point))
     variables = cycle_curve_variables(*plane)
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
@@ -171,7 +173,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     line: parameter that varies along the row.
     """
     variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
-    attribute_names = {f"cycle_special_{line}": "at"}
+    attribute_names = {f"cycle_special_{line}": "parameter_value"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=attribute_names)
         for point in result.special_points
@@ -182,7 +184,7 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def special_points_of_rows(view: View, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
+def special_points_of_rows(view: ResultView, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
     rows. rows: parameter value of every row, (rows,).
     """
@@ -207,7 +209,7 @@ def special_points_of_row(
     return followed_special_points(kinds, columns, row_index, row_value)
 
 
-def unstored_special_count(view: View, finite: np.ndarray) -> int:
+def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:
     """Number of special points that are not stored because the list of their row is full; no curve can start
     at these points.
 

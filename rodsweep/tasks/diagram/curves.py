@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.parameters import CRUSHING_PARAMETERS
 from ...model.rod import Rod
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
@@ -84,7 +84,7 @@ class DiagramCurves:
         """Caches special points of rows solved on other ranks."""
         self.special_points_by_row.update(starts)
 
-    def work_items(self, view: View, results: Mapping[int, NamedArrays]) -> "Stage | None":
+    def work_items(self, view: ResultView, results: Mapping[int, NamedArrays]) -> "Stage | None":
         """The current stage of the search for curves of folds and torus points of cycles; None if these
         curves are not requested, or if fewer than two rows have a finite value.
 
@@ -93,7 +93,7 @@ class DiagramCurves:
         stages = self._stages(view)
         return stages.stages(results)[-1] if stages is not None else None
 
-    def _stages(self, view: View) -> "DiagramStages | None":
+    def _stages(self, view: ResultView) -> "DiagramStages | None":
         """All stages of the search, as in `work_items`."""
         from ...solve.branch.special.detached_rows import DiagramStages
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
@@ -136,7 +136,7 @@ class DiagramCurves:
 
         return TracedHalfCurve(None).arrays() if isinstance(items, SpecialCurveTracer) else {}
 
-    def result(self, view: View, results: Mapping[int, NamedArrays]) -> SweepWideResult:
+    def result(self, view: ResultView, results: Mapping[int, NamedArrays]) -> SweepWideResult:
         """All curves as variables of the file, and the rows that are changed because curves lead to further
         branches; both empty if there are no curves, because `plane` is None. view: the file with all rows.
         results: results of all half curves and rows by number, as from `solve_item`."""

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.detached_branches import DETACHED_BRANCH_VARIABLES
 from ...results.layouts.variables import FilledVariable
 from ..protocol import NamedArrays
@@ -47,7 +47,7 @@ def followed_special_points(
             row_index=row_index,
             row_value=row_value,
             kind=SpecialKind(int(kinds[item])),
-            at=float(positions[item]),
+            parameter_value=float(positions[item]),
             period=float(period[item]),
             tip_y_max=float(height[item]),
         )
@@ -55,7 +55,9 @@ def followed_special_points(
     ]
 
 
-def rows_with_further_branches(view: View, solved_again: Mapping[int, NamedArrays]) -> dict[int, NamedArrays]:
+def rows_with_further_branches(
+    view: ResultView, solved_again: Mapping[int, NamedArrays]
+) -> dict[int, NamedArrays]:
     """The rows of `solved_again` that have further branches or another status than in the file. view: the
     file with all rows. solved_again: results of rows, by index."""
     counts = view.by_point("cycle_special_count")
@@ -67,7 +69,7 @@ def rows_with_further_branches(view: View, solved_again: Mapping[int, NamedArray
     }
 
 
-def detached_branch_values(view: View, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:
+def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:
     """Variables of the rows that have further branches; [] if there are none. view: the file with
     all rows. changed: new results of these rows, by index."""
     if not changed:

@@ -20,8 +20,8 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.along_path import ThresholdSearchResult
     from ...solve.changes.kinds import Threshold
+    from ...solve.changes.thresholds_along_path import ThresholdSearchResult
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +42,9 @@ class HopfLine:
         all rods on such a line are crushed, or if the search fails.
         """
         from ...determinant.arm.determinant import forget_arm_determinants
-        from ...determinant.parameter_path import Path
-        from ...solve.changes.along_path import find_axis_crossings
+        from ...determinant.parameter_path import ParameterPath
         from ...solve.changes.search_range import CRUSHING_END_SETTINGS
+        from ...solve.changes.thresholds_along_path import find_axis_crossings
         from ...solve.point_outcome import FAILURES
 
         forget_arm_determinants()
@@ -68,7 +68,7 @@ class HopfLine:
         start_values: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
         try:
             return find_axis_crossings(
-                Path(Rod(**start_values, build=self.build), self.varied_parameter), start, end
+                ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter), start, end
             )
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None

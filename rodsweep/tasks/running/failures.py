@@ -9,7 +9,7 @@ from ...results.file.provenance import MAX_FAILURE_REASONS, failure_kind
 from ...results.layouts.variables import STATUS
 from ...solve.status import PointStatus
 from ...sweep.loop import Indices
-from ...sweep.points.stretches import StretchResult
+from ...sweep.points.groups import GroupResult
 from ..protocol import SweepWideResult
 
 
@@ -34,10 +34,10 @@ class FailureReasons:
         """Adds the reason why a point failed; returns a list with this example, or an empty list if the
         reason is known, the list of reasons is full, or no point failed.
 
-        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a stretch, of
+        index, result: flat index and outcome of one point, or flat indices, (n,), and result of a group, of
         which no point failed.
         """
-        if isinstance(result, StretchResult) or result.status.succeeded:
+        if isinstance(result, GroupResult) or result.status.succeeded:
             return []
         if len(self.examples) >= MAX_FAILURE_REASONS:
             return []

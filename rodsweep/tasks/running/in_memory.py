@@ -1,5 +1,5 @@
-"""Results of a job in memory, without a file: as a `View`, and as variables with attributes. `solved_view`
-also solves jobs without chains and without variables that depend on all points."""
+"""Results of a job in memory, without a file: as a `ResultView`, and as variables with attributes.
+`solved_view` also solves jobs without chains and without variables that depend on all points."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -13,7 +13,7 @@ from threadpoolctl import ThreadpoolController
 
 from ...results.file.creation import FilePlan
 from ...results.file.provenance import utc_time
-from ...results.file.view import View
+from ...results.file.view import ResultView
 from ...results.layouts.variables import MISSING_STATUS, FilledVariable, dimension_attributes, flag_attributes
 from ...solve.backend.availability import require_solvers
 from ...solve.solve_lock import exclusive_solve
@@ -25,8 +25,8 @@ StoredVariable = tuple[tuple[str, ...], np.ndarray, dict[str, Any]]
 
 
 @exclusive_solve
-def solved_view(job: Job) -> View:
-    """Solves all points of a job; returns the results as a `View`, which `show` and figures read.
+def solved_view(job: Job) -> ResultView:
+    """Solves all points of a job; returns the results as a `ResultView`, which `show` and figures read.
 
     The job must have no chains and no variables that depend on all points. Raises EnvironmentIncomplete if
     PETSc or SLEPc is missing.
@@ -53,14 +53,14 @@ def solved_view(job: Job) -> View:
 
 def view_in_memory(
     job: Job, plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable] = ()
-) -> View:
-    """Results as a `View`, with only the attributes `task` and `config_resolved`.
+) -> ResultView:
+    """Results as a `ResultView`, with only the attributes `task` and `config_resolved`.
 
     values: variables of the layout by name, shape (points, own dimensions). sweep_wide: variables that do not
     belong to single points, with values.
     """
     coordinates, variables = stored_variables(plan, values, sweep_wide)
-    return View(
+    return ResultView(
         Path(job.title),
         {"task": job.config.task, "config_resolved": json.dumps(plan.config)},
         {name: array for name, (_, array, _) in (coordinates | variables).items()},

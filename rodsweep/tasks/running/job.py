@@ -21,9 +21,9 @@ from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
 from ...sweep.points.grid import grid_size, points_of
+from ...sweep.points.groups import GroupResult
 from ...sweep.points.points import Points
 from ...sweep.points.ranges import Shard
-from ...sweep.points.stretches import StretchResult
 from .. import TASKS
 from ..arm.point_solver import SkippingSolver, solver_with_outcome_cache
 from ..arm.validity import ArmValidity
@@ -100,15 +100,15 @@ class Job:
                 | validity.variables_of_points(values, index)
             )
 
-        def together(indices: NDArray[np.int64]) -> StretchResult:
-            assert solver.stretched is not None
-            result = solver.stretched[1](indices)
+        def together(indices: NDArray[np.int64]) -> GroupResult:
+            assert solver.grouped is not None
+            result = solver.grouped[1](indices)
             return replace(result, values=complete(result.values, indices))
 
         return replace(
             solver,
             record=lambda index, outcome: complete(solver.record(index, outcome), index),
-            stretched=solver.stretched and (solver.stretched[0], together),
+            grouped=solver.grouped and (solver.grouped[0], together),
         )
 
 
@@ -182,7 +182,7 @@ def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
         attributes={},
         flags=(),
         chains=task.chains,
-        stretches=task.stretches,
+        groups=task.groups,
     )
 
 

@@ -23,7 +23,7 @@ from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.backend.solver_pools import destroy_pooled_solvers
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
-from ...sweep.points.stretches import StretchResult
+from ...sweep.points.groups import GroupResult
 from ..protocol import Solver
 
 RUN_ENDING_EXCEPTIONS = (UserError, OSError)
@@ -54,7 +54,7 @@ class RecordedOutcome:
 def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> Solver:
     """A solver that catches unforeseen exceptions, calls `note`, and gives a failed point fill values.
 
-    After an exception in a stretch, each of its points is solved alone. Only points that fail again get fill
+    After an exception in a group, each of its points is solved alone. Only points that fail again get fill
     values.
     """
     return _GuardedSolver(solver, layout, note).guarded_solver()
@@ -73,7 +73,7 @@ class _GuardedSolver:
     def guarded_solver(self) -> Solver:
         """The guarded solver."""
         return self.guarded.with_wrapper(
-            self._outcome, self._solve_stretch, record=lambda index, outcome: outcome.values
+            self._outcome, self._solve_group, record=lambda index, outcome: outcome.values
         )
 
     def _outcome(
@@ -102,12 +102,12 @@ class _GuardedSolver:
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
-    def _solve_stretch(self, indices: NDArray[np.int64]) -> StretchResult:
-        """Result of a stretch of points, at `indices`. After an unforeseen exception the result has fill
+    def _solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
+        """Result of a group of points, at `indices`. After an unforeseen exception the result has fill
         values, and states of every point that the point must be solved alone."""
-        assert self.guarded.stretched is not None
+        assert self.guarded.grouped is not None
         try:
-            return self.guarded.stretched[1](indices)
+            return self.guarded.grouped[1](indices)
         except RUN_ENDING_EXCEPTIONS:
             raise
         except Exception as error:
@@ -116,7 +116,7 @@ class _GuardedSolver:
             empty = {
                 name: np.stack([value] * len(indices)) for name, value in self.layout.empty_point.items()
             }
-            return StretchResult(empty, np.zeros(len(indices), np.bool_))
+            return GroupResult(empty, np.zeros(len(indices), np.bool_))
 
 
 def describe_exception(error: Exception) -> str:

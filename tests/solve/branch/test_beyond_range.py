@@ -55,8 +55,10 @@ def within_only(monkeypatch):
 
 def at_force(curve, force):
     """Period and largest tip y of a branch at a force, by interpolation between its cycles."""
-    order = np.argsort([point.at for point in curve.points])
-    at, period, y = np.array([(p.at, p.measures.period, p.measures.tip_y_max) for p in curve.points])[order].T
+    order = np.argsort([point.parameter_value for point in curve.points])
+    at, period, y = np.array(
+        [(p.parameter_value, p.measures.period, p.measures.tip_y_max) for p in curve.points]
+    )[order].T
     return np.interp(force, at, period), np.interp(force, at, y)
 
 
@@ -65,7 +67,9 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
     first, second, back = found.curves
     assert [kinds(curve) for curve in (first, second)] == [["hopf", "end"]] * 2
     assert kinds(back) == ["end", "end"]
-    assert [point.at for point in back.special_points] == pytest.approx([88.04, 137.56], rel=1e-12)
+    assert [point.parameter_value for point in back.special_points] == pytest.approx(
+        [88.04, 137.56], rel=1e-12
+    )
     assert [interval.stability for interval in stability_intervals(back)] == [1]
     assert found.followed_range == (0.0, pytest.approx(1.5 * 137.56))
     # On the wide range the same cycles lie beyond the fold of one branch.

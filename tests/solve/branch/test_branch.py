@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from surveyed import survey_only
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
 from rodsweep.solve import seldom_used_kernels
@@ -29,7 +29,7 @@ from rodsweep.solve.branch.start import first_cycle as start_of_branch
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit import orbit_mesh
 from rodsweep.solve.orbit.matrix.linearisation import reduced_variation_sides
@@ -59,8 +59,8 @@ def only(curve, kind):
 def first_branch(rod, stop, accuracy=1e-7):
     """The branch from the first Hopf point alone."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = find_axis_crossings(Path(straight, "F"), 0.0, stop).thresholds[0]
-    hopf = hopf_branch_start(Path(rod, "F"), crossing)
+    crossing = find_axis_crossings(ParameterPath(straight, "F"), 0.0, stop).thresholds[0]
+    hopf = hopf_branch_start(ParameterPath(rod, "F"), crossing)
     return follow_branch(
         0,
         BranchLimits([hopf], (0.0, stop), (BranchEndReason.range_end,) * 2, accuracy, 500, NewtonWorkspace()),
@@ -69,7 +69,7 @@ def first_branch(rod, stop, accuracy=1e-7):
 
 def slopes(curve):
     """(p/y) dy/dp at the cycles of a branch, by differences to their neighbours."""
-    at = np.array([point.at for point in curve.points])
+    at = np.array([point.parameter_value for point in curve.points])
     y = np.array([point.measures.tip_y_max for point in curve.points])
     return np.gradient(np.log(y)) / np.gradient(np.log(at))
 
@@ -81,15 +81,15 @@ def test_branch_from_the_first_hopf_point_of_fig_2c_arrives_at_its_restabilizati
     (curve,) = found.curves
     assert kinds(curve) == ["hopf", "fold", "hopf"]
     first, fold, last = curve.special_points
-    assert first.at == pytest.approx(49.7580049161915, abs=1e-11)
-    assert last.at == pytest.approx(155.600159298791, abs=1e-10)
+    assert first.parameter_value == pytest.approx(49.7580049161915, abs=1e-11)
+    assert last.parameter_value == pytest.approx(155.600159298791, abs=1e-10)
     assert last.period == pytest.approx(2 * np.pi / 3367.28095760, rel=1e-11)
-    assert 199.16 < fold.at < 199.1602
-    assert fold.error < 1e-9 * fold.at
+    assert 199.16 < fold.parameter_value < 199.1602
+    assert fold.error < 1e-9 * fold.parameter_value
     unstable = [point.unstable_count for point in curve.points]
     turn = fold.index_of_cycle_before + 1
     assert unstable == [0] * turn + [1] * (len(unstable) - turn)
-    assert all(point.at_error <= 1e-7 for point in curve.points)
+    assert all(point.parameter_value_error <= 1e-7 for point in curve.points)
     steep = [abs(slope) > 100 for slope in slopes(curve)]
     assert all(
         point.errors.largest_weighted_error <= 1e-7
@@ -125,7 +125,7 @@ def test_forward_and_backward_give_the_same_cycle():
     assert kinds(backward) == ["hopf", "fold", "end"]
     for curve in (forward, backward):
         assert curve.special_points[-1].reason == BranchEndReason.range_end
-        assert curve.points[-1].at == pytest.approx(100.0, rel=1e-14)
+        assert curve.points[-1].parameter_value == pytest.approx(100.0, rel=1e-14)
     one, other = forward.points[-1], backward.points[-1]
     for name in ("period", "tip_y_max", "tip_x_min", "tip_x_max"):
         assert getattr(one.measures, name) == pytest.approx(getattr(other.measures, name), rel=1e-8)
@@ -136,8 +136,8 @@ def test_forward_and_backward_give_the_same_cycle():
 @pytest.mark.parametrize("rod", [pytest.param(FIG_2C, marks=survey_only), SHORT])
 def test_fold_moves_no_further_than_its_error_on_finer_meshes(rod):
     rough, fine = (only(solved(rod, 0.0, 200.0, a).curves[0], SpecialKind.fold) for a in (1e-5, 1e-8))
-    assert abs(rough.at - fine.at) <= rough.error + fine.error
-    assert max(rough.error, fine.error) <= 1e-9 * fine.at
+    assert abs(rough.parameter_value - fine.parameter_value) <= rough.error + fine.error
+    assert max(rough.error, fine.error) <= 1e-9 * fine.parameter_value
     assert rough.period == pytest.approx(fine.period, rel=1e-6)
 
 
@@ -155,7 +155,7 @@ def test_first_cycles_have_the_amplitude_that_the_hopf_point_tells(along, rod, e
     )
     for curve in found.curves:
         hopf, first = curve.special_points[0], curve.points[0]
-        a, away = hopf.amplitude_coefficient, first.at / hopf.at - 1
+        a, away = hopf.amplitude_coefficient, first.parameter_value / hopf.parameter_value - 1
         assert np.sign(away) == np.sign(a)
         assert first.measures.tip_y_max == pytest.approx(abs(a) * abs(away) ** 0.5, rel=0.02)
     if along == "F":
@@ -169,7 +169,7 @@ def test_branch_without_a_fold():
     (curve,) = found.curves
     assert found.status == BranchStatus.ok
     assert kinds(curve) == ["hopf", "end"]
-    assert np.all(np.diff([point.at for point in curve.points]) > 0)
+    assert np.all(np.diff([point.parameter_value for point in curve.points]) > 0)
     assert {point.unstable_count for point in curve.points} == {0}
 
 
@@ -179,10 +179,10 @@ def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     (curve,) = found.curves
     end = curve.special_points[-1]
     assert end.kind == SpecialKind.left_the_model
-    assert end.at == pytest.approx(99.14065359, abs=1e-6)
+    assert end.parameter_value == pytest.approx(99.14065359, abs=1e-6)
     assert 0 < curve.points[-1].measures.least_stretch < 0.05
     finer = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0, 1e-9).curves[0].special_points[-1]
-    assert abs(end.at - finer.at) <= end.error + finer.error
+    assert abs(end.parameter_value - finer.parameter_value) <= end.error + finer.error
 
 
 def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
@@ -190,12 +190,12 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
     curve = first_branch(rod, 207.0, 1e-5)
     assert kinds(curve) == ["hopf", "torus", "end"]
     torus = only(curve, SpecialKind.torus)
-    assert torus.error < 1e-9 * torus.at
+    assert torus.error < 1e-9 * torus.parameter_value
     after = torus.index_of_cycle_before + 1
     assert [point.unstable_count for point in curve.points[after - 1 : after + 1]] == [0, 2]
     request = CycleRequest(1e-6, 0.01, 8, 0, 0, 0, 400, "hopf")
     for side, status in ((-1, CycleStatus.cycle), (1, CycleStatus.unstable)):
-        F = torus.at * (1 + side * 2e-4)
+        F = torus.parameter_value * (1 + side * 2e-4)
         cycle = solve_cycle(Rod(F=F, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3, gamma1=rod.gamma1), request)
         assert cycle.status == status
         assert abs(cycle.multipliers[0].imag) > 0.5
@@ -205,7 +205,7 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
         SpecialKind.torus, PlaneAxis("F", 150.0, 220.0), PlaneAxis("k2", 97.0, 103.0), NewtonWorkspace(), -1.0
     ).follow_from(torus, 100.0)
     assert end is CurveEndReason.edge
-    assert points[0].parameter == pytest.approx(torus.at, abs=points[0].error + torus.error)
+    assert points[0].parameter == pytest.approx(torus.parameter_value, abs=points[0].error + torus.error)
     for point in points:
         assert point.error <= 1e-7 * point.parameter
         # By the eigenvalues of a matrix of its own, where the curve has the eigenvector of one near by.
@@ -217,9 +217,9 @@ def test_torus_point_lies_where_the_cycle_of_its_own_loses_its_stability():
 def test_fold_along_the_stretch_stiffness_is_the_fold_along_the_force():
     along_k1 = solved(Rod(k1=np.inf, F=100.0, k2=1e4, gamma3=1e-4), 120.0, 170.0, along="k1")
     fold = only(along_k1.curves[0], SpecialKind.fold)
-    along_F = solved(Rod(F=0.0, k1=fold.at, k2=1e4, gamma3=1e-4), 50.0, 150.0)
+    along_F = solved(Rod(F=0.0, k1=fold.parameter_value, k2=1e4, gamma3=1e-4), 50.0, 150.0)
     same = only(along_F.curves[0], SpecialKind.fold)
-    assert same.at == pytest.approx(100.0, abs=1e-6)
+    assert same.parameter_value == pytest.approx(100.0, abs=1e-6)
     assert same.period == pytest.approx(fold.period, rel=1e-6)
 
 
@@ -240,7 +240,7 @@ def test_branch_along_another_parameter_has_the_cycle_that_the_force_has(along, 
     end, point = curve.special_points[-1], curve.points[-1]
     assert end.reason == BranchEndReason.range_end
     request = CycleRequest(1e-7, 0.01, 8, 0, 0, 0, 400, "hopf")
-    cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.at}), request)
+    cycle = solve_cycle(Rod(gamma1=1.0, **values | {along: end.parameter_value}), request)
     assert cycle.status == CycleStatus.cycle
     assert cycle.measures.period == pytest.approx(point.measures.period, rel=3e-7)
     assert cycle.measures.tip_y_max == pytest.approx(point.measures.tip_y_max, rel=3e-7)
@@ -269,8 +269,8 @@ def test_branch_that_cannot_be_followed_says_where_and_why(monkeypatch):
     assert first.special_points[-1].kind == SpecialKind.end
     assert first.special_points[-1].reason == BranchEndReason.no_cycle_found
     said = "no further cycle of the branch is found: there is no cycle near on the branch at F = "
-    assert f"branch 1: {said}{first.points[-1].at:.9g}; branch 2: {said}" in found.message
-    assert first.points[-1].at > 75
+    assert f"branch 1: {said}{first.points[-1].parameter_value:.9g}; branch 2: {said}" in found.message
+    assert first.points[-1].parameter_value > 75
     assert second.start_hopf == 1  # the other end is tried by itself
 
 
@@ -321,7 +321,7 @@ def test_a_fold_close_to_crushing_is_located_from_both_ends_of_its_branch():
         assert found.status == BranchStatus.ok
         folds += [only(curve, SpecialKind.fold) for curve in found.curves]
     one, other = folds
-    assert abs(one.at - other.at) <= one.error + other.error
+    assert abs(one.parameter_value - other.parameter_value) <= one.error + other.error
     assert max(one.error, other.error) < 1e-7 * rod.k1
 
 
@@ -339,7 +339,9 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
     monkeypatch.setattr(
         start_of_branch, "first_measured_cycle", lambda first, *others: unmeasured(first.orbit)
     )
-    path = Path(Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F")
+    path = ParameterPath(
+        Rod(F=159.0, k1=1597.4434592561727, k2=19.205853519589944, gamma3=2.45e-8, gamma1=0.72), "F"
+    )
     (crossing,) = find_axis_crossings(path, 159.0, 161.0, False).thresholds
     orbit = first_cycle(hopf_branch_start(path, crossing), 2.0785686460875202e-05, NewtonWorkspace()).orbit
     assert float(orbit.form.tip_coordinates(orbit.start_state)[1]) == pytest.approx(smallest, rel=1e-3)
@@ -350,11 +352,11 @@ def test_a_branch_begins_where_the_mesh_of_a_coarse_accuracy_has_no_cycle(monkey
 def test_branches_whose_cycles_have_multipliers_of_1e20_go_on_to_the_end_of_the_range(start, stop):
     """Their first cycles, and the errors beyond F = 174, were lost in rounding errors of Newton's steps."""
     rod = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
-    crossing = find_axis_crossings(Path(rod, "F"), start, start + 5).thresholds[0]
+    crossing = find_axis_crossings(ParameterPath(rod, "F"), start, start + 5).thresholds[0]
     ends = ((0.0, stop), (BranchEndReason.range_end,) * 2, 9.9e-4, 500, NewtonWorkspace())
-    curve = follow_branch(0, BranchLimits([hopf_branch_start(Path(rod, "F"), crossing)], *ends))
+    curve = follow_branch(0, BranchLimits([hopf_branch_start(ParameterPath(rod, "F"), crossing)], *ends))
     assert curve.complete
-    assert curve.special_points[-1].at == pytest.approx(stop)
+    assert curve.special_points[-1].parameter_value == pytest.approx(stop)
     assert max(point.multiplier for point in curve.points) > 1e20
 
 

@@ -11,7 +11,7 @@ from surveyed import survey_only
 from benchmarks.auto import auto_program, run_auto, table_lines
 from benchmarks.limit_cycle.auto_cycles import rod_file, start_file
 from benchmarks.limit_cycle.auto_equations import EQUATIONS
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
@@ -22,7 +22,7 @@ from rodsweep.solve.branch.special.detection import special_points_between
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -69,9 +69,9 @@ def branch_of_auto(program, rod, setting, place):
 def branch_of_this(rod, kind, F):
     """The special point of a kind on the branch from the first Hopf point, and the cycle at F beyond it."""
     straight = Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3)
-    crossing = find_axis_crossings(Path(straight, "F"), 0.0, rod.F).thresholds[0]
+    crossing = find_axis_crossings(ParameterPath(straight, "F"), 0.0, rod.F).thresholds[0]
     here, special = (
-        first_cycle(hopf_branch_start(Path(straight, "F"), crossing), ACCURACY, NewtonWorkspace()),
+        first_cycle(hopf_branch_start(ParameterPath(straight, "F"), crossing), ACCURACY, NewtonWorkspace()),
         None,
     )
     while True:
@@ -95,7 +95,7 @@ def test_auto_has_the_same_fold_and_the_same_unstable_cycle_beyond(auto, tmp_pat
     lines, multipliers = branch_of_auto(auto, rod, (14, 15, 0.05, 16), tmp_path)
     (place,) = [F for kind, F in lines if kind == FOLD]
     fold, cycle = branch_of_this(rod, SpecialKind.fold, lines[-1][1])
-    assert fold.at == pytest.approx(place, rel=1e-8)
+    assert fold.parameter_value == pytest.approx(place, rel=1e-8)
     largest = multipliers[np.argmax(np.abs(multipliers))]
     assert largest.real > 1.0004
     assert cycle.cycle.multipliers[0] == pytest.approx(largest, abs=2e-5)
@@ -107,7 +107,7 @@ def test_auto_has_the_same_torus_point_and_the_same_pair_beyond(auto, tmp_path):
     lines, multipliers = branch_of_auto(auto, rod, (24, 34, 0.1, 4), tmp_path)
     (place,) = [F for kind, F in lines if kind == TORUS]
     torus, cycle = branch_of_this(rod, SpecialKind.torus, lines[-1][1])
-    assert torus.at == pytest.approx(place, rel=1e-6)
+    assert torus.parameter_value == pytest.approx(place, rel=1e-6)
     pair = multipliers[np.argmax(np.abs(multipliers))]
     assert abs(pair) > 1.005
     ours = cycle.cycle.multipliers[0]

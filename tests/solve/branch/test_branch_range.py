@@ -2,7 +2,7 @@
 
 import pytest
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch
@@ -13,7 +13,7 @@ from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 FOLDED = Rod(F=0.0, k1=175.0, k2=1e4, gamma3=1e-4)
@@ -32,20 +32,20 @@ def fold():
 
 @pytest.mark.parametrize("share", [1e-3, 1e-4])
 def test_branch_ends_before_a_fold_beyond_the_range(fold, share):
-    stop = fold.at * (1 - share)
+    stop = fold.parameter_value * (1 - share)
     found = branches_to(stop)
     assert found.status == BranchStatus.ok
     first = found.curves[0]
     assert [one.kind.name for one in first.special_points] == ["hopf", "end"]
     assert first.special_points[-1].reason == BranchEndReason.range_end
-    assert first.special_points[-1].at == pytest.approx(stop, rel=1e-9)
-    assert max(point.at for point in first.points) <= stop * (1 + 1e-9)
+    assert first.special_points[-1].parameter_value == pytest.approx(stop, rel=1e-9)
+    assert max(point.parameter_value for point in first.points) <= stop * (1 + 1e-9)
 
 
 def test_branch_passes_a_fold_within_the_range(fold):
-    (curve, *_) = branches_to(fold.at * (1 + 1e-4)).curves
+    (curve, *_) = branches_to(fold.parameter_value * (1 + 1e-4)).curves
     (same,) = (one for one in curve.special_points if one.kind == SpecialKind.fold)
-    assert same.at == pytest.approx(fold.at, abs=fold.error + same.error)
+    assert same.parameter_value == pytest.approx(fold.parameter_value, abs=fold.error + same.error)
 
 
 def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
@@ -55,11 +55,11 @@ def test_a_branch_passes_the_drag_below_which_omega_is_an_unknown():
     assert whole.status == BranchStatus.ok
     (curve,) = whole.curves
     assert curve.special_points[-1].reason == BranchEndReason.range_end
-    assert min(point.at for point in curve.points) == pytest.approx(0.25, rel=1e-9)
+    assert min(point.parameter_value for point in curve.points) == pytest.approx(0.25, rel=1e-9)
 
 
 def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
-    path = Path(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
+    path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.33), "taper")
     (crossing,) = find_axis_crossings(path, 0.33, 0.45).thresholds
     ends = []
     for keeps_omega in (False, True):
@@ -83,7 +83,7 @@ def test_a_branch_along_the_rotational_drag_ends_at_zero():
         assert found.status == BranchStatus.ok
         (curve,) = found.curves
         assert curve.special_points[-1].reason == BranchEndReason.range_end
-        assert curve.points[-1].at == 0.0
+        assert curve.points[-1].parameter_value == 0.0
         ends.append(curve.special_points[-1])
     rough, fine = ends
     assert abs(rough.period - fine.period) <= rough.period_error + fine.period_error < 1e-4

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_asymmetric_branch, follow_branch
 from rodsweep.solve.branch.branch_end_reason import BranchEndReason
@@ -15,7 +15,7 @@ from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.branch.symmetry_breaking import symmetry_breakings_in
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 
@@ -23,15 +23,15 @@ def test_a_fold_close_to_the_birth_of_a_branch_is_found():
     """The cycles without symmetry are born subcritically, and turn back 3e-6 below the symmetry breaking.
     F of the fold by the branch at the accuracy 1e-8, with an error of 2e-11."""
     straight = Rod(F=0.0, k1=30.0, k2=0.61, gamma3=0.1)
-    path = Path(straight, "F")
+    path = ParameterPath(straight, "F")
     hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     limits = BranchLimits([hopf], (0.0, 21.8), (BranchEndReason.range_end,) * 2, 1e-3, 500, NewtonWorkspace())
     known = replace(limits, breakings=symmetry_breakings_in([follow_branch(0, limits).special_points]))
     curve = follow_asymmetric_branch(0, "F", known)
     assert [point.kind.name for point in curve.special_points] == ["symmetry_breaking", "fold", "end"]
     fold = curve.special_points[1]
-    assert abs(fold.at - 21.72716581562) <= fold.error < 1e-7
-    assert curve.special_points[0].at - fold.at == pytest.approx(2.87e-6, rel=0.05)
+    assert abs(fold.parameter_value - 21.72716581562) <= fold.error < 1e-7
+    assert curve.special_points[0].parameter_value - fold.parameter_value == pytest.approx(2.87e-6, rel=0.05)
 
 
 @pytest.mark.long
@@ -44,7 +44,7 @@ def test_cycles_of_low_accuracy_are_not_the_symmetric_cycles_nearby(accuracy):
     curve = found.curves[-1]
     assert [point.kind.name for point in curve.special_points] == ["symmetry_breaking", "fold", "end"]
     fold = curve.special_points[1]
-    assert abs(fold.at - 7.9124780687) <= fold.error + 1e-9 < 1e-6
+    assert abs(fold.parameter_value - 7.9124780687) <= fold.error + 1e-9 < 1e-6
     assert all(abs(p.measures.tip_y_max / p.measures.tip_y_min + 1) > 1e-2 for p in curve.points)
 
 
@@ -65,4 +65,4 @@ def test_a_fold_close_to_a_hopf_point_is_found_beside_a_generalised_hopf_point(r
     folds = [point for point in found.curves[0].special_points if point.kind == SpecialKind.fold]
     assert found.status == BranchStatus.ok
     assert len(folds) == 1
-    assert abs(folds[0].at - F) <= folds[0].error + 1e-10 < 1e-8
+    assert abs(folds[0].parameter_value - F) <= folds[0].error + 1e-10 < 1e-8

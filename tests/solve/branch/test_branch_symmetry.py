@@ -8,7 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from test_paper import stated
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.post.branch_curves import StoredBranch, StoredSpecialPoint
 from rodsweep.post.summary.branch import _ends_phrase
@@ -35,7 +35,7 @@ from rodsweep.solve.branch.symmetry_breaking import (
     extended_to_whole_period,
     symmetry_breakings_in,
 )
-from rodsweep.solve.changes.along_path import find_axis_crossings
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath, measures_of
@@ -50,7 +50,7 @@ ROUGH, STOP = 1e-3, 20.5
 def limits():
     """The first Hopf point of a rod that is soft in shear, whose stable cycles lose their symmetry."""
     straight = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
-    path = Path(straight, "F")
+    path = ParameterPath(straight, "F")
     hopf = hopf_branch_start(path, find_axis_crossings(path, 0.0, 5.0).thresholds[0])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(locating, "SPECIAL_POINT_SETTINGS", replace(SPECIAL_POINT_SETTINGS, accuracy=1e-5))
@@ -91,10 +91,10 @@ def test_stable_cycles_lose_their_symmetry_and_those_without_it_turn_at_a_fold(s
     )
     # The references are located to 1e-9 on finer meshes.
     _, breaks_at, turns_at = stated("lopsided")
-    assert abs(born.at / breaks_at - 1) < 1e-5
-    assert abs(fold.at / turns_at - 1) < 1e-5
+    assert abs(born.parameter_value / breaks_at - 1) < 1e-5
+    assert abs(fold.parameter_value / turns_at - 1) < 1e-5
     assert max(born.error, fold.error) < 1e-3
-    assert end.at == pytest.approx(STOP, rel=1e-14)
+    assert end.parameter_value == pytest.approx(STOP, rel=1e-14)
     assert end.reason == BranchEndReason.range_end
     turn = symmetric.special_points[1].index_of_cycle_before + 1
     assert {point.unstable_count for point in symmetric.points[:turn]} - {-1} == {0}
@@ -109,18 +109,18 @@ def test_asymmetry_grows_with_the_square_root_of_the_distance(symmetric, asymmet
     assert all(point.measures.tip_y_min == -point.measures.tip_y_max for point in symmetric.points)
     born = asymmetric.special_points[0]
     (near, F), (far, beyond) = (
-        ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.at)
+        ((point.measures.tip_y_max + point.measures.tip_y_min) ** 2, point.parameter_value)
         for point in asymmetric.points[:2]
     )
     # Without the square the two would lead 5e-4 beside it.
-    assert (F + (F - beyond) * near / (far - near)) / born.at == pytest.approx(1, abs=2e-4)
+    assert (F + (F - beyond) * near / (far - near)) / born.parameter_value == pytest.approx(1, abs=2e-4)
 
 
 def test_a_cycle_without_symmetry_closes_when_another_integrator_marches_it(known):
     """SciPy's LSODA, over a period, from a cycle on the unstable part."""
     here, _ = first_asymmetric_cycle(known.breakings[0], "F", ROUGH, known.workspace)
     orbit = next_cycle(here, ROUGH).orbit
-    p, nodes = orbit.semidiscrete_equations, orbit.form.mesh.node_count
+    p, nodes = orbit.orbit_equations, orbit.form.mesh.node_count
     V, G, F = np.empty((3, nodes + 1)), np.empty((3, nodes + 1)), np.empty(orbit.form.unknown_count)
 
     def rate(_, x):

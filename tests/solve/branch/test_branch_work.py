@@ -35,9 +35,11 @@ def test_branch_ends_where_its_work_is_used_up():
     (curve,) = part.curves
     assert curve.special_points[-1].reason == BranchEndReason.list_full
     assert "`work`" in part.message
-    known = [point.at for point in whole.curves[0].points]
+    known = [point.parameter_value for point in whole.curves[0].points]
     assert 1 <= len(curve.points) < len(known)
-    assert [point.at for point in curve.points] == pytest.approx(known[: len(curve.points)], rel=1e-5)
+    assert [point.parameter_value for point in curve.points] == pytest.approx(
+        known[: len(curve.points)], rel=1e-5
+    )
 
 
 def test_rod_after_a_limited_rod_has_its_own_work():
@@ -71,8 +73,8 @@ def test_special_point_has_its_error_on_the_meshes_that_the_work_allows(monkeypa
     rough = torus_of(branches_of(TORUS, 207.0))
     assert len(solved) == 3
     assert not rough.message
-    assert exact.error < 1e-9 * exact.at < rough.error < 1e-4 * exact.at
-    assert abs(rough.at - exact.at) <= rough.error + exact.error
+    assert exact.error < 1e-9 * exact.parameter_value < rough.error < 1e-4 * exact.parameter_value
+    assert abs(rough.parameter_value - exact.parameter_value) <= rough.error + exact.error
 
 
 def torus_of(found):
@@ -117,8 +119,8 @@ def test_torus_point_of_a_narrow_cone_needs_no_mesh_of_gigabytes(monkeypatch):
     found = solve_branches(cone, BranchRequest("F", 0.0, 15.0, 1e-7, False, 500, 50))
     torus = torus_of(found)
     assert found.status == BranchStatus.ok
-    assert torus.at == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
-    assert torus.error < 1e-9 * torus.at
+    assert torus.parameter_value == pytest.approx(14.5390404204, abs=torus.error + 1e-9)
+    assert torus.error < 1e-9 * torus.parameter_value
     assert max(mesh.interval_count for mesh in meshes) < 80, "114 in the first mesh, 137 in the second before"
 
 

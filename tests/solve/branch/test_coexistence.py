@@ -70,8 +70,8 @@ def test_fig_2c_has_two_stable_states_from_the_restabilization_to_the_fold(fig_2
     assert fig_2c.stable_states.tolist() == [1, 2, 2, 2, 3, 3, 3, 1, 1, 5]
     kinds = [point.kind for point in fig_2c.special_points]
     assert kinds == [SpecialKind.hopf, SpecialKind.fold, SpecialKind.hopf]
-    assert fig_2c.special_points[1].at == pytest.approx(FOLD, abs=2e-9)
-    assert fig_2c.special_points[2].at == pytest.approx(RESTABILIZATION, abs=1e-10)
+    assert fig_2c.special_points[1].parameter_value == pytest.approx(FOLD, abs=2e-9)
+    assert fig_2c.special_points[2].parameter_value == pytest.approx(RESTABILIZATION, abs=1e-10)
     assert fig_2c.special_points[1].error <= 1e-9 * FOLD
 
 
@@ -148,10 +148,10 @@ def test_a_curve_of_folds_leads_into_the_generalised_hopf_point():
     assert curve.ends == (CurveEndReason.hopf, CurveEndReason.edge)
     last = curve.points[-1]
     assert last.row_value == 150.0
-    assert last.at == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
-    assert last.error <= 1e-7 * last.at
+    assert last.parameter_value == pytest.approx(FOLD_AT_150, abs=last.error + 1e-9)
+    assert last.error <= 1e-7 * last.parameter_value
     end = curve.hopf_ends[0]
-    assert abs(end.at - BAUTIN_F) <= end.error
+    assert abs(end.parameter_value - BAUTIN_F) <= end.error
     assert end.row_value == pytest.approx(BAUTIN_K1, rel=1e-5)
     assert curve.hopf_ends[1] is None
     heights = [point.tip_y_max for point in curve.points]

@@ -41,12 +41,14 @@ def beside():
 @pytest.fixture(scope="module")
 def half(beside):
     """The half curve of folds from k1 = 133.072 to smaller k1, across the row k1 = 133.03."""
-    fold = max((point for point in beside if point.kind == SpecialKind.fold), key=lambda point: point.at)
+    fold = max(
+        (point for point in beside if point.kind == SpecialKind.fold), key=lambda point: point.parameter_value
+    )
     stored = RowSpecialPoint(
         row_index=1,
         row_value=BESIDE.k1,
         kind=fold.kind,
-        at=fold.at,
+        parameter_value=fold.parameter_value,
         period=fold.period,
         tip_y_max=fold.tip_y_max,
     )
@@ -70,7 +72,7 @@ def closed(starts):
 @pytest.mark.long
 def test_a_curve_of_folds_crosses_a_row_without_hopf_points_twice(half, starts):
     assert half.half.end is CurveEndReason.hopf
-    assert sorted(start.at for start in starts) == pytest.approx([FIRST, LAST], abs=1e-5)
+    assert sorted(start.parameter_value for start in starts) == pytest.approx([FIRST, LAST], abs=1e-5)
     # On its own row the curve passes the two folds of the branch between the Hopf points; one is known.
     assert [crossing.row_index for crossing in half.crossings] == [0, 0, 1]
     assert half.distances == {0: pytest.approx(0, abs=1e-6)}
@@ -95,13 +97,15 @@ def test_a_closed_branch_is_followed_once_around_from_either_fold(closed, starts
     assert curve.closed
     assert curve.complete
     assert [point.kind for point in curve.special_points] == [SpecialKind.fold] * 3
-    assert curve.special_points[0].at == pytest.approx(curve.special_points[2].at, rel=2e-9)
+    assert curve.special_points[0].parameter_value == pytest.approx(
+        curve.special_points[2].parameter_value, rel=2e-9
+    )
     folds = special_points_of(closed)
-    assert sorted(point.at for point in folds) == pytest.approx([FIRST, LAST], abs=1e-8)
-    assert all(point.error <= 1e-9 * point.at for point in folds)
-    low = min(starts, key=lambda start: start.at)
+    assert sorted(point.parameter_value for point in folds) == pytest.approx([FIRST, LAST], abs=1e-8)
+    assert all(point.error <= 1e-9 * point.parameter_value for point in folds)
+    low = min(starts, key=lambda start: start.parameter_value)
     other = special_points_of(row_branches(ROD, request(60, 86), 64, starts=[low]))
-    assert sorted(point.at for point in other) == pytest.approx([FIRST, LAST], abs=1e-8)
+    assert sorted(point.parameter_value for point in other) == pytest.approx([FIRST, LAST], abs=1e-8)
 
 
 @pytest.mark.long
@@ -109,13 +113,15 @@ def test_cycles_of_a_closed_branch_are_stable_on_one_side_of_both_folds(closed):
     values = np.array([FIRST - 1e-6, FIRST + 1e-6, 79, LAST - 1e-6, LAST + 1e-6])
     assert stable_cycles_at(values, closed, certify=True).tolist() == [0, 1, 1, 1, 0]
     (curve,) = closed.curves
-    counts = {point.unstable_count for point in curve.points if FIRST + 0.1 < point.at < LAST - 0.1}
+    counts = {
+        point.unstable_count for point in curve.points if FIRST + 0.1 < point.parameter_value < LAST - 0.1
+    }
     assert counts == {0, 1}
 
 
 @pytest.mark.long
 def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
-    low = min(starts, key=lambda start: start.at)
+    low = min(starts, key=lambda start: start.parameter_value)
     found = row_branches(ROD, request(60, 79), 64, starts=[low])
     assert found.status == BranchStatus.ok
     (curve,) = found.curves
@@ -127,9 +133,9 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
     ]
     first, fold, last = curve.special_points
     assert {first.reason, last.reason} == {BranchEndReason.range_end}
-    assert fold.at == pytest.approx(FIRST, abs=1e-8)
+    assert fold.parameter_value == pytest.approx(FIRST, abs=1e-8)
     assert [curve.points[i].unstable_count for i in (0, -1)] == [1, 0]
-    assert [curve.points[i].at for i in (0, -1)] == pytest.approx([79, 79], rel=1e-13)
+    assert [curve.points[i].parameter_value for i in (0, -1)] == pytest.approx([79, 79], rel=1e-13)
     # The same cycle at the end of a branch along k1, from a Hopf point of another rod.
     along = rs.sweep(
         "branch", along="k1", F=79, k2=1e4, gamma3=0.006, gamma1=1, start=ROD.k1, stop=134, progress=False
@@ -157,7 +163,7 @@ def test_a_point_on_a_known_branch_starts_no_other(beside):
 def test_a_point_that_a_known_branch_does_not_have_is_none(beside):
     """As the crossing of a curve that a coarse mesh displaces: the branch turns out to be known."""
     fold = next(point for point in beside if point.kind == SpecialKind.fold)
-    displaced = replace(fold, at=fold.at + 0.01)
+    displaced = replace(fold, parameter_value=fold.parameter_value + 0.01)
     found = row_branches(BESIDE, request(60, 86), 64, starts=[displaced])
     assert (len(found.curves), found.status, found.message) == (1, BranchStatus.ok, "")
 
@@ -167,7 +173,7 @@ def test_a_point_without_a_branch_is_said_and_leaves_the_row_undecided(starts):
     wrong = replace(starts[0], orbit=None, message="its cycle is lost")
     found = row_branches(ROD, request(60, 86), 64, starts=[wrong])
     assert found.status == BranchStatus.stopped
-    where = f"the fold at F = {wrong.at:.9g}"
+    where = f"the fold at F = {wrong.parameter_value:.9g}"
     assert found.message == f"no branch is followed through {where}: its cycle is lost"
     assert stable_cycles_at(np.array([79.0]), found, certify=True).tolist() == [-1]
     # Beyond the range there is no cycle to begin with.

@@ -4,18 +4,18 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
 from rodsweep.determinant.stability_boundary import Boundary
 from rodsweep.errors import InputError
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 
 ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
@@ -28,7 +28,7 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     """The curve from the first change of a kind on the middle row of a plane."""
     first, second = axes
     middle = Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, build=build)
-    found = find_thresholds(Path(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
+    found = find_thresholds(ParameterPath(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
     change = next(c for c in found.thresholds if c.kind == kind)
     plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
     sign = 0.0 if kind == ChangeKind.hopf else -1.0
@@ -66,7 +66,9 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     k1, error = fold.values[1], 1e-6
 
     def hopfs(stiffness):
-        found = find_thresholds(Path(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0)
+        found = find_thresholds(
+            ParameterPath(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0
+        )
         return [c.value for c in found.thresholds if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
 
     assert hopfs(k1 * (1 - error)) == []
@@ -82,7 +84,7 @@ def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     numbers = []
     for side in (-1e-5, 1e-5):
         rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
-        found = find_thresholds(Path(rod, "F"), 0.0, 560.0)
+        found = find_thresholds(ParameterPath(rod, "F"), 0.0, 560.0)
         numbers.append(sum(c.kind in (ChangeKind.hopf, ChangeKind.restabilization) for c in found.thresholds))
     assert numbers == [2, 0]
 

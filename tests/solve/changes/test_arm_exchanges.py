@@ -5,7 +5,7 @@ import pytest
 from surveyed import RODS, survey_only
 
 import rodsweep as rs
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
@@ -183,7 +183,7 @@ def test_two_close_eigenvalues_are_not_followed_as_one():
     """Both were followed to the same root, whose stated error was below its distance from itself."""
     found = solve_thresholds(NEARLY_CRUSHED, ThresholdsRequest(121.0, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    followed = FollowedArms(Path(NEARLY_CRUSHED, "F"), np.linspace(100.0, 121.0, 24), 4)
+    followed = FollowedArms(ParameterPath(NEARLY_CRUSHED, "F"), np.linspace(100.0, 121.0, 24), 4)
     for F in (116.98506875, 116.98512780, 116.98542655):
         alone = solve_spectrum(NEARLY_CRUSHED.with_values(F=F), SpectrumRequest(4, 1e-6, certify=True))
         spectrum = followed.spectrum(F, 4)

@@ -11,16 +11,16 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.arm.hull import hull
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.along_path import find_thresholds
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.search_range import IntervalQueue
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.path import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
@@ -146,7 +146,7 @@ def test_beyond_a_search_that_ended_early_a_row_is_undecided(no_bound_beyond_som
 
 def test_stiffnesses_are_searched_from_the_stiff_end(no_bound_beyond_some_force):
     """Along k2 the path variable is the compliance: a bound is known for stiff arms only."""
-    found = find_thresholds(Path(STEPPED.with_values(F=30.0), "k2"), 1e3, 1e5)
+    found = find_thresholds(ParameterPath(STEPPED.with_values(F=30.0), "k2"), 1e3, 1e5)
     assert found.ended_early
     assert 1e3 < found.searched_interval[0] < 1e5
     assert found.searched_interval[1] == 1e5
@@ -225,7 +225,7 @@ def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_searched_to_its_end(m
 
 def test_a_pair_on_the_axis_at_the_end_of_a_search_is_one_crossing():
     """Neither a crossing just beyond the end belongs to the search, nor is one just before the end lost."""
-    path = Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
+    path = ParameterPath(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), "F")
     at = find_thresholds(path, 0.0, 20.0).thresholds[-1].value
     for end, number in ((at * (1 - 1e-7), 0), (at, 1), (at * (1 + 1e-7), 1)):
         found = find_thresholds(path, 0.0, end)

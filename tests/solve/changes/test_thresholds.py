@@ -8,14 +8,14 @@ import pytest
 from conftest import ROOT
 
 from rodsweep.determinant.certificate.winding_number import count_right_of
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes import along_path as transitions_module
-from rodsweep.solve.changes.along_path import find_thresholds
+from rodsweep.solve.changes import thresholds_along_path as transitions_module
 from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
 from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REFERENCE = json.loads((ROOT / "tests" / "reference" / "thresholds.json").read_text())
@@ -114,7 +114,7 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
         k1, k2 = (10 ** rng.uniform(1.3, 6) if rng.random() < 0.85 else inf for _ in range(2))
         gamma3 = 10 ** rng.uniform(-6, 1) if rng.random() < 0.85 else 0.0
         end = min(150.0, 0.999 * k1)
-        found = find_thresholds(Path(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
+        found = find_thresholds(ParameterPath(Rod(F=0.0, k1=k1, k2=k2, gamma3=gamma3), "F"), 0.0, end)
         forces = np.sort(rng.uniform(0, end, 20))
         for F, motion, unstable in zip(forces, *classes_and_unstable_counts(found, forces), strict=True):
             spectrum = solve_spectrum(Rod(F=F, k1=k1, k2=k2, gamma3=gamma3), SpectrumRequest(2, 1e-6, True))
@@ -134,14 +134,16 @@ def test_classes_agree_with_certified_spectra_at_random_points_of_random_rods():
     ],
 )
 def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, start, stop):
-    found = find_thresholds(Path(fixed, name), start, stop).thresholds
+    found = find_thresholds(ParameterPath(fixed, name), start, stop).thresholds
     assert found
     for crossing in found:
         values = {n: getattr(fixed, n) for n in ("k1", "k2", "gamma3")} | {name: crossing.value}
         forces = [c.value for c in thresholds(**values, F_max=1.2 * fixed.F).thresholds]
         assert min(abs(F - fixed.F) for F in forces) < 1e-10 * fixed.F
         before, after = (
-            count_right_of(0.0, Path(fixed, name).rod_at(Path(fixed, name).coordinate(v))).number
+            count_right_of(
+                0.0, ParameterPath(fixed, name).rod_at(ParameterPath(fixed, name).coordinate(v))
+            ).number
             for v in (crossing.value * 0.99, crossing.value * 1.01)
         )
         assert after == crossing.unstable_after
@@ -197,7 +199,7 @@ def test_a_search_up_to_a_force_without_a_bound_names_the_force():
 
 def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_change_occurs():
     """F c2 < -nu: two positive real eigenvalues become a pair, which later a real one overtakes."""
-    found = find_thresholds(Path(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
+    found = find_thresholds(ParameterPath(Rod(F=-8.0, k1=1e4, k2=3.0, gamma3=0.01), "F"), -8.0, 20.0)
     kinds = [c.kind for c in found.thresholds]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
@@ -234,7 +236,7 @@ def test_a_narrow_window_of_oscillations_is_found(beyond):
 def test_a_pair_about_to_cross_the_axis_leads():
     """The onset and an overtaking lie close together before it, between two spectra that agree in kind."""
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
-    found = find_thresholds(Path(rod, "F"), -27.170544378578725, 100.0)
+    found = find_thresholds(ParameterPath(rod, "F"), -27.170544378578725, 100.0)
     kinds = [c.kind for c in found.thresholds]
     assert ChangeKind.onset in kinds
     assert ChangeKind.real_leads in kinds
@@ -250,7 +252,9 @@ def test_no_change_outside_the_path_is_reported():
     assert before.status == ThresholdStatus.ok
     assert [c.kind for c in before.thresholds] == [ChangeKind.onset]
     assert before.search_result.unstable_at_end == 0
-    beyond = find_thresholds(Path(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0)
+    beyond = find_thresholds(
+        ParameterPath(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0
+    )
     assert (beyond.unstable_at_start, beyond.thresholds) == (2, ())
 
 
@@ -260,7 +264,7 @@ def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     hopf = next(
         c.value for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).thresholds if c.kind == ChangeKind.hopf
     )
-    found = find_thresholds(Path(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
+    found = find_thresholds(ParameterPath(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
     assert [c.unstable_after for c in found.thresholds if c.kind == ChangeKind.hopf] == [2]
 
 
@@ -277,7 +281,7 @@ def test_a_search_that_ends_before_anything_happens(F_max):
 @pytest.mark.parametrize("k1", [1e4, 200.0])
 def test_strong_pulls_cost_no_more_than_pushes(k1):
     """Both exponentials of D grow there and cancel; bounded apart they would take a million boxes."""
-    path = Path(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
+    path = ParameterPath(Rod(F=0.0, k1=k1, k2=1e4, gamma3=1e-4), "F")
     for start in (-400.0, -100.0):
         zeros, left, examined = transitions_module.cover_with_boxes(
             transitions_module.first_boxes(path, start, 0.0), path.origin, path.direction

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rodsweep.solve.continuation.curve import (
-    CurveStop,
     StepControl,
     StepResult,
+    StopReason,
     first_crossed_margin,
     follow_curve,
     zero_along_step,
@@ -103,7 +103,7 @@ def followed(curve, control=STEPS, start=0.0):
 def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
     curve = Ellipse(a, b)
     found = followed(curve, start=start)
-    assert found.end_reason is CurveStop.closed
+    assert found.end_reason is StopReason.closed
     assert found.solutions[0] is found.solutions[-1]
     angles = np.unwrap([curve.angle(point) for point in found.solutions])
     assert angles[-1] - angles[0] == pytest.approx(2 * np.pi, abs=1e-9)
@@ -113,23 +113,23 @@ def test_a_closed_curve_is_followed_once_through_its_folds(a, b, start):
 @given(st.floats(0.3, 3.0), st.floats(-0.95, 0.95))
 def test_a_curve_ends_where_its_margin_is_zero(b, share):
     found = followed(Ellipse(1.0, b, least=share), start=np.arccos(share) / 2)
-    assert (found.end_reason, found.margin_index) == (CurveStop.zero_margin, 0)
+    assert (found.end_reason, found.margin_index) == (StopReason.zero_margin, 0)
     assert found.solutions[-1] == pytest.approx([share, b * np.sqrt(1 - share**2)], abs=1e-12)
     assert (np.array(found.solutions[:-1])[:, 0] > share).all()
 
 
 def test_a_step_from_which_the_end_is_not_located_is_shortened():
     found = followed(LocatedOnShortSteps(1.0, 1.0, least=0.3, longest=1e-3))
-    assert (found.end_reason, found.margin_index) == (CurveStop.zero_margin, 0)
+    assert (found.end_reason, found.margin_index) == (StopReason.zero_margin, 0)
     assert found.solutions[-1] == pytest.approx([0.3, np.sqrt(1 - 0.3**2)], abs=1e-12)
     lost = followed(LocatedOnShortSteps(1.0, 1.0, least=0.3))
-    assert lost.end_reason is CurveStop.no_further_solution
+    assert lost.end_reason is StopReason.no_further_solution
     assert 0.3 < lost.solutions[-1][0] < 0.3 + 2 * STEPS.min_length
 
 
 def test_a_curve_that_is_lost_ends_at_its_last_solution_beside_the_gap():
     found = followed(Ellipse(1.0, 1.0, gap=(1.0, 1.5)))
-    assert found.end_reason is CurveStop.no_further_solution
+    assert found.end_reason is StopReason.no_further_solution
     assert Ellipse(1.0, 1.0).angle(found.solutions[-1]) == pytest.approx(1.0, abs=2e-6)
 
 
@@ -145,7 +145,7 @@ def test_a_curve_has_no_more_solutions_than_are_kept():
             max_solutions=7,
         ),
     )
-    assert (found.end_reason, len(found.solutions)) == (CurveStop.max_solutions, 7)
+    assert (found.end_reason, len(found.solutions)) == (StopReason.max_solutions, 7)
 
 
 def test_steps_are_as_long_as_turns_and_predictions_allow():
@@ -180,7 +180,7 @@ def test_every_step_is_reported_with_the_solutions_before_it():
     found = follow_curve(
         Ellipse(1.0, 1.0, least=0.0), np.array([1.0, 0.0]), STEPS, lambda points: heard.append(list(points))
     )
-    assert found.end_reason is CurveStop.zero_margin
+    assert found.end_reason is StopReason.zero_margin
     assert [len(points) for points in heard] == list(range(1, len(found.solutions)))
     assert all(point is kept for point, kept in zip(heard[-1], found.solutions, strict=False))
 

@@ -358,7 +358,7 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
         fields.append(S)
     state = source.layout.state(fields[0], np.zeros_like(fields[0]))
     found = target.stresses(source.states_on_mesh(target.mesh, state))
-    extrapolated = target.stresses(source.changes_on_mesh(target.mesh, state))
+    extrapolated = target.stresses(source.increments_on_mesh(target.mesh, state))
     error, other_error = (np.abs(each - fields[1]).max() for each in (found, extrapolated))
     assert error < other_error / 5 < 0.1
     assert error < 2e-2

@@ -9,8 +9,8 @@ import pytest
 from rods import rod_of
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
-from rodsweep.discretization.elements.periodic import interpolate_samples, time_derivative
 from rodsweep.discretization.elements.quadrature import lobatto_points
+from rodsweep.discretization.elements.trigonometric import interpolate_samples, time_derivative
 from rodsweep.errors import EnvironmentIncomplete
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.petsc import PETSc
@@ -392,7 +392,7 @@ def test_means_are_integrals_by_the_methods_own_quadrature():
         np.empty((2, len(stages))),
         np.outer(interval_lengths(12), half.collocation.weights).ravel(),
     )
-    write_powers(stages, power, half.semidiscrete_equations)
+    write_powers(stages, power, half.orbit_equations)
     mean = power @ weights
     rms = np.sqrt((power - mean[:, None]) ** 2 @ weights)
     assert (m.injection_mean, m.dissipation_mean) == pytest.approx(tuple(mean), rel=1e-13)

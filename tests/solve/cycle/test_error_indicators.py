@@ -43,8 +43,8 @@ def test_every_interval_loses_energy(orbit):
     """The collocation never gains energy with a linear law, so the losses do not cancel."""
     found = converged(orbit, 6).orbit
     power = np.empty((2, found.interval_count * found.stage_count))
-    write_powers(np.ascontiguousarray(found.all_states[1:]), power, found.semidiscrete_equations)
-    lengths = found.solved_duration * found.semidiscrete_equations.interval_lengths
+    write_powers(np.ascontiguousarray(found.all_states[1:]), power, found.orbit_equations)
+    lengths = found.solved_duration * found.orbit_equations.interval_lengths
     gained = (power[0] - power[1]).reshape(found.interval_count, -1) @ found.collocation.weights * lengths
     stored = np.diff(found.form.elastic_energy(np.ascontiguousarray(found.all_states[:: found.stage_count])))
     assert (gained > stored).all()

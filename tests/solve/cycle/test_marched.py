@@ -9,7 +9,7 @@ import pytest
 from rods import rod_of
 from surveyed import RODS
 
-from rodsweep.discretization.elements.periodic import time_derivative
+from rodsweep.discretization.elements.trigonometric import time_derivative
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod

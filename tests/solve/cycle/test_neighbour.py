@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.model.rod import Rod
 from rodsweep.results.run.checkpoints import Checkpoints
-from rodsweep.solve.cycle.along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
+from rodsweep.solve.cycle.cycles_along_parameter import CYCLE_PREDICTION_SETTINGS, CyclePredictor
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.neighbour import CycleStart
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace

@@ -116,4 +116,4 @@ def test_branches_start_at_hopf_points_and_have_their_folds(gamma1):
     found = solve_branches(replace(ROD, F=0.0, gamma1=gamma1), request)
     assert found.status == BranchStatus.ok, found.message
     (fold,) = (p for p in found.curves[0].special_points if p.kind == SpecialKind.fold)
-    assert fold.at == pytest.approx(FOLD, abs=2e-9 if gamma1 == 1e-6 else 2e-6)
+    assert fold.parameter_value == pytest.approx(FOLD, abs=2e-9 if gamma1 == 1e-6 else 2e-6)

@@ -14,12 +14,12 @@ from surveyed import few, survey_only
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.results.file.view import read_view
-from rodsweep.solve.changes.along_path import find_axis_crossings, find_thresholds
+from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings, find_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import orbit_by_normal_form
 from rodsweep.solve.hopf import criticality
@@ -215,7 +215,7 @@ def test_hopf_points_are_those_of_all_transitions():
         Rod(F=0.0, k1=60.0, k2=10.0, gamma3=0.5),
     ):
         end = min(200.0, rod.k1 * (1 - 1e-6))
-        path = Path(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
+        path = ParameterPath(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
         every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
         crossings = [c for c in every.thresholds if not c.kind.changes_leading_eigenvalue]
         assert [(c.value, c.kind, c.unstable_after) for c in pairs.thresholds] == [

@@ -19,7 +19,7 @@ from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, bautin_points
 from rodsweep.solve.hopf.bautin_curves import (
     BautinCurvePoint,
-    BautinEnd,
+    BautinEndReason,
     BautinProblem,
     bautin_curve,
     lies_on_curve,
@@ -299,7 +299,7 @@ def test_points_of_the_curve_are_those_of_other_equations(over_shear):
 def test_curve_ends_at_the_ends_of_the_range_or_of_the_plane(over_shear):
     """From k1 = 147.1, below the plane, to 150.9, which k2 reaches within the range."""
     starts, ends = (over_shear[1][f"bautin_along_{side}"].values for side in ("start", "end"))
-    assert (starts[0], ends[-1]) == (BautinEnd.plane_edge, BautinEnd.range_end)
+    assert (starts[0], ends[-1]) == (BautinEndReason.plane_edge, BautinEndReason.range_end)
     assert not starts[1:].any() and not ends[:-1].any()
     assert over_shear[1].bautin_along_k1.values[0] == pytest.approx(148, rel=1e-12)
 
@@ -323,8 +323,8 @@ def test_curve_that_turns_back_in_the_third_parameter_is_followed_through_it(mon
     start = on_parabola(space, np.array([0.3, 0.5, 0.6, 0.0]), 2)
     curve = bautin_curve(space, start.point)
     assert (
-        curve.end_reasons == (BautinEnd.plane_edge, BautinEnd.plane_edge)
-        or curve.end_reasons[1] == BautinEnd.range_end
+        curve.end_reasons == (BautinEndReason.plane_edge, BautinEndReason.plane_edge)
+        or curve.end_reasons[1] == BautinEndReason.range_end
     )
     x, _, z = np.array([point.values for point in curve.points]).T
     assert (np.diff(x) > 0).all()
@@ -352,7 +352,7 @@ def test_a_closed_curve_over_three_parameters_is_followed_once(monkeypatch):
     unit = tuple(PlaneAxis(name, 0.0, 1.0) for name in ("F", "k1", "gamma3"))
     space = BautinProblem(Rod(F=0.0, k1=2.0, k2=1.0, gamma3=1.0), unit, np.array([0.5]), 1e-10)
     curve = bautin_curve(space, on_circle(space, np.array([0.7, 0.5, 0.7, 0.0]), 0).point)
-    assert curve.end_reasons == (BautinEnd.closed, BautinEnd.closed)
+    assert curve.end_reasons == (BautinEndReason.closed, BautinEndReason.closed)
     x, _, z = np.array([point.values for point in curve.points]).T - 0.5
     turned = np.unwrap(np.arctan2(z, x))
     assert abs(turned[-1] - turned[0]) == pytest.approx(2 * np.pi)

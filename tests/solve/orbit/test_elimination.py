@@ -45,15 +45,13 @@ def velocities(orbit):
     """V of all stages, (K, s, 3, 9)."""
     V, (n, G) = np.empty((*orbit.stage_states.shape[:2], 3, 9)), (orbit.form.unknown_count, np.empty((3, 9)))
     for place in np.ndindex(V.shape[:2]):
-        write_rates_of_state(
-            orbit.stage_states[place], np.empty(n), V[place], G, orbit.semidiscrete_equations
-        )
+        write_rates_of_state(orbit.stage_states[place], np.empty(n), V[place], G, orbit.orbit_equations)
     return V
 
 
 def dense_matrix(orbit, k):
     """Of all stages of an interval, (s n, s n)."""
-    p, (s, n) = orbit.semidiscrete_equations, orbit.stage_states.shape[1:]
+    p, (s, n) = orbit.orbit_equations, orbit.stage_states.shape[1:]
     V, G, tip = np.empty((3, 9)), np.empty((3, 9)), np.empty((3, n))
     A = np.kron(p.stage_differentiation[:, 1:], np.diag(p.mass))
     for i in range(s):
@@ -69,7 +67,7 @@ def dense_matrix(orbit, k):
 @pytest.mark.parametrize("rod", RODS.values(), ids=RODS.keys())
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
-    p, n = orbit.semidiscrete_equations, orbit.form.unknown_count
+    p, n = orbit.orbit_equations, orbit.form.unknown_count
     factors = MatrixMemory(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
@@ -110,7 +108,7 @@ def balances(orbit, name, change):
     """Residuals of all stages, and the right side of the phase, with a parameter's coordinate changed."""
     form = orbit.form
     moved = replace(orbit, form=form.with_coordinate(name, form.rod.coordinate(name) + change))
-    p, out = moved.semidiscrete_equations, np.empty_like(orbit.stage_states)
+    p, out = moved.orbit_equations, np.empty_like(orbit.stage_states)
     write_stage_residuals(orbit.all_states, orbit.solved_duration, p, out)
     return np.append(out, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
@@ -124,7 +122,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
         parameter_derivatives(orbit.form, name),
         np.empty((INTERVALS, 4, 3, orbit.form.unknown_count)),
     )
-    p, V = orbit.semidiscrete_equations, np.empty((INTERVALS, 4, 3, 9))
+    p, V = orbit.orbit_equations, np.empty((INTERVALS, 4, 3, 9))
     write_right_sides(orbit.all_states, orbit.solved_duration, p, along, V, columns)
     right = columns[:, :, 2]
     shift = phase_right_side(orbit.start_state, along.change, p.rod, p.node_matrices)
@@ -139,7 +137,7 @@ def test_derivative_by_a_parameter_is_the_limit_of_differences(rod, name):
 def whole_matrix(matrix):
     """Newton's matrix without its last row, of all states, period and parameter, (N, N + 1)."""
     orbit = matrix.orbit
-    p, (K, s, n) = orbit.semidiscrete_equations, orbit.stage_states.shape
+    p, (K, s, n) = orbit.orbit_equations, orbit.stage_states.shape
     along, columns = parameter_derivatives(orbit.form, matrix.scale.parameter_name), np.empty((K, s, 3, n))
     write_right_sides(orbit.all_states, orbit.solved_duration, p, along, np.empty((K, s, 3, 9)), columns)
     A = np.zeros((len(orbit.values), len(orbit.values) + 1))

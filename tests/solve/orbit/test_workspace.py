@@ -72,7 +72,7 @@ def test_a_matrix_whose_workspace_another_one_used_raises_and_keeps_its_multipli
         lambda matrix: matrix.branch_tangent(MOMENT),
         lambda matrix: matrix.approximate_null_vector(),
         lambda matrix: matrix.residual_variations(matrix.orbit, np.ones((1, len(matrix.orbit.values) + 1))),
-        lambda matrix: matrix.orbit_changes_at_fixed_parameter(
+        lambda matrix: matrix.orbit_increments_at_fixed_parameter(
             np.ones((1, 24)), np.ones((INTERVALS, 3, 1, 24))
         ),
     ],

@@ -7,7 +7,7 @@ from reference.dense_arm import eigenvalues
 from reference.random_arms import random_arm
 from surveyed import RODS
 
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
@@ -43,7 +43,7 @@ def agrees(found, i, rod):
 def test_followed_spectra_are_those_of_single_points(name):
     """The taper passes 1, where the rod is uniform, and F and k1 a double eigenvalue and a Hopf point."""
     values = np.array(LINES[name])
-    stretch = NeighbouringRods(Path(Rod(**{**CONE, name: float(values[0])}), name), values)
+    stretch = NeighbouringRods(ParameterPath(Rod(**{**CONE, name: float(values[0])}), name), values)
     found = solve_stretch(stretch, REQUEST)
     for i in np.linspace(0, len(values) - 1, COMPARED).astype(int):
         agrees(found, i, stretch.rod_at(int(i)))
@@ -51,7 +51,7 @@ def test_followed_spectra_are_those_of_single_points(name):
 
 def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
     rod = Rod(F=10.0, k1=300.0, k2=1e3, gamma3=1e-3, build=Build("neo_hookean", "swelling"))
-    stretch = NeighbouringRods(Path(rod, "F"), np.linspace(10, 200, 10))
+    stretch = NeighbouringRods(ParameterPath(rod, "F"), np.linspace(10, 200, 10))
     found = solve_stretch(stretch, REQUEST)
     assert found.certified.all()
     for i in (0, 9):
@@ -61,7 +61,7 @@ def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
 
 
 def test_a_cone_is_followed_and_proved_without_single_points():
-    path = Path(Rod(**CONE), "F")
+    path = ParameterPath(Rod(**CONE), "F")
     reached = follow_spectra_of_arms(path, np.linspace(5, 14, 32), REQUEST)
     assert len(reached.is_accepted) == 32
     assert reached.is_accepted.all()
@@ -72,7 +72,10 @@ def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
     counted = []
     count = arm_count.count_right_of
     monkeypatch.setattr(arm_count, "count_right_of", lambda *words: counted.append(words[0]) or count(*words))
-    path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(20, 60, 160)
+    path, values = (
+        ParameterPath(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"),
+        np.linspace(20, 60, 160),
+    )
     followed = [follow_spectra_of_arms(path, part, REQUEST) for part in np.split(values, 2)]
     accepted, unstable = (
         np.concatenate([getattr(part, name) for part in followed])
@@ -87,7 +90,10 @@ def test_counts_carried_along_a_path_are_those_of_single_points(monkeypatch):
 
 def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch):
     """Single counts then decide at every point."""
-    path, values = Path(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"), np.linspace(40, 42, 40)
+    path, values = (
+        ParameterPath(Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5), "F"),
+        np.linspace(40, 42, 40),
+    )
     confirmed = carried_arm_count.confirmed_line
     monkeypatch.setattr(
         carried_arm_count,
@@ -111,7 +117,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
     for _ in range(4):
         rod = random_arm(rng)
         values = np.linspace(0.4, 1.0, 24) * rod.F
-        path = Path(rod.with_values(F=float(values[0])), "F")
+        path = ParameterPath(rod.with_values(F=float(values[0])), "F")
         reached = follow_spectra_of_arms(path, values, REQUEST)
         if reached is None:
             continue
@@ -128,7 +134,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
 
 
 def test_points_between_those_followed_have_their_own_spectra():
-    path = Path(Rod(**CONE), "F")
+    path = ParameterPath(Rod(**CONE), "F")
     followed = FollowedArms(path, np.linspace(1, 25, 25), 4)
     for F in (3.3, 12.72, 24.99):
         found, alone = followed.spectrum(F, 4), solve_spectrum(path.rod_at(F), REQUEST)

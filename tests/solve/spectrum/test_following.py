@@ -12,7 +12,7 @@ from surveyed import RODS
 from rodsweep.determinant import moving_line
 from rodsweep.determinant.certificate.winding_number import count_right_of, phase_change_by_nodes
 from rodsweep.determinant.moving_line import IntervalEnd, examine_rectangle, proves_no_crossing
-from rodsweep.determinant.parameter_path import Path
+from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Coefficients, Rod
 from rodsweep.solve.spectrum.path import neighbouring_rods
 from rodsweep.solve.spectrum.path.prediction import extrapolate_hermite
@@ -136,7 +136,7 @@ def test_rectangles_without_an_inside_are_refused(half):
 def test_what_is_proved_has_no_zero_inside():
     """Round what is said to be free of zeros the phase of D does not turn, at any of its rods."""
     rng, proved = np.random.default_rng(3), 0
-    path = Path(Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3), "F")
+    path = ParameterPath(Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3), "F")
     for _ in range(2000):
         p, at_line, y = rng.uniform(5, 60), -(10 ** rng.uniform(0, 5)), 10 ** rng.uniform(0, 5)
         half = (y * 10 ** rng.uniform(-2, -0.4), 10 ** rng.uniform(-3, 0.5))

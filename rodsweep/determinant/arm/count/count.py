@@ -49,9 +49,9 @@ class ContourTraversal(NamedTuple):
     `distance_on_side` from the start of this side.
 
     phase_change: change of arg D so far. node_count: number of nodes so far. last_node: the last node.
-    reach_growth: change of the reach per distance. next_distance: distance of the next node, 0 if not chosen
-    yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf if the change
-    of phase is not determined.
+    radius_growth: change of the valid radius per distance. next_distance: distance of the next node, 0 if not
+    chosen yet. required_w_bound: |w| for which propagators are needed to continue; 0 at the end, inf if the
+    change of phase is not determined.
     """
 
     side_number: int
@@ -59,7 +59,7 @@ class ContourTraversal(NamedTuple):
     phase_change: float
     node_count: int
     last_node: PhaseNode
-    reach_growth: float
+    radius_growth: float
     next_distance: float
     required_w_bound: float
 
@@ -126,7 +126,7 @@ def _phase_change(
 ) -> tuple[float, int]:
     """Returns (change along the upper half of the box of arg D with `known_w` divided out; number of nodes).
 
-    Raises `PhaseLost` if a node's reach is too small, or too many nodes are needed.
+    Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed.
     """
     corner = _upper_right_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
@@ -173,10 +173,10 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
         if t == length:
             side, t, growth = side + 1, 0.0, 0.0
             continue
-        if not node.reach > CONTOUR_SETTINGS.min_reach * abs(node.w) or nodes > CONTOUR_SETTINGS.max_nodes:
+        if _is_lost(node, nodes):
             return ContourTraversal(side, t, change, nodes, node, growth, step, math.inf)
         if step == 0:
-            step = min(_overlapping_distance(node.reach, growth), length - t)
+            step = min(_overlapping_distance(node.valid_radius, growth), length - t)
         w = end if step == length - t else corners[side] + (end - corners[side]) / length * (t + step)
         unit = mean_wave_number_and_w_scale(w, samples[0])[1]
         first = CONTOUR_SETTINGS.first_radius * unit
@@ -188,15 +188,22 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             return ContourTraversal(side, t, change, nodes, node, growth, step, min_W)
         neighbour = phase_node(w, known_w, (unit, min(radius, level[0] - abs(w))), hull, (samples[1], level))
         nodes += 1
-        growth = (neighbour.reach - node.reach) / step
-        if abs(neighbour.w - node.w) < node.reach + neighbour.reach:
+        growth = (neighbour.valid_radius - node.valid_radius) / step
+        if abs(neighbour.w - node.w) < node.valid_radius + neighbour.valid_radius:
             change += _phase_between(node, neighbour, samples[1])
             t = length if neighbour.w == end else t + step
             node = neighbour
             step = 0.0
         else:
-            step = _shortened_distance(node.reach, growth, step)
+            step = _shortened_distance(node.valid_radius, growth, step)
     return ContourTraversal(side, t, change, nodes, node, growth, step, 0.0)
+
+
+@compiled
+def _is_lost(node: PhaseNode, node_count: int) -> bool:
+    """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
+    min_radius = CONTOUR_SETTINGS.min_valid_radius * abs(node.w)
+    return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
 
 
 @compiled
@@ -208,19 +215,17 @@ def _serves_efficiently(W: float, required_W: float) -> bool:
 
 @compiled
 def _overlapping_distance(reach: float, growth: float) -> float:
-    """Distance to the next node: `reach_overlap` times the sum of the current reach and of the reach expected
-    there. growth: expected change of the reach per distance, clipped to between -1 and
-    `max_reach_growth`.
+    """Distance to the next node: `radius_overlap` times the sum of the current valid radius and of the valid
+    radius expected there. growth: expected change of the valid radius per distance, clipped to between -1 and
+    `max_radius_growth`.
     """
-    overlap = CONTOUR_SETTINGS.reach_overlap
-    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_reach_growth))
+    overlap = CONTOUR_SETTINGS.radius_overlap
+    return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_radius_growth))
 
 
 @compiled
 def _shortened_distance(reach: float, growth: float, distance: float) -> float:
-    """A distance to the next node below `distance`; repeated calls give a distance within the reach of the
-    current node.
-    """
+    """A distance to the next node below `distance`; repeated calls lead to a distance below `reach`."""
     shorter_distance = min(_overlapping_distance(reach, growth), CONTOUR_SETTINGS.max_step_ratio * distance)
     return (
         shorter_distance
@@ -231,11 +236,11 @@ def _shortened_distance(reach: float, growth: float, distance: float) -> float:
 
 @compiled
 def _phase_between(node: PhaseNode, next_node: PhaseNode, samples: ArmSamples) -> float:
-    """The change of arg D between two nodes whose reaches overlap, from their tangents and values of D."""
-    fraction = node.reach / (node.reach + next_node.reach)
+    """The change of arg D between two nodes with overlapping discs, from their tangents and values of D."""
+    fraction = node.valid_radius / (node.valid_radius + next_node.valid_radius)
     middle_w = node.w + fraction * (next_node.w - node.w)
     # The tangents at both nodes predict the change. The values of D give the remainder, which is below pi
-    # because the reaches overlap.
+    # because the discs overlap.
     linear_change = (
         linearised_log_determinant(node, middle_w, samples).imag
         - linearised_log_determinant(next_node, middle_w, samples).imag

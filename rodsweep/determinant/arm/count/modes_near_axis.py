@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..local_waves import ArmSamples
 from ..value import determinant_along_chain
@@ -22,7 +22,7 @@ from .settings import CONTOUR_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NearAxisSettings(CompiledSettings):
+class NearAxisSettings(KernelConstants):
     """Settings for the starting points on the imaginary axis, and for Newton's method from them."""
 
     first_height: float = 0.01

@@ -56,13 +56,13 @@ class ArmsOfInterval(NamedTuple):
 class LineNode(NamedTuple):
     """The node w0 of a disc, with values of the middle arm.
 
-    w: w0. D: D(w0) exp(-S). S: exponent of the scale of D. L: D'/D, with the eigenvalues divided out.
+    w: w0. D: D(w0) exp(-S), S = `log_scale`. L: D'/D, with the eigenvalues divided out.
     divided_indices: indices of the known eigenvalues that are divided out, (k,). exponent_and_slope: (Phi,
     dPhi/dw) if h contains the dominant wave, else (0, 0)."""
 
     w: complex
     D: complex
-    S: float
+    log_scale: float
     L: complex
     divided_indices: NDArray[np.int64]
     exponent_and_slope: tuple[complex, complex]
@@ -161,7 +161,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
     value = determinant_along_chain(w0, arms.largest_w, arms.propagators[0])
-    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return False
     divided_indices = np.flatnonzero(
         np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
@@ -175,7 +175,7 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     if radius <= CONTOUR_SETTINGS.max_wave_radius * w0.imag:
         samples = ArmSamples(arms.squares[0], arms.weights)
         wave = (dominant_exponent(w0, samples), dominant_exponent_slope(w0, samples))
-    node = LineNode(w0, value.D, value.S, L, divided_indices, wave)
+    node = LineNode(w0, value.D, value.log_scale, L, divided_indices, wave)
     number = len(arms.known_eigenvalues)
     is_free = True
     for k in range(1, number + 1):  # the ends before the middle arm, because f changes most at the ends
@@ -208,7 +208,7 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
         h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
         if node.exponent_and_slope[0] != 0:
             h += dominant_exponent(v, samples) - node.exponent_and_slope[0]
-        ratio = D / node.D * cmath.exp(S - node.S - h)
+        ratio = D / node.D * cmath.exp(S - node.log_scale - h)
         for n in node.divided_indices:
             if _is_too_close_to_divide(v, arms.known_eigenvalues[arm, n], arms.known_errors[arm, n]):
                 return False

@@ -37,15 +37,15 @@ class PhaseNode(NamedTuple):
     """A point w on the contour with a tangent h of log D.
 
     direction, L: D/|D| and D'/D, with the known eigenvalues divided out of D. exponent_and_slope: (Phi,
-    dPhi/dw) if h contains the dominant wave, else (0, 0). reach: distance from w within which the error of h
-    is below pi/2. radius: radius of the circle from which the reach follows; 0 if the reach follows from the
-    hull."""
+    dPhi/dw) if h contains the dominant wave, else (0, 0). valid_radius: distance from w within which the
+    error of h is below pi/2. radius: radius of the circle from which `valid_radius` follows; 0 if it follows
+    from the hull."""
 
     w: complex
     direction: complex
     L: complex
     exponent_and_slope: tuple[complex, complex]
-    reach: float
+    valid_radius: float
     radius: float
 
 
@@ -71,7 +71,7 @@ def phase_node(
     of a circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
     """
     value = determinant_along_chain(w, arm[1][0], arm[1][1])
-    if not abs(value.D) > CONTOUR_SETTINGS.rounding_over_noise * value.noise:
+    if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
     L = value.D_w / value.D
@@ -98,46 +98,48 @@ def _node_inside(
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
 
-    value: D at the node. Further arguments as in `phase_node`.
+    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D
+    changes, largest radius of a circle).
+    arm: (samples of the arm's coefficients, propagators for |w| <= W).
     """
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
     min_rho = CONTOUR_SETTINGS.min_circle_radius * unit
-    excess = CONTOUR_SETTINGS.max_change - CONTOUR_SETTINGS.rounding_over_noise * value.noise / abs(value.D)
-    log_D = math.log(abs(value.D)) + value.S - _log_of_distance_product(w, known_w)
-    best = node
-    rho = max(trial[1], min_rho)
+    rounding = CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error
+    excess = CONTOUR_SETTINGS.max_change - rounding / abs(value.D)
+    log_D = math.log(abs(value.D)) + value.log_scale - _log_of_distance_product(w, known_w)
+    best, rho = node, max(trial[1], min_rho)
     while rho >= min_rho:
         wave = (0j, 0j)
         if rho <= CONTOUR_SETTINGS.max_wave_radius * w.imag:
             wave = (dominant_exponent(w, samples), dominant_exponent_slope(w, samples))
         tried = PhaseNode(w, node.direction, node.L, wave, 0.0, rho)
-        # Smaller circles give at most this reach.
-        target = max(best.reach, _reach_of_circle(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, excess))
-        reach = math.inf
-        log_max = -math.inf  # log of the largest |f| of the points of the circle
+        # Smaller circles give at most this valid radius.
+        target = max(best.valid_radius, _valid_radius(rho / 2, CONTOUR_SETTINGS.circle_safety_factor, excess))
+        reach, log_max = math.inf, -math.inf  # log_max: log of the largest |f| at points of the circle
         for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
             log_f = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known_w)
             log_max = max(log_max, log_f - linearised_log_determinant(tried, v, samples).real)
             growth = math.exp(min(log_max - log_D, EXPONENT_SETTINGS.max_exponent))
-            reach = _reach_of_circle(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, excess)
-            if reach <= best.reach or (reach < CONTOUR_SETTINGS.min_reach_ratio * rho and rho / 2 >= min_rho):
+            reach = _valid_radius(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, excess)
+            min_reach = CONTOUR_SETTINGS.min_radius_ratio * rho if rho / 2 >= min_rho else 0.0
+            if reach <= best.valid_radius or reach < min_reach:
                 reach = 0.0
                 break
-        if reach > best.reach:
+        if reach > best.valid_radius:
             best = PhaseNode(w, node.direction, node.L, wave, reach, rho)
         elif best.radius > 0:
             break
-        if best.radius > 0 and best.reach >= target:
+        if best.radius > 0 and best.valid_radius >= target:
             break
         rho /= 2
     return best
 
 
 @compiled
-def _reach_of_circle(rho: float, M: float, excess: float) -> float:
+def _valid_radius(rho: float, M: float, excess: float) -> float:
     """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| on the circle of
     radius rho.
     """

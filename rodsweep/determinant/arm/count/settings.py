@@ -6,11 +6,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ContourSettings(CompiledSettings):
+class ContourSettings(KernelConstants):
     """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull."""
 
     max_tangent_error: float = 1.5
@@ -21,9 +21,10 @@ class ContourSettings(CompiledSettings):
     circle_safety_factor: float = 1.5
     """Safety factor on the largest |f| at the points of a circle, for larger values between the points."""
     max_change: float = 0.9
-    """Within the reach of a node, the change of f is at most this number times |D|."""
-    rounding_over_noise: float = 100.0
-    """|rounding error of D| <= this number times `noise`. If |D| is below this bound, the reach is 0."""
+    """Within the valid radius of a node, the change of f is at most this number times |D|."""
+    rounding_safety_factor: float = 100.0
+    """|rounding error of D| <= this number times `rounding_error` of the value. Where |D| is below this
+    bound, the valid radius of a node is 0."""
     max_log_slope: float = 1.0
     """Radii of circles are in units of max_log_slope/|L| if this is below the length over which D changes, so
     that circles get smaller close to a zero of D."""
@@ -33,20 +34,22 @@ class ContourSettings(CompiledSettings):
     max_known_distance: float = 1.0
     """A known eigenvalue is divided out of D only if its distance from the line is below this number times
     max(|Im w|, |line|). D without farther eigenvalues would not follow the dominant wave."""
-    min_reach: float = 1e-12
-    """The count fails if the reach of a node w, the distance within which the phase of D is known, is below
-    this number times |w|: a zero of D is too close."""
+    min_valid_radius: float = 1e-12
+    """The count fails if the valid radius of a node w, the distance within which the phase of D is known, is
+    below this number times |w|: a zero of D is too close."""
     max_level_ratio: float = 16.0
     """Existing propagators for |w| <= W serve a node if W <= this number times the |w| needed. Otherwise
     propagators on fewer elements are made, because a count evaluates D many times."""
     max_nodes: int = 5000
     """Maximum number of nodes on all sides of the box; cones with tapers from 0.1 to 1 need 15 to 210."""
-    reach_overlap: float = 0.95
-    """Distance to the next node divided by the sum of the expected reaches of both nodes."""
-    max_reach_growth: float = 0.5
-    """Largest expected growth of the reach per distance; the next node is then at most 3.6 reaches away."""
-    min_reach_ratio: float = 0.2
-    """If the reach is below this fraction of a circle's radius, the next smaller circle is tried at once."""
+    radius_overlap: float = 0.95
+    """Distance to the next node divided by the sum of the expected valid radii of both nodes."""
+    max_radius_growth: float = 0.5
+    """Largest expected growth of the valid radius per distance; the next node is then at most 3.6 valid radii
+    away."""
+    min_radius_ratio: float = 0.2
+    """If the valid radius is below this fraction of a circle's radius, the next smaller circle is tried at
+    once."""
     first_radius: float = 12.0
     """Radius of the first circle at a node without a previous circle, in units of the length over which D
     changes."""
@@ -59,15 +62,16 @@ class ContourSettings(CompiledSettings):
     """Circles up to this radius, in units of Im w, use `dominant_wave`, which may have branch points on the
     real axis."""
     max_step_ratio: float = 0.9
-    """If the reaches of two nodes do not overlap, the step is shortened at least by this factor."""
+    """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99
-    """A step within the reach of a node is at most this number times the reach, because of rounding."""
+    """A step within the valid radius of a node is at most this number times the valid radius, because of
+    rounding."""
     ranges: ClassVar = {
         "max_tangent_error": (0.0, math.pi / 2),
         "max_change": (0.0, 1.0),
         "max_wave_radius": (0.0, 1.0),
-        "reach_overlap": (0.0, 1.0),
-        "max_reach_growth": (0.0, 1.0),
+        "radius_overlap": (0.0, 1.0),
+        "max_radius_growth": (0.0, 1.0),
         "max_step_ratio": (0.0, 1.0),
         "safe_step": (0.0, 1.0),
     }
@@ -87,7 +91,7 @@ CONTOUR_SETTINGS = ContourSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class NoCrossingSettings(CompiledSettings):
+class NoCrossingSettings(KernelConstants):
     """Settings for the discs that cover a line, and for the arms at which D is evaluated."""
 
     arm_count: int = 5

@@ -19,10 +19,10 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
     """Boundaries of elements for |w| <= W, increasing from 0 to 1. The elements between two breaks have equal
     integrals of `_elements_per_length`.
 
-    squares: products of coefficients of n arms as in `ArmSamples`, (4, n, points). tapers: tapers of the
-    arms, (n,). points: midpoints of equal parts of the intervals between breaks, (points,). breaks: breaks of
-    the profile, (pieces + 1,). If an interval needs more than `max_elements` elements, or W is not finite,
-    max_elements + 1 boundaries are returned, all 0.
+    squares: products of coefficients c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3 of
+    n arms, (4, n, points). tapers: tapers of the arms, (n,). points: midpoints of equal parts of the
+    intervals between breaks, (points,). breaks: breaks of the profile, (pieces + 1,). If an interval needs
+    more than `max_elements` elements, or W is not finite, max_elements + 1 boundaries are returned, all 0.
     """
     density = _elements_per_length(W, squares, tapers, points)
     intervals = len(breaks) - 1
@@ -56,7 +56,8 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
     """Number of elements per length that the local exponents and the taper require, at the points of n arms,
     (points,).
 
-    At each point the result is the largest number of all arms. Arguments as in `element_edges`.
+    At each point the result is the largest number of all arms. squares: products of coefficients,
+    (4, n, points). tapers: (n,). points: (points,).
     """
     density = np.empty(len(points))
     for i in range(len(points)):

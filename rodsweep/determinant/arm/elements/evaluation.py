@@ -172,7 +172,8 @@ def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
 @compiled_for_vectors
 def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> float:
     """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED), and
-    vectors a and x, (2, MINORS); moduli of a and x as in `modulus_sum_of_form`."""
+    vectors a and x, (2, MINORS). |real part| +
+    |imaginary part| replaces the moduli of a_i and x_j."""
     total = 0.0
     for j in range(MINORS):
         column = 0.0

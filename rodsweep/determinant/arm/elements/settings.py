@@ -4,14 +4,14 @@ import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 
 MINORS = 5
 """Number of independent minors of two solutions of the transverse problem."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ArmElementSettings(CompiledSettings):
+class ArmElementSettings(KernelConstants):
     """Settings for the elements of an arm and for the cache of propagators."""
 
     max_exponent: float = 3.2
@@ -76,7 +76,7 @@ class ArmElementSettings(CompiledSettings):
         return (0.0, 0.0, *sizes)
 
     def __post_init__(self) -> None:
-        CompiledSettings.__post_init__(self)
+        KernelConstants.__post_init__(self)
         if self.stages % 4:
             raise ValueError(f"stages = {self.stages} is not a multiple of 4")
 

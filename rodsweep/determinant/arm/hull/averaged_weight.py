@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AveragedWeightSettings(CompiledSettings):
+class AveragedWeightSettings(KernelConstants):
     """Settings for the averaged weights alpha that are tried."""
 
     factors: tuple[float, ...] = (0.0, 0.5, 1.0)

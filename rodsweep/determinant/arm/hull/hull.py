@@ -103,7 +103,8 @@ def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
 
 def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
     """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
-    g > 0 everywhere. F, lengths, coefficients: as in `HullSamples`.
+    g > 0 everywhere. F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,).
+    coefficients: (6, n, pieces, points).
     """
     interval_starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
@@ -157,8 +158,9 @@ def _smallest_region(
     """(a, c) of the smallest region that contains the spectra of all arms, without the margin of a; (inf, 0)
     if no bound is found.
 
-    F, lengths, coefficients: as in `HullSamples`. averaged: `averaged_regions` of `HullSamples`. max_c:
-    bound of c.
+    F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). coefficients: (6, n, pieces,
+    points). averaged: constants (a, c) of trial regions from averaged weights, (n, trials, 2). max_c: bound
+    of c.
     """
     nu, c2, c3, gamma2, gamma3, g = coefficients
     max_weighted_force = 0.0

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 from ...certificate.box import BOX_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class HullSettings(CompiledSettings):
+class HullSettings(KernelConstants):
     """Settings for the points and the weights alpha from which a hull is computed."""
 
     points_per_interval: int = 25

@@ -89,8 +89,8 @@ def clamp_integrals(alphas: Array, F: Array, lengths: Array, coefficients: Array
     (alphas,).
 
     c bounds the term with theta by the clamp theta(0) = 0, without rotational drag
-    (`rodsweep.determinant.arm.hull.hull`). F, lengths, coefficients: as in `HullSamples`. integral:
-    matrix of `ChebyshevMatrices`.
+    (`rodsweep.determinant.arm.hull.hull`). F: forces, (n,). lengths: lengths of the intervals between breaks,
+    (pieces,). coefficients: (6, n, pieces, points). integral: matrix of `ChebyshevMatrices`.
     """
     squared_integrals = np.zeros(len(alphas))
     points = coefficients.shape[3]

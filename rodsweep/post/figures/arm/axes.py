@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator, NullLocator
 
 from ....model.arm.quantities import SCALE_NAME, UNITS
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ..style import CRITICAL_FORCE_LABEL, LABELS
 from .quantities import shear_stiffness
 
@@ -28,7 +28,7 @@ LOAD_WORDS = {"pressure": "pressure on the tip", "force": "force at the tip"}
 """Label of the second scale, by kind of load."""
 
 
-def add_arm_scales(figure: Figure, views: Sequence[View]) -> None:
+def add_arm_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm, and a
     scale of Poisson's ratio to every axis of k2, if the ratio varies in a single file."""
     if len(views) == 1:
@@ -36,7 +36,7 @@ def add_arm_scales(figure: Figure, views: Sequence[View]) -> None:
     _add_si_scales(figure, views)
 
 
-def _add_si_scales(figure: Figure, views: Sequence[View]) -> None:
+def _add_si_scales(figure: Figure, views: Sequence[ResultView]) -> None:
     """Adds a scale in SI units to every axis of the follower force, if all files belong to one arm."""
     load = "force" if all(view.load_kind == "force" for view in views) else "pressure"
     factors = [view.quantities.get(SCALE_NAME[load]) for view in views]
@@ -51,7 +51,7 @@ def _add_si_scales(figure: Figure, views: Sequence[View]) -> None:
                 _add_second_scale(_outermost_panel(axes, letter), letter, unit, load)
 
 
-def _add_poisson_scales(figure: Figure, view: View) -> None:
+def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
     """Adds a scale of Poisson's ratio to every axis of k2, if k2 varies in the file with the ratio only."""
     ratios = np.ravel(view.quantities.get("poisson", ()))
     stiffnesses = np.ravel(view.parameter_values.get("k2", ()))

@@ -20,7 +20,7 @@ from ....arrays import Array
 from ....config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER
 from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.neglected import Validity
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
 from .. import style
 from ..cycle.point_map import cell_edges
@@ -93,7 +93,7 @@ def draw_arm_map(request: FigureRequest) -> str:
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{constants_text}")
 
 
-def _section_text(view: View, indices: dict[str, int]) -> str:
+def _section_text(view: ResultView, indices: dict[str, int]) -> str:
     """Clause on the values at which a map is drawn of axes with several values, which it does not show; empty
     if there is no such axis. indices: index of the drawn value, by name of the axis."""
     texts = []
@@ -114,7 +114,7 @@ def can_draw_arm_map(request: FigureRequest) -> bool:
     return len(request.views) == 1 and has_map and view.task in PANEL_MAKERS and not has_other_options
 
 
-def _axis_values_and_label(view: View, name: str) -> tuple[Array, str]:
+def _axis_values_and_label(view: ResultView, name: str) -> tuple[Array, str]:
     """Returns (values along the axis `name`, (n,), label of the axis), in the unit typed by the user."""
     values = view.variables[name]
     if name in style.LABELS:
@@ -134,7 +134,7 @@ def _new_panels(count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[A
     return figure, list(figure.subplots(*shape, sharex=True, sharey=maps, squeeze=False).ravel())
 
 
-def _draw_map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], index: Any) -> list[Artist]:
+def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
     """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
     index: index of the drawn points in the grid.
     """
@@ -151,7 +151,7 @@ def _draw_map(axes: Axes, panel: Panel, view: View, names: tuple[str, str], inde
     return handles
 
 
-def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) -> list[Artist]:
+def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
     """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
     points in the grid.
     """
@@ -174,7 +174,9 @@ def _draw_curves(axes: Axes, panel: Panel, view: View, name: str, index: Any) ->
     return handles
 
 
-def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, colour: str) -> list[Artist]:
+def _draw_drag_band(
+    axes: Axes, view: ResultView, x: str, values: Array, index: Any, colour: str
+) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
     as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
     of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
@@ -195,7 +197,7 @@ def _draw_drag_band(axes: Axes, view: View, x: str, values: Array, index: Any, c
 
 
 def _cover_invalid_cells(
-    axes: Axes, view: View, panel: Panel, names: tuple[str, str], index: Any
+    axes: Axes, view: ResultView, panel: Panel, names: tuple[str, str], index: Any
 ) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
     a value; returns legend entries. names: quantities on x and y. index: index of the drawn points in the

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ....arrays import Array
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from .quantities import in_typed_unit
 
 THRESHOLD_KIND_WORDS = {"hopf": "flutter", "onset": "onset of oscillations", "restabilization": "return"}
@@ -31,7 +31,7 @@ class Panel:
     """Legend entry for arms without a value."""
 
 
-def _threshold_panels(view: View) -> list[Panel]:
+def _threshold_panels(view: ResultView) -> list[Panel]:
     """Panels of the task `thresholds`: load at flutter (as lines, also at onset of oscillation and
     restabilization), and frequency at flutter.
     """
@@ -51,7 +51,7 @@ def _threshold_panels(view: View) -> list[Panel]:
     ]
 
 
-def _mode_panels(view: View) -> list[Panel]:
+def _mode_panels(view: ResultView) -> list[Panel]:
     """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
     return [
         Panel(
@@ -61,7 +61,7 @@ def _mode_panels(view: View) -> list[Panel]:
     ]
 
 
-def _cycle_panels(view: View) -> list[Panel]:
+def _cycle_panels(view: ResultView) -> list[Panel]:
     """Panels of the task `limit_cycle`: frequency and amplitude of the cycle."""
     amplitude, unit = in_typed_unit(view, "length", view.variables["tip_y_max_si"])
     return [
@@ -70,7 +70,7 @@ def _cycle_panels(view: View) -> list[Panel]:
     ]
 
 
-PANEL_MAKERS: dict[str, Callable[[View], list[Panel]]] = {
+PANEL_MAKERS: dict[str, Callable[[ResultView], list[Panel]]] = {
     "thresholds": _threshold_panels,
     "spectrum": _mode_panels,
     "modes": _mode_panels,

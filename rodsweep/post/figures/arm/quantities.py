@@ -13,7 +13,7 @@ from ....model.arm.arm import SlenderArm
 from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
@@ -23,7 +23,7 @@ SAME_NUMBER_TOLERANCE = 1e-9
 number."""
 
 
-def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[Array, str]:
+def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
     `si` (by default the unit of the quantity), of any shape.
     """
@@ -32,7 +32,7 @@ def in_typed_unit(view: View, name: str, values: Array, si: str = "") -> tuple[A
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
 
 
-def quantity_text(view: View, name: str, value: float) -> str:
+def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
     SI units; for a drag, index in DRAG_NAMES.
     """
@@ -43,12 +43,12 @@ def quantity_text(view: View, name: str, value: float) -> str:
     return f"{quantity_words(name)}{NO_BREAK}{converted[0]:.4g}{NO_BREAK}{unit}".rstrip(NO_BREAK)
 
 
-def given_quantities(view: View) -> list[str]:
+def given_quantities(view: ResultView) -> list[str]:
     """Names of the quantities that the user gave for the arm of a file."""
     return [name for name in view.quantities if name not in (*ARM_SCALES, *LOAD_OF_RATIO)]
 
 
-def constant_quantities_text(view: View, drawn_names: Sequence[str] = ()) -> str:
+def constant_quantities_text(view: ResultView, drawn_names: Sequence[str] = ()) -> str:
     """Constant quantities of the arm with their values, as text; empty without an arm. drawn_names: names of
     the quantities on axes."""
     texts = []
@@ -64,7 +64,7 @@ def constant_quantities_text(view: View, drawn_names: Sequence[str] = ()) -> str
     return ", ".join(texts)
 
 
-def quantity_at_point(view: View, name: str, number: int) -> float:
+def quantity_at_point(view: ResultView, name: str, number: int) -> float:
     """Value of the quantity `name` at a point of the file. number: number of the point, from 1."""
     values = np.asarray(view.variables[name])
     if values.size == 1:
@@ -77,7 +77,7 @@ def quantity_at_point(view: View, name: str, number: int) -> float:
     return float(values.ravel()[number - 1])
 
 
-def shear_stiffness(view: View, poisson: float) -> float:
+def shear_stiffness(view: ResultView, poisson: float) -> float:
     """The dimensionless k2 of the arm of a file with the Poisson's ratio `poisson`; only this ratio, a load
     and the drag may vary in the file."""
     quantities: dict[str, Any] = {
@@ -87,7 +87,7 @@ def shear_stiffness(view: View, poisson: float) -> float:
     return float(_arm_of(view, quantities | {"poisson": poisson}).k2)
 
 
-def _arm_of(view: View, quantities: Mapping[str, Any]) -> SlenderArm:
+def _arm_of(view: ResultView, quantities: Mapping[str, Any]) -> SlenderArm:
     """The arm of a file with the quantities `quantities`, in SI units."""
     arm = view.config.get("parameters", {}).get("arm") or {}
     return SlenderArm(
@@ -95,7 +95,7 @@ def _arm_of(view: View, quantities: Mapping[str, Any]) -> SlenderArm:
     )
 
 
-def replaced_parameters(view: View, number: int) -> dict[str, float]:
+def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""

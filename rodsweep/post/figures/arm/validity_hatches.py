@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from ....arrays import Array
 from ....model.arm.neglected import COMPRESSION_LIMIT, Validity
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ..cycle.point_map import cell_edges
 from ..style import LABELS
 
@@ -29,7 +29,7 @@ NOTES = {
 """(word for the hatches, sentence) by validity of the model, for the title."""
 
 
-def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
+def hatch_invalid_points(figure: Figure, views: Sequence[ResultView]) -> None:
     """Hatches a figure where the model does not apply to the arm, and dots it where the model is doubtful, if
     the axes are parameters of the file; adds notes to the title. Without such points, the figure is
     unchanged.
@@ -40,7 +40,7 @@ def hatch_invalid_points(figure: Figure, views: Sequence[View]) -> None:
 
 
 def _hatched_note(
-    figure: Figure, views: Sequence[View], validities: Sequence[np.ndarray], validity: Validity
+    figure: Figure, views: Sequence[ResultView], validities: Sequence[np.ndarray], validity: Validity
 ) -> str:
     """Hatches the points of a figure with a validity of the model, and returns the note for the title; empty
     if there is no such point. validities: validities of all points of each file."""
@@ -59,7 +59,9 @@ def _hatched_note(
     return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 
-def _hatch_points(figure: Figure, view: View, names: list[str], outside: np.ndarray, hatch: str) -> bool:
+def _hatch_points(
+    figure: Figure, view: ResultView, names: list[str], outside: np.ndarray, hatch: str
+) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
     parameters `names`; returns whether any panel has these axes. hatch: matplotlib's pattern.
     """
@@ -79,7 +81,7 @@ def _hatch_points(figure: Figure, view: View, names: list[str], outside: np.ndar
     return is_hatched
 
 
-def hatch_compressed(axes: Axes, view: View, ratio: Array, x: Array, y: Array) -> list[Patch]:
+def hatch_compressed(axes: Axes, view: ResultView, ratio: Array, x: Array, y: Array) -> list[Patch]:
     """Hatches the part of a phase diagram of arms in which the load compresses the arm beyond the limit of
     the model; returns a list with its legend entry, empty for rods, for rubber and for smaller loads.
 

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from ....errors import EnvironmentIncomplete, InputError
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...output_files import replaced_file
 from ..layout.fitting import fit_layout
 from ..style import BLUE, VERMILION
@@ -35,7 +35,7 @@ MAX_GHOST_AGE = 0.2
 """Age of the oldest earlier shape that is drawn, in periods."""
 
 
-def write_animation(view: View, points: Sequence[int], output: Path) -> str:
+def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
     """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
     a description. points: numbers of the chosen points. Raises InputError for too few shapes.
     """

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...summary.errors import relative_power_error
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import NO_BREAK
@@ -18,7 +18,7 @@ RATE_MARK_COUNT = 24
 """Number of times at which marks of dU/dt are drawn over the curve of injection minus dissipation."""
 
 
-def draw_energy(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
+def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). A column of panels for each cycle: energy U; injection and dissipation;
     injection minus dissipation with marks of dU/dt.
 
@@ -59,7 +59,10 @@ def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
 def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     """Draws the three panels of a cycle over a period, from top to bottom in `column`: energy; injection and
     dissipation; and their difference, with the derivative of the energy."""
-    from ....discretization.elements.periodic import interpolate_samples, time_derivative  # compiled code
+    from ....discretization.elements.trigonometric import (  # compiled code
+        interpolate_samples,
+        time_derivative,
+    )
 
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....config.arm.axes import CHANGED_PARAMETER
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ....sweep.points.points import ParameterLine
 from ...located_thresholds import LocatedThreshold, StoredThresholds
@@ -55,7 +55,7 @@ MAP_QUANTITIES = (("period", "viridis", True), ("tip_y_max", "plasma", False))
 panel."""
 
 
-def draw_maps(view: View, is_narrow: bool = False) -> tuple[Figure, str]:
+def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
     Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the panels are
     stacked. Raises InputError if no point has a cycle.
@@ -84,7 +84,7 @@ def draw_maps(view: View, is_narrow: bool = False) -> tuple[Figure, str]:
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 
 
-def _common_parameters_text(view: View, points: PointMap, is_in_si: bool) -> str:
+def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) -> str:
     """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
     are equal at all points.
     """
@@ -176,7 +176,7 @@ def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> li
     return [Line2D([], [], label=f"Hopf points{symbol}", **keywords)] if lines else []
 
 
-def hopf_lines(points: PointMap, view: View) -> list[Array]:
+def hopf_lines(points: PointMap, view: ResultView) -> list[Array]:
     """Lines of Hopf points, (x, y) of shape (2, n) each, as contours of zero leading growth rate.
 
     Along each row the growth rate is interpolated linearly between the points of the file and the located
@@ -200,7 +200,7 @@ def hopf_lines(points: PointMap, view: View) -> list[Array]:
     return [np.array([x_back(line[:, 0]), y_back(line[:, 1])]) for line in lines]
 
 
-def _hopf_points(points: PointMap, view: View) -> Iterator[Array]:
+def _hopf_points(points: PointMap, view: ResultView) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, row_parameter = points.names
     stored = StoredThresholds(view, name)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....errors import InputError
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...summary.summary_lines import varied_parameters_at_points
 from ..grid_slices import left_out_clause
 from ..style import is_logarithmic
@@ -34,7 +34,7 @@ class PointMap:
     """Clause on infinite values, which an axis cannot show; empty if all values are finite."""
 
 
-def point_map(view: View) -> PointMap:
+def point_map(view: ResultView) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
     do not form a grid over two parameters with at least two finite values each.
     """
@@ -61,7 +61,7 @@ def point_map(view: View) -> PointMap:
     return PointMap((names[0], names[1]), x[finite[0]], y[finite[1]], indices, constants, omissions)
 
 
-def varies_two_parameters_on_grid(view: View) -> bool:
+def varies_two_parameters_on_grid(view: ResultView) -> bool:
     """Whether the points of a file form a grid over two parameters."""
     try:
         point_map(view)

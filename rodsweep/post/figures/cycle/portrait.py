@@ -20,7 +20,7 @@ from matplotlib.quiver import Quiver
 from matplotlib.ticker import FuncFormatter
 
 from ....arrays import Array
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ..style import BLUE, VERMILION
 from .selection import SHAPE_VARIABLES, StoredCycle, chosen_cycles
 from .transient import draw_start_of_motion, label_time_axes, label_tip_axes
@@ -54,7 +54,7 @@ UNUSED_COLOUR_FRACTION = 0.14
 """Fraction of the colour map that is not used: the yellow end, which is invisible on white paper."""
 
 
-def draw_portrait(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
+def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
     darker, and x and y of the tip against time.
 
@@ -152,7 +152,7 @@ def _draw_phase_bar(
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """Draws the closed path of the tip."""
-    from ....discretization.elements.periodic import (
+    from ....discretization.elements.trigonometric import (
         interpolate_samples,  # compiled code, which few figures need
     )
 
@@ -218,7 +218,7 @@ def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -
     """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
     has this time scale.
     """
-    from ....discretization.elements.periodic import (
+    from ....discretization.elements.trigonometric import (
         interpolate_samples,  # compiled code, which few figures need
     )
 

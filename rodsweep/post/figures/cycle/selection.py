@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....errors import InputError
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...summary.number_texts import rounded_text
 from ..arm.quantities import given_quantities, quantity_at_point, quantity_text, replaced_parameters
 from ..style import heading_text, parameter_text
@@ -114,7 +114,7 @@ class CycleSelection:
     """Clause on cycles that the figure leaves out; empty if all cycles are shown."""
 
 
-def chosen_cycles(view: View, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
+def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
     empty. variable_names: variables that the figure needs. Raises InputError if a point, a cycle or a
     variable is missing, or for more than MAX_CYCLES points.
@@ -129,7 +129,7 @@ def chosen_cycles(view: View, points: Sequence[int], variable_names: Sequence[st
     return _selected_cycles(view, points, statuses == "cycle", "cycle")
 
 
-def chosen_transients(view: View, points: Sequence[int]) -> CycleSelection:
+def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection:
     """Motions from the initial state at the points with the numbers `points`, or the first stored motions, at
     most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
     missing, if a point does not exist, or if more than MAX_CYCLES points are chosen.
@@ -145,7 +145,7 @@ def chosen_transients(view: View, points: Sequence[int]) -> CycleSelection:
     return _selected_cycles(view, points, is_stored, "transient")
 
 
-def _refuse_missing(view: View, variable_names: Sequence[str]) -> None:
+def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
     """Raises InputError if one of the variables `variable_names` is missing; the message names the option
     with which the variable is stored.
     """
@@ -156,7 +156,7 @@ def _refuse_missing(view: View, variable_names: Sequence[str]) -> None:
 
 
 def _selected_cycles(
-    view: View, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
+    view: ResultView, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
     empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable.
@@ -186,7 +186,7 @@ def _selected_cycles(
     return CycleSelection(cycles, heading_text(view, common_text), omissions)
 
 
-def _refuse_bad_points(view: View, points: Sequence[int]) -> None:
+def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
     """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
     exist.
     """
@@ -209,7 +209,7 @@ def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, l
     return parameter_text(common), labels
 
 
-def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, list[str]]:
+def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters that are equal at all points, and text of the other
     parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1.
     """
@@ -220,7 +220,7 @@ def shared_and_own_of_points(view: View, numbers: Sequence[int]) -> tuple[str, l
 
 
 def shared_and_own_of_arms(
-    view: View, numbers: Sequence[int], omitted: Collection[str] = ()
+    view: ResultView, numbers: Sequence[int], omitted: Collection[str] = ()
 ) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the quantities that are equal for all arms, and text of the other
     quantities of each arm, in the units typed by the user.

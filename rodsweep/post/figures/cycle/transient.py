@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.limit_cycle import CYCLE_STATUSES
 from ..style import BLUE, VERMILION
 from .selection import TRANSIENT_VARIABLE_NAMES, StoredCycle, chosen_transients
@@ -17,7 +17,7 @@ EXTREMUM_LINE_LOOK: dict[str, Any] = {"color": "0.55", "lw": 0.8, "ls": (0, (4, 
 """Line style of horizontal lines at the extrema of the cycle that the motion approaches."""
 
 
-def draw_transients(view: View, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
+def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has a column for each point: x and y of the tip against time,
     with horizontal lines at the extrema of the cycle, if any.
 

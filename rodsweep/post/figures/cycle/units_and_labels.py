@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.units import value_in_unit, with_si_prefix
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...tables.rows_and_columns import quantities_at_points
 from ..arm.quantities import NO_BREAK
 
@@ -112,7 +112,7 @@ PLAIN_UNITS = CycleUnits()
 """Dimensionless units of the paper."""
 
 
-def units_at_points(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
+def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
     numbers: numbers of the points, from 1.
     """
@@ -123,7 +123,7 @@ def units_at_points(view: View, numbers: Sequence[int]) -> list[CycleUnits]:
     return [CycleUnits(float(a), float(t), float(e), float(p), True, units.names) for a, t, e, p in scales]
 
 
-def units_of_files(views: Sequence[View], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
+def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
     indices: indices of the points of each file, (n,).
     """
@@ -151,7 +151,7 @@ def units_of_files(views: Sequence[View], indices: Sequence[NDArray[np.int64]]) 
     return [CycleUnits(a, t, e, p, in_si=True, names=names) for a, t, e, p in scaled]
 
 
-def _largest_in_units(view: View, name: str, indices: NDArray[np.int64], factors: Array) -> float:
+def _largest_in_units(view: ResultView, name: str, indices: NDArray[np.int64], factors: Array) -> float:
     """Maximum of |v| f over the points with the indices `indices`, (n,); 0 if no value is finite. v: variable
     `name`. f: `factors`, (n,).
     """

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ..arm.quantities import constant_quantities_text
 from ..point_lists import label_point_numbers, shared_parameters
 from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
@@ -25,7 +25,7 @@ MAX_NUMBERED = 8
 """The first modes, up to this number, are labelled with their numbers."""
 
 
-def draw_eigenvalues(view: View) -> Figure:
+def draw_eigenvalues(view: ResultView) -> Figure:
     """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
     the modes. Raises InputError if nothing can be drawn.
     """
@@ -49,7 +49,7 @@ def draw_eigenvalues(view: View) -> Figure:
     return figure
 
 
-def draw_list_of_spectra(view: View) -> Figure:
+def draw_list_of_spectra(view: ResultView) -> Figure:
     """Figure of the growth rates and frequencies of a list of points against the number of the point."""
     growth = view.variables["growth_rate"]
     frequency = view.variables["frequency"]
@@ -67,7 +67,7 @@ def draw_list_of_spectra(view: View) -> Figure:
     return figure
 
 
-def _heading(view: View) -> str:
+def _heading(view: ResultView) -> str:
     """Text above a figure: quantities of an arm and parameters that all points share."""
     return heading_text(view, constant_quantities_text(view), parameter_text(shared_parameters(view)))
 

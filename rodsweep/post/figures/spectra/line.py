@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator, SymmetricalLogLocator
 
 from ....arrays import Array, Complex
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
@@ -71,7 +71,7 @@ def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, n
     return np.insert(x, jump, np.nan), np.insert(w, jump, np.nan, axis=0)
 
 
-def roots_to_follow(views: Sequence[View], typed_roots: str | None) -> str:
+def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str:
     """Choice of the roots along lines of spectra, one of ROOT_CHOICES: the user's choice `typed_roots`, or
     else "smallest" or "rightmost", whichever gives fewer gaps and shows a growing root where one is stored.
 
@@ -98,7 +98,7 @@ def roots_to_follow(views: Sequence[View], typed_roots: str | None) -> str:
     return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
 
-def _followed_roots(view: View, roots: str) -> Complex:
+def _followed_roots(view: ResultView, roots: str) -> Complex:
     """Roots at the points of a line, as from `select_roots`. roots: choice of the roots."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
@@ -113,7 +113,7 @@ def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
     axes.figure.colorbar(dots, ax=axes, label=label)
 
 
-def draw_line(view: View, name: str, roots: str) -> Figure:
+def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     """Figure of the roots against the parameter `name`, and in the complex plane. roots: choice of the
     roots."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
@@ -140,7 +140,7 @@ def draw_line(view: View, name: str, roots: str) -> Figure:
     return figure
 
 
-def draw_roots(axes: Axes, view: View, name: str, roots: str) -> Complex:
+def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
     2), or all roots, (n, modes). roots: choice of the roots.
     """
@@ -201,7 +201,7 @@ def threshold_text(threshold: LocatedThreshold) -> str:
     return f"{word} ={NO_BREAK}{threshold.position:#.{THRESHOLD_DIGITS}g}"
 
 
-def mark_thresholds(axes: Axes, view: View, name: str) -> list[LocatedThreshold]:
+def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThreshold]:
     """Shades the range in which the straight rod is unstable and, if the parameter `name` is F, draws lines
     at the located thresholds. Returns these thresholds; an empty list for any other parameter.
 

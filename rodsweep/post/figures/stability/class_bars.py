@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
 from .. import style
@@ -35,7 +35,7 @@ THRESHOLD_DIGITS = 6
 """Number of significant digits of the thresholds of a single rod, in the legend."""
 
 
-def draw_class_bars(view: View) -> Figure:
+def draw_class_bars(view: ResultView) -> Figure:
     """Figure of the stability classes over F: one bar for each rod, coloured by class; horizontal for a
     single rod. Raises InputError if nothing can be drawn."""
     count = view.variables["status"].size
@@ -64,7 +64,7 @@ def draw_class_bars(view: View) -> Figure:
     return figure
 
 
-def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str]]:
+def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, float, str]]:
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
     search. The first interval has the class "monotone"; the last is "not stored" if the file has no room
     for all crossings. rod: index of the rod."""
@@ -85,7 +85,7 @@ def classes_over_force(view: View, rod: int) -> Iterator[tuple[float, float, str
         yield start, end, word
 
 
-def draw_class_bar(axes: Axes, view: View, rod: int, is_vertical: bool) -> set[str]:
+def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
     """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
     of the bar. is_vertical: whether the bar is vertical.
     """
@@ -102,7 +102,7 @@ def draw_class_bar(axes: Axes, view: View, rod: int, is_vertical: bool) -> set[s
 
 
 def mark_thresholds_on_bars(
-    axes: Axes, view: View, is_vertical: bool, unit: str = "", factor: float = 1.0
+    axes: Axes, view: ResultView, is_vertical: bool, unit: str = "", factor: float = 1.0
 ) -> list[Line2D]:
     """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 

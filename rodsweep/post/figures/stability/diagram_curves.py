@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.parameters import LINEAR_PARAMETERS
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.branch import SPECIAL_KINDS
 from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
@@ -41,7 +41,7 @@ DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
-def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, hopf_only: bool) -> list[Line2D]:
+def draw_boundary_curves(axes: Axes, view: ResultView, line: str, row: str, hopf_only: bool) -> list[Line2D]:
     """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
     v = view.variables
     has_criticality = "curve_criticality" in v
@@ -67,7 +67,7 @@ def draw_boundary_curves(axes: Axes, view: View, line: str, row: str, hopf_only:
     return handles if hopf_only else handles + _mark_curve_folds(axes, view, line, row)
 
 
-def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
+def boundaries_to_name(view: ResultView, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
     """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of
     kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**).
     """
@@ -77,12 +77,12 @@ def boundaries_to_name(view: View, kind: int, line: str, row: str) -> list[NDArr
     return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 
-def constant_force_text(view: View, line: str, row: str) -> str:
+def constant_force_text(view: ResultView, line: str, row: str) -> str:
     """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis. line, row: see the module."""
     return "" if "F" in (line, row) else f" = {float(view.parameter_values['F'][0]):g}"
 
 
-def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def _mark_curve_folds(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
     v = view.variables
     handles = []
@@ -104,7 +104,7 @@ def _mark_curve_folds(axes: Axes, view: View, line: str, row: str) -> list[Line2
     return handles
 
 
-def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def draw_cycle_curves(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Draws curves of folds and torus points of cycles; returns legend entries. line, row: see the module."""
     v = view.variables
     handles = []
@@ -119,7 +119,7 @@ def draw_cycle_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2
     return handles
 
 
-def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def mark_cycles_on_rows(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
     values = view.point_columns[row]
@@ -135,7 +135,7 @@ def mark_cycles_on_rows(axes: Axes, view: View, line: str, row: str) -> list[Lin
     return handles
 
 
-def _is_on_curve(view: View, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
+def _is_on_curve(view: ResultView, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
     """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
     v = view.variables
     is_near = np.zeros(len(x), dtype=bool)
@@ -154,7 +154,7 @@ def _is_on_curve(view: View, kind: int, line: str, row: str, x: Array, y: Array)
     return is_near
 
 
-def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def _draw_criticality(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries.
     """
@@ -178,7 +178,7 @@ def _draw_criticality(axes: Axes, view: View, line: str, row: str) -> list[Line2
     return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
 
 
-def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
+def _bautin_curves(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Draws curves of generalised Hopf points; returns legend entries. line, row: see the module."""
     v = view.variables
     curves = []
@@ -193,7 +193,9 @@ def _bautin_curves(axes: Axes, view: View, line: str, row: str) -> list[Line2D]:
     return curves
 
 
-def parts_of_equal_criticality(view: View, curve: int, line: str, row: str) -> list[tuple[int, np.ndarray]]:
+def parts_of_equal_criticality(
+    view: ResultView, curve: int, line: str, row: str
+) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     v = view.variables
     indices = np.flatnonzero(v["curve_number"] == curve)
@@ -209,7 +211,7 @@ def parts_of_equal_criticality(view: View, curve: int, line: str, row: str) -> l
     return [(int(signs[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
 
 
-def stored_crossings_text(view: View) -> str:
+def stored_crossings_text(view: ResultView) -> str:
     """Text above a figure whose curves pass only through some of the crossings of the rows, because the file
     has no room for all; else empty. Curves of crossings that are not stored_counts are missing."""
     crossing_counts = view.variables["crossing_count"].clip(min=0)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.crushing import uncrushed_interval
 from ....model.material.build import Build
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
 from ....results.layouts.variables import flag_number
@@ -31,7 +31,7 @@ STABLE_CLASS = {
 """Class of a stable rod at forces above a crossing, by kind of the crossing."""
 
 
-def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
     """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
     the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
 
@@ -64,7 +64,7 @@ def classes_between_crossings(view: View, line: str, row: str) -> tuple[Array, A
     return x, y, classes.astype(np.intp)
 
 
-def _uncrushed_row(view: View, build: Build, line: str, index: int) -> tuple[float, float]:
+def _uncrushed_row(view: ResultView, build: Build, line: str, index: int) -> tuple[float, float]:
     """First and last value of `line` on a row at which the force does not crush the rod. build: constitutive
     law and profile of the rods. index: index of the row."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
@@ -83,7 +83,7 @@ def class_above_crossing(kind: int, unstable: int) -> str:
 
 
 def pixel_classes_of_row(
-    view: View, variable: str, line: str, row: str, index: int, pixel_edges: Array
+    view: ResultView, variable: str, line: str, row: str, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
     """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
     parameters along and across rows. index: index of the row. pixel_edges: edges of the pixels, (n + 1,).
@@ -113,7 +113,7 @@ def pixel_classes_of_row(
     return classified
 
 
-def _class_changes(view: View, variable: str, line: str, index: int) -> Array:
+def _class_changes(view: ResultView, variable: str, line: str, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`. line: parameter along the row. index: index of the row.
     """

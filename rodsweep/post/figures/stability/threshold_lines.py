@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....arrays import Array
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from .. import style
 from ..arm.quantities import constant_quantities_text
 
@@ -39,7 +39,7 @@ FORCE_AXIS_RATIO = 1.05
 force divided by the lower limit."""
 
 
-def draw_lines_of_grid(view: View, names: list[str], search: str) -> tuple[Figure, str]:
+def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter with more values, with
     a line for each value of the other parameter. names: the one or two parameters with several
     values. search: clause on the searched range. Raises InputError if nothing can be drawn."""
@@ -72,7 +72,7 @@ def draw_lines_of_grid(view: View, names: list[str], search: str) -> tuple[Figur
     return figure, caption + _infinite_values_clause(view, [x_name])
 
 
-def draw_lines_of_files(views: Sequence[View], x_name: str, search: str) -> tuple[Figure, str]:
+def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter `x_name`, with a
     colour for each file. search: clause on the searched range.
     """
@@ -92,12 +92,13 @@ def draw_lines_of_files(views: Sequence[View], x_name: str, search: str) -> tupl
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=2)
     figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
-    return figure, f"critical forces against {x_name} of {len(views)} files" + _infinite_values_clause(
-        longest, [x_name]
-    )
+    clause = _infinite_values_clause(longest, [x_name])
+    return figure, f"critical forces against {x_name} of {len(views)} files{clause}"
 
 
-def draw_selected_lines(view: View, names: list[str], is_narrow: bool, search: str) -> tuple[Figure, str]:
+def draw_selected_lines(
+    view: ResultView, names: list[str], is_narrow: bool, search: str
+) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
     parameters `names` as abscissa, with curves for some values of the second parameter. is_narrow:
     whether the panels are stacked. search: clause on the searched range."""
@@ -124,7 +125,7 @@ def draw_selected_lines(view: View, names: list[str], is_narrow: bool, search: s
     return figure, caption + _infinite_values_clause(view, names)
 
 
-def _some_lines(panel: Axes, view: View, x_name: str, other: str) -> int:
+def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
     `other`, see `_label_line_indices`; returns the number of values.
     """
@@ -144,7 +145,7 @@ def _some_lines(panel: Axes, view: View, x_name: str, other: str) -> int:
     return len(indices)
 
 
-def _first_force_table(view: View, x_name: str, other: str | None) -> Array:
+def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Array:
     """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for
     a missing threshold. x_name, other: parameters; `other` is None if there is no second parameter.
     """
@@ -159,7 +160,7 @@ def _first_force_table(view: View, x_name: str, other: str | None) -> Array:
     return np.stack(tables, axis=1)
 
 
-def _abscissa_values(view: View, x_name: str) -> Array:
+def _abscissa_values(view: ResultView, x_name: str) -> Array:
     """Values on the horizontal axis: values of the parameter `x_name`, or 1/gamma3 instead of gamma3, as in
     the paper.
     """
@@ -182,7 +183,7 @@ def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, A
     return handles
 
 
-def _label_axes(axes: Axes, view: View, x_name: str, table: Array) -> None:
+def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
     at 0. table: drawn forces.
     """
@@ -206,7 +207,7 @@ def _kind_entries(table: Array) -> list[Line2D]:
     ]
 
 
-def _infinite_values_clause(view: View, names: list[str]) -> str:
+def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite.
     """

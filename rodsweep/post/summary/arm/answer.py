@@ -8,7 +8,7 @@ import numpy as np
 from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAME, UNITS
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.arm import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
@@ -32,7 +32,7 @@ NO_CYCLE_WORDS = {
 """Predicate for an arm without a stable cycle, by status."""
 
 
-def arm_answer(view: View, computed: np.ndarray) -> Lines:
+def arm_answer(view: ResultView, computed: np.ndarray) -> Lines:
     """Lines with the answer about the arms at the points in the mask `computed`, (...,); empty for a rod."""
     if not view.quantities:
         return []
@@ -41,7 +41,7 @@ def arm_answer(view: View, computed: np.ndarray) -> Lines:
     return [*plane_lines(view.quantities), *lines, *compression_lines(view, rods)]
 
 
-def _validity_lines(view: View, computed: np.ndarray, rods: np.ndarray) -> Lines:
+def _validity_lines(view: ResultView, computed: np.ndarray, rods: np.ndarray) -> Lines:
     """Line on the validity of the model, and lines with the answer for the points in `rods` to which it
     applies; for all these points if it applies to none. computed, rods: masks of computed points and rods."""
     if not rods.any():
@@ -60,22 +60,22 @@ def _validity_lines(view: View, computed: np.ndarray, rods: np.ndarray) -> Lines
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
 
-def range_text(view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
+def range_text(view: ResultView, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit that the user typed. errors:
     absolute errors, of the shape of `values`, or 0."""
     return range_in_unit(view, values, si, errors, ANSWER_DIGITS)
 
 
-def load_range_text(view: View, loads: np.ndarray) -> str:
+def load_range_text(view: ResultView, loads: np.ndarray) -> str:
     """Range of the loads `loads`, (n,) in SI units, as text in the unit that the user typed."""
     return range_text(view, loads, UNITS[view.load_kind][0])
 
 
-def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
+def _with_failure(answer: Callable[[ResultView, np.ndarray], tuple[Lines, Lines]]) -> Callable[..., Lines]:
     """Function from (view, mask of the points in the model) to the answer's lines, with a line on failed
     searches. answer: function from (view, mask of the solved points) to (answer, further lines)."""
 
-    def lines(view: View, rods: np.ndarray) -> Lines:
+    def lines(view: ResultView, rods: np.ndarray) -> Lines:
         failed = rods & view.has_status(FAILED_STATUS)
         failure = f"the result is not known{_count_clause(failed, rods)}: the search failed"
         unsolved = [failure] if failed.any() else []
@@ -87,7 +87,7 @@ def _with_failure_line(answer: Callable[[View, np.ndarray], tuple[Lines, Lines]]
     return lines
 
 
-def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
     to stability). rods: mask of the points with a result."""
     load = view.load_kind
@@ -106,7 +106,7 @@ def _threshold_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, flutter, end, rate), lines
 
 
-def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines:
+def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) -> Lines:
     """Lines on the arms with the smallest and the largest flutter load, and on the effect of drag; empty with
     fewer than two loads. loads: flutter loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
@@ -121,7 +121,7 @@ def _extreme_arm_lines(view: View, rods: np.ndarray, loads: np.ndarray) -> Lines
     return [*lines, *drag_lines(view, on_all_points)]
 
 
-def _crossing_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _crossing_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the points."""
     v = view.variables
     load = view.load_kind
@@ -135,7 +135,7 @@ def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
     return f" at {int(mask.sum())} of {int(rods.sum())} points" if rods.sum() > 1 else ""
 
 
-def _flutter_lines(view: View, loads: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
+def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequency: np.ndarray) -> Lines:
     """Lines about flutter. loads: flutter loads. end: largest searched loads. frequency: in Hz. All (n,)."""
     flutters = np.isfinite(loads)
     search = f"up to {load_range_text(view, end)}" if np.isfinite(end).any() else ""
@@ -150,7 +150,7 @@ def _flutter_lines(view: View, loads: np.ndarray, end: np.ndarray, frequency: np
     return lines
 
 
-def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
+def _cycle_lines(view: ResultView, rods: np.ndarray) -> Lines:
     """Lines about frequency, amplitude and effect of drag of limit cycles; if there is no cycle, about the
     outcomes. rods: mask of the points to which the rod model applies."""
     names = {"frequency_hz": "frequency", "tip_y_max_si": "tip_y_max"}
@@ -171,7 +171,7 @@ def _cycle_lines(view: View, rods: np.ndarray) -> Lines:
     return [motion, *_drag_outcome_line(view, rods), *drag_lines(view, numbers)]
 
 
-def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
+def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
     list if drag is not varied or an outcome is undecided. rods: mask of the points in the model."""
     arms = arms_of_drags(view)
@@ -189,7 +189,7 @@ def _drag_outcome_line(view: View, rods: np.ndarray) -> Lines:
     return [f"of {counted(len(by_arm), 'combination')} of arm and load: beats {counts}"]
 
 
-def _mode_lines(view: View, rods: np.ndarray) -> Lines:
+def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
     """Lines about stability and leading frequency of the straight arms. rods: mask of the points."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
@@ -206,7 +206,7 @@ def _mode_lines(view: View, rods: np.ndarray) -> Lines:
     return lines
 
 
-def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies of cycles on branches, []). rods: mask of the points."""
     loads = view.variables[f"branch_{view.load_kind}"][rods]
     if not np.isfinite(loads).any():
@@ -216,7 +216,7 @@ def _branch_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return [f"cycles, stable or not, exist at {load_range_text(view, loads)}; they beat at {rate}"], []
 
 
-def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
+def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_NAME[view.load_kind]], rods.shape)[rods]
@@ -225,7 +225,7 @@ def _row_lines(view: View, rods: np.ndarray) -> tuple[Lines, Lines]:
     return _flutter_lines(view, forces * scale, last_force * scale, frequency), []
 
 
-def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
+def _at_first_hopf(view: ResultView, rods: np.ndarray, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Returns (values of the variable `name`, frequencies in Hz) at the first Hopf point of each arm in the
     mask `rods`, (n,) each; NaN for an arm without a Hopf point."""
     is_hopf = view.variables["crossing_kind"][rods] == CROSSING_KINDS.index("hopf")
@@ -236,15 +236,15 @@ def _at_first_hopf(view: View, rods: np.ndarray, name: str) -> tuple[np.ndarray,
     return values, frequency
 
 
-ANSWER_LINES_BY_TASK: dict[str, Callable[[View, np.ndarray], Lines]] = {
+ANSWER_LINES_BY_TASK: dict[str, Callable[[ResultView, np.ndarray], Lines]] = {
     "spectrum": _mode_lines,
     "modes": _mode_lines,
-    "thresholds": _with_failure_line(_threshold_lines),
-    "criticality": _with_failure_line(_crossing_lines),
+    "thresholds": _with_failure(_threshold_lines),
+    "criticality": _with_failure(_crossing_lines),
     "limit_cycle": _cycle_lines,
-    "branch": _with_failure_line(_branch_lines),
+    "branch": _with_failure(_branch_lines),
     "phase_diagram": lambda view, rods: (
-        [] if "F" in view.parameters else _with_failure_line(_row_lines)(view, rods)
+        [] if "F" in view.parameters else _with_failure(_row_lines)(view, rods)
     ),
 }
 """For each task, the function of the view and a mask of computed points that returns the answer's lines."""

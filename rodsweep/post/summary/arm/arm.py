@@ -13,7 +13,7 @@ from ....model.arm.drag import DRAG_NAMES
 from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME, UNITS
 from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts import LAYOUT_MAKERS
 from ....results.layouts.arm import si_variables_of
 from ....results.layouts.si_units import HERTZ
@@ -51,7 +51,7 @@ def quantity_words(name: str) -> str:
     return QUANTITY_WORDS.get(name, name.replace("_", " "))
 
 
-def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
+def printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str]:
     """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
     converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
     times, it has a prefix suitable for numbers up to `largest`, else it is `si`.
@@ -65,7 +65,11 @@ def printing_unit(view: View, si: str, largest: float) -> tuple[float, str]:
 
 
 def range_in_unit(
-    view: View, values: np.ndarray, si: str, errors: np.ndarray | float = 0.0, max_digits: int = RANGE_DIGITS
+    view: ResultView,
+    values: np.ndarray,
+    si: str,
+    errors: np.ndarray | float = 0.0,
+    max_digits: int = RANGE_DIGITS,
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
@@ -81,13 +85,13 @@ def _largest_absolute(values: np.ndarray) -> float:
     return float(finite.max()) if finite.size else 0.0
 
 
-def given_columns(view: View) -> dict[str, np.ndarray]:
+def given_columns(view: ResultView) -> dict[str, np.ndarray]:
     """Given quantities of an arm that differ between points of a file, by name: at all points, (points,)."""
     columns = {name: column for name, column in quantities_at_points(view).items() if name not in ARM_SCALES}
     return {name: column for name, column in columns.items() if len(np.unique(column[~np.isnan(column)])) > 1}
 
 
-def region_of_arms(view: View, mask: np.ndarray) -> str:
+def region_of_arms(view: ResultView, mask: np.ndarray) -> str:
     """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,), as text; empty if all
     points of the file have the same arm.
     """
@@ -103,7 +107,7 @@ def region_of_arms(view: View, mask: np.ndarray) -> str:
     return ", ".join(filter(None, range_texts))
 
 
-def quantity_range(view: View, name: str, column: np.ndarray, mask: np.ndarray) -> str:
+def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.ndarray) -> str:
     """Range of the quantity `name` over the points in the mask `mask`, as text. column: values at all
     points, (points,). Empty for the quantity "drag" if the chosen points include all drags.
     """
@@ -120,13 +124,13 @@ def quantity_range(view: View, name: str, column: np.ndarray, mask: np.ndarray) 
     return f"{quantity_words(name)} {range_text} {unit}".rstrip()
 
 
-def _quantity_unit(view: View, name: str) -> str:
+def _quantity_unit(view: ResultView, name: str) -> str:
     """Unit in which the quantity `name` is printed; empty for a dimensionless quantity."""
     si = ALL_QUANTITIES[name].unit
     return "" if si == "1" else view.typed_units.get(name, printing_unit(view, si, 1.0)[1])
 
 
-def arm_lines(view: View, computed: np.ndarray) -> list[str]:
+def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines with the ranges of an arm's variables, in typed or SI units, at the points in the mask
     `computed`, (...,), without errors, crossings, and (for several points) other lists. Empty list for a
     rod."""
@@ -187,7 +191,7 @@ def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.nda
     return np.asarray(np.abs(scale) * absolute_errors(v, name))
 
 
-def load_range_text(view: View, F: np.ndarray, points: np.ndarray) -> str:
+def load_range_text(view: ResultView, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
     force, (n,).
     """
@@ -195,7 +199,7 @@ def load_range_text(view: View, F: np.ndarray, points: np.ndarray) -> str:
     return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
 
 
-def crossings_of_arm(view: View) -> list[str]:
+def crossings_of_arm(view: ResultView) -> list[str]:
     """One line for each threshold of the only arm in a file, with kind, load, meaning and frequency; an empty
     list for a rod.
     """
@@ -215,7 +219,7 @@ def crossings_of_arm(view: View) -> list[str]:
 
 
 def thresholds_of_arm(
-    view: View, kind: str, thresholds: Sequence[tuple[LocatedThreshold, np.ndarray]]
+    view: ResultView, kind: str, thresholds: Sequence[tuple[LocatedThreshold, np.ndarray]]
 ) -> list[str]:
     """List with a sentence on the thresholds of the given kind, with load and frequency; empty for a rod, or
     if `thresholds` is empty. thresholds: pairs of a threshold and the indices of the points on its line,
@@ -232,7 +236,7 @@ def thresholds_of_arm(
     return [THRESHOLD_SENTENCES[kind].format(load=load, rate=rate)]
 
 
-def _in_hertz(view: View, frequency: np.ndarray, points: np.ndarray) -> str:
+def _in_hertz(view: ResultView, frequency: np.ndarray, points: np.ndarray) -> str:
     """Range of the frequencies in Hz as text. frequency: angular frequencies in rad/tau2, (n,). points: index
     of the point of each frequency, (n,).
     """

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from .arm import given_columns
 
 
-def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
+def drag_lines(view: ResultView, numbers: Mapping[str, np.ndarray]) -> list[str]:
     """Line on the variation of each of the `numbers` over the drags of an arm; an empty list if drag does not
     vary. numbers: values at all points, (points,), by name.
     """
@@ -28,7 +28,7 @@ def drag_lines(view: View, numbers: Mapping[str, np.ndarray]) -> list[str]:
     return [f"the results of an arm vary over the {drags} drags of its range: {', '.join(variations)}"]
 
 
-def arms_of_drags(view: View) -> np.ndarray | None:
+def arms_of_drags(view: ResultView) -> np.ndarray | None:
     """Index of the arm at each point, (points,): equal for points that differ only in drag. None if drag does
     not vary.
     """

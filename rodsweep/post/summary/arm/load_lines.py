@@ -6,7 +6,7 @@ import numpy as np
 
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import SCALE_NAME, UNITS
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ...crushing import build_of_rods
 from .arm import range_in_unit, region_of_arms
 
@@ -19,7 +19,7 @@ COMPRESSION_VERDICTS = {
 """Verdict on the model, by the share of the limit of compression above which it holds."""
 
 
-def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
+def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
     """Line with the range of the flutter forces at the tip, and with their extreme arms; empty if the load is
     a force, and if no arm flutters. rods: mask of the points with a result, (...,).
 
@@ -33,7 +33,7 @@ def flutter_force_line(view: View, rods: np.ndarray) -> list[str]:
     return [f"flutter as a force at the tip: {text}{f', {extremes}' if extremes else ''}"]
 
 
-def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
+def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
     loads of the points in the mask `rods`, (n,). smallest: words for the smallest load."""
     if np.isfinite(loads).sum() < 2:
@@ -44,7 +44,7 @@ def extreme_arms_text(view: View, rods: np.ndarray, loads: np.ndarray, smallest:
     return "" if first_text == last_text else f"{smallest} at {first_text}; largest at {last_text}"
 
 
-def compression_lines(view: View, rods: np.ndarray) -> list[str]:
+def compression_lines(view: ResultView, rods: np.ndarray) -> list[str]:
     """Lines with the ranges of loads above which compression makes the model doubtful on the rows of a phase
     diagram, and above which it exceeds the limit; empty for other tasks, and if all loads of the rows are
     smaller. rods: mask of rows, (...,).

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
-from ....results.file.view import View
+from ....results.file.view import ResultView
 from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted
@@ -73,7 +73,7 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     return f"the model {verdict}{place}{condition}: {name} is {size} times its limit{limit_text}{rest}"
 
 
-def row_clause(view: View, rows: np.ndarray) -> str:
+def row_clause(view: ResultView, rows: np.ndarray) -> str:
     """Clause on the motion by which the validity of the model on rows of a phase diagram was judged: the
     first Hopf point of each row, or rest on a row without Hopf point. Empty for other tasks, and for rows
     whose motion is not known. rows: mask of the rows, (...,).

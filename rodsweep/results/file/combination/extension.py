@@ -3,7 +3,7 @@ are reused.
 
 A stored point is reused only if a run of the larger config would give results that are equal bit by bit: the
 parameters are equal bit by bit, and every requested result is present. In a chain all previous points, and in
-a stretch all points, must satisfy the same conditions.
+a group all points, must satisfy the same conditions.
 """
 
 from collections.abc import Iterator
@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....config.document.reading import config_from_resolved
 from ....errors import InputError
+from ....sweep.points.groups import GROUP_POINTS, groups_along_longest_axis
 from ....sweep.points.points import Points
-from ....sweep.points.stretches import STRETCH_POINTS, stretches_along_longest_axis
 from ....wording import enumeration
 from ...layouts import EXTENSION_RULES
 from ...layouts.variables import ExtensionRule, Layout
@@ -170,12 +170,12 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
         positions[axis] = _positions_before_first_change(
             positions[axis], new.shape[axis], plan.chains.is_upward
         )
-    if plan.stretches:
-        axis = plan.stretches.axis
-        old_stretches = stretches_along_longest_axis(old.shape, old.varying_parameters)
+    if plan.groups:
+        axis = plan.groups.axis
+        old_groups = groups_along_longest_axis(old.shape, old.varying_parameters)
         is_unchanged = _is_stretch_unchanged(positions[axis], new.shape[axis])
         positions[axis] = np.where(
-            is_unchanged & (old_stretches is not None and old_stretches.axis == axis), positions[axis], -1
+            is_unchanged & (old_groups is not None and old_groups.axis == axis), positions[axis], -1
         )
     return StoredPointMap(old.shape, new.shape, tuple(positions))
 
@@ -212,16 +212,16 @@ def _positions_before_first_change(positions: Indices, count: int, upward: bool)
 
 
 def _is_stretch_unchanged(positions: Indices, count: int) -> NDArray[np.bool_]:
-    """Whether the stretch of each old value, (n,), is unchanged on the new axis. positions: new position of
+    """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
     each old value, (n,). count: number of values on the new axis.
     """
     indices = np.arange(len(positions))
-    stretch_starts = indices // STRETCH_POINTS * STRETCH_POINTS
-    same_length = np.minimum(stretch_starts + STRETCH_POINTS, len(positions)) == np.minimum(
-        stretch_starts + STRETCH_POINTS, count
+    stretch_starts = indices // GROUP_POINTS * GROUP_POINTS
+    same_length = np.minimum(stretch_starts + GROUP_POINTS, len(positions)) == np.minimum(
+        stretch_starts + GROUP_POINTS, count
     )
-    has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), STRETCH_POINTS))
-    return same_length & ~has_moved[indices // STRETCH_POINTS]
+    has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), GROUP_POINTS))
+    return same_length & ~has_moved[indices // GROUP_POINTS]
 
 
 def _positions_in_list(header: ResultHeader, old: Points, new: Points) -> Indices:

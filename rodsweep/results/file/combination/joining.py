@@ -90,11 +90,11 @@ class JoinedFile:
         """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
 
         Always True for error estimates and values that are not floating-point; always False for `status`, and
-        without stretches if one BLAS kernel computed all points. a, b: the values. sources: headers
+        without groups if one BLAS kernel computed all points. a, b: the values. sources: headers
         of their files.
         """
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
-        if (len(kernels) < 2 and not self.plan.stretches) or name == "status":
+        if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False
         # Rounding changes the size of an error estimate, and the cost of a solve, by any factor.
         if np.asarray(a).dtype.kind != "f" or name.endswith(("error", "error_estimate")):

@@ -91,7 +91,8 @@ class BorderCondition:
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf
     ) -> ConvergedOrbit:
         """The cycle `solved` solved again on the mesh `mesh` under this condition; raises Unsolvable.
-        tolerance, max_matrix_distance: as in `solve_cycle`."""
+        tolerance: relative error of the cycle. max_matrix_distance: largest relative distance between the
+        cycle and the orbit at which the last matrix was assembled."""
         orbit = mesh.interpolated_orbit(solved.orbit)
         return self.solve_cycle(orbit, tolerance, solved.workspace, max_matrix_distance)
 
@@ -104,7 +105,7 @@ def require_equal_unknowns(form: StressForm, orbit: Orbit) -> None:
         raise Unsolvable(
             f"the solver changes its unknowns at a rotational drag of {settings.min_eliminated_drag:.0e} "
             f"gamma2 L^2 and at an axial drag of {settings.min_eliminated_axial_drag:.0e} gamma2, and one of "
-            "them lies between the two cycles"
+            "them lies between the two cycles: choose a range on one side of it"
         )
 
 

@@ -39,7 +39,7 @@ class BorderedMatrix:
         self.scale = scale
         self.workspace = workspace
         self.tangent: Array | None = None  # the branch orients its own tangent, see `tangent_at`
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         derivatives = parameter_derivatives(orbit.form, scale.parameter_name)
         K, s, n = orbit.stage_states.shape
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
@@ -80,16 +80,17 @@ class BorderedMatrix:
     def step(self, border: Array, residual: float) -> Array:
         """Newton's step at the orbit, (N + 1,), which changes `border` . `scale.components` by `residual`,
         to first order. border: last row of the matrix, (3,). residual: residual of the condition that
-        closes the system, as in `BorderCondition.residual`."""
+        closes the system, by `BorderCondition.residual`."""
         return self.solve(border, np.append(self._right_sides, residual), self._stage_columns[:, :, 1], 1.0)
 
     def correction(self, orbit: Orbit, border: Array, residual: float) -> Array:
         """Approximate Newton's step, (N + 1,), at a neighbouring `orbit` with a similar parameter, from the
-        factors of this matrix; border, residual: as in `step`."""
+        factors of this matrix. border: last row of the matrix, (3,). residual: residual of the condition that
+        closes the system."""
         factors = self._memory.factors
-        p = self.orbit.semidiscrete_equations
+        p = self.orbit.orbit_equations
         columns, ends = reduced_residuals(
-            orbit.all_states, orbit.solved_duration, orbit.semidiscrete_equations, p, factors
+            orbit.all_states, orbit.solved_duration, orbit.orbit_equations, p, factors
         )
         right_side = np.append(self._matching_and_phase_sides(orbit, columns, ends), residual)
         return self.solve(border, right_side, columns[:, :, 0], 1.0)
@@ -104,24 +105,24 @@ class BorderedMatrix:
 
     def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
         """Returns (stages, ends): derivatives of the stage residuals of `orbit` along v variations, reduced
-        by the factors of this matrix, (K, s, v, n), and the resulting changes of the end of the last interval
-        for a fixed start, (v, n).
+        by the factors of this matrix, (K, s, v, n), and the resulting increments of the state at the
+        end of the last interval for a fixed start, (v, n).
 
-        variations: changes of orbit values and parameter coordinate, (v, N + 1).
+        variations: variations of orbit values and parameter coordinate, (v, N + 1).
         """
         derivatives = parameter_derivatives(orbit.form, self.scale.parameter_name)
-        equations = orbit.semidiscrete_equations
-        p = self.orbit.semidiscrete_equations
+        equations = orbit.orbit_equations
+        p = self.orbit.orbit_equations
         sides: tuple[Array, Array] = reduced_variation_sides(
             orbit.values, equations, derivatives, variations, p, self._memory.factors
         )
         return sides
 
-    def orbit_changes_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
-        """Changes of the orbit, (v, N + 1), at fixed period and parameter. starts: changes of the start
+    def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
+        """Increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the start
         state, (v, n). columns: reduced right-hand sides, without the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
-        substitute_stages(starts, columns, self.orbit.semidiscrete_equations, self._memory.factors, out)
+        substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
         # Eigenvectors of the monodromy matrix change neither the period nor the parameter.
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
@@ -162,20 +163,22 @@ class BorderedMatrix:
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
         of the next. columns: reduced right-hand sides, without the stages, (K, s, 1, n). end_increments:
-        change of the state at the end of the last time interval that `columns` cause if the first state is
+        increment of the state at the end of the last time interval that `columns` cause if the first state is
         fixed, (1, n).
         """
-        p = self.orbit.semidiscrete_equations
-        sides = -self._shooting_intervals.end_changes(self._memory.factors, columns, end_increments, p)[:, 0]
+        p = self.orbit.orbit_equations
+        sides = -self._shooting_intervals.increments_of_ends(
+            self._memory.factors, columns, end_increments, p
+        )[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
     def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
         intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1, n).
-        end_increments: change of the state at the end of the last time interval that `columns` cause if the
-        first state is fixed, (1, n)."""
-        p = orbit.semidiscrete_equations
+        end_increments: increment of the state at the end of the last time interval that `columns` cause if
+        the first state is fixed, (1, n)."""
+        p = orbit.orbit_equations
         matching_sides = self.matching_right_sides(
             closing_residual(orbit.all_states, p), columns, end_increments
         )
@@ -196,9 +199,9 @@ class BorderedMatrix:
         return self._back_substitute(np.linalg.solve(matrix, right_side), sides, fraction)
 
     def _back_substitute(self, increments: Array, sides: Array, fraction: float) -> Array:
-        """Change of orbit values and parameter, (N + 1,). increments: changes of the starts of the shooting
-        intervals, of the period and of the parameter, (m n + 2,). sides: right-hand sides of the stages, (K,
-        s, n). fraction: factor on `sides`."""
+        """Increment of orbit values and parameter, (N + 1,). increments: increments of the states at the
+        starts of the shooting intervals, of the period and of the parameter, (m n + 2,). sides: right-hand
+        sides of the stages, (K, s, n). fraction: factor on `sides`."""
         n = len(self.orbit.start_state)
         stages = (
             increments[-2] * self._stage_columns[:, :, 0]
@@ -208,9 +211,7 @@ class BorderedMatrix:
         columns = np.ascontiguousarray(stages[:, :, None])
         starts = increments[:-2].reshape(-1, n).copy()
         factors = self._memory.factors
-        out = self._shooting_intervals.stage_changes(
-            factors, starts, columns, self.orbit.semidiscrete_equations
-        )
+        out = self._shooting_intervals.stage_increments(factors, starts, columns, self.orbit.orbit_equations)
         return np.concatenate([increments[:n], out.ravel(), increments[-2:]])
 
 

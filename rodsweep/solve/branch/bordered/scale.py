@@ -70,7 +70,7 @@ class ArcLengthScale:
         return np.array([deflection, np.log(orbit.period), coordinate])
 
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
-        """Derivative of `components` at an orbit, (3,), along a change of orbit values and parameter
+        """Derivative of `components` at an orbit, (3,), along a variation of orbit values and parameter
         coordinate, (N + 1,)."""
         deflection = (
             float(deflection_functional(orbit) @ change[: orbit.form.unknown_count]) / self.deflection_unit

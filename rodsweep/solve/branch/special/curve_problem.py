@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
-from ...continuation.curve import Curve, CurveStop, StepControl, StepResult, follow_curve, zero_along_step
+from ...continuation.curve import Curve, StepControl, StepResult, StopReason, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import least_stretch_of_orbit
 from ...orbit.newton import relative_change
@@ -97,13 +97,13 @@ class SpecialCurveProblem:
 
     def _end_reason(self, curve: Curve[SolvedPoint]) -> CurveEndReason:
         """Reason for the end of the curve `curve`, as stored in the result file."""
-        if curve.end_reason is CurveStop.zero_margin:
+        if curve.end_reason is StopReason.zero_margin:
             return END_BY_MARGIN[curve.margin_index]
-        if curve.end_reason is CurveStop.closed:
+        if curve.end_reason is StopReason.closed:
             return CurveEndReason.closed
         return (
             self._reason_for_loss(curve.solutions[-1])
-            if curve.end_reason is CurveStop.no_further_solution
+            if curve.end_reason is StopReason.no_further_solution
             else CurveEndReason.not_followed
         )
 

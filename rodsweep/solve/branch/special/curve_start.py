@@ -66,7 +66,7 @@ def first_point_of_curve(
         scale=scale,
         branch_direction=derivative / np.linalg.norm(derivative),
         row_coordinate=row_coordinate,
-        parameter=special.at,
+        parameter=special.parameter_value,
         row_parameter=row,
     )
     family = CycleFamily.near_point(special.kind, row_axis, start, workspace)

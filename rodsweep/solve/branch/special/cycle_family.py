@@ -108,8 +108,9 @@ class CycleFamily:
         """The point of the curve near `start` with an error estimate, on a finer mesh if necessary; raises
         Unsolvable.
 
-        previous: previous point of the curve, whose measured error is used if it still applies. Other
-        arguments as in `corrected_point`.
+        previous: previous point of the curve, whose measured error is used if it still applies.
+        row_coordinate: row coordinate of `start`, from 0 to 1. line: line of the search. derivatives:
+        derivatives from an earlier search.
         """
         last = self.corrected_point(start, row_coordinate, line, derivatives)
         if previous and previous.measured_error and previous.measured_error.applies_at(last):

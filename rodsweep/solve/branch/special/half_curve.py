@@ -23,12 +23,13 @@ def trace_half_curve(
     is None if no point agrees or after a failure. located: points of the row, with cycles. special_points:
     all points. complete_rows: value of the row parameter, by index, of the rows whose branches are all
     known."""
-    width = abs(problem.line_axis.parameter_per_coordinate(special_point.at))
+    width = abs(problem.line_axis.parameter_per_coordinate(special_point.parameter_value))
     matches = [
         point
         for point in located
         if point.kind == special_point.kind
-        and abs(point.at - special_point.at) <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
+        and abs(point.parameter_value - special_point.parameter_value)
+        <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
         and abs(point.period / special_point.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not matches:
@@ -89,7 +90,7 @@ def _distances(
     `crossing` of a curve on the same row."""
     coordinate = problem.line_axis.coordinate(crossing.parameter)
     distances = {
-        i: abs(coordinate - problem.line_axis.coordinate(special_point.at))
+        i: abs(coordinate - problem.line_axis.coordinate(special_point.parameter_value))
         for i, special_point in special_points.items()
         if abs(crossing.orbit.period / special_point.period - 1)
         <= CURVE_IDENTITY_SETTINGS.max_period_difference
@@ -106,7 +107,7 @@ def _may_be_near(
 ) -> bool:
     """Whether the special point `special_point` may lie on a curve between its successive points `a` and
     `b`."""
-    x = problem.line_axis.coordinate(special_point.at)
+    x = problem.line_axis.coordinate(special_point.parameter_value)
     ends = sorted(problem.line_axis.coordinate(p.parameter) for p in (a, b))
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance

@@ -104,10 +104,11 @@ def special_point_between(
             point = _special_point_at(kind, orbit, start.scale.parameter_name)
             if last is not None:
                 point = _with_mesh_errors(point, last, start, end)
-                if point.error <= required_accuracy * abs(point.at):
+                if point.error <= required_accuracy * abs(point.parameter_value):
                     break
             # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
-            mesh = next_mesh(mesh, point.error / (required_accuracy * abs(point.at)) if number % 2 else 1.0)
+            required_error = required_accuracy * abs(point.parameter_value)
+            mesh = next_mesh(mesh, point.error / required_error if number % 2 else 1.0)
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
@@ -125,8 +126,8 @@ def _with_mesh_errors(
     between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
     and, except at a fold, for the error of the parameter."""
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
-        point.at - coarser_point.at
-    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.at)
+        point.parameter_value - coarser_point.parameter_value
+    ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
     fraction = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
         # Period and tip y of two meshes may agree by coincidence, although the parameter does not.
@@ -157,7 +158,7 @@ def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoin
     path = CyclePath(orbit)
     return SpecialPoint(
         kind=kind,
-        at=getattr(orbit.form.rod, name),
+        parameter_value=getattr(orbit.form.rod, name),
         period=orbit.period,
         tip_y_max=path.extrema["tip_y_max"],
         error=nan,
@@ -174,7 +175,7 @@ def _unlocated_point(kind: SpecialKind, start: BranchCycle, end: BranchCycle, me
     end_value, start_value = (getattr(point.orbit.form.rod, name) for point in (end, start))
     return SpecialPoint(
         kind=kind,
-        at=end_value,
+        parameter_value=end_value,
         period=measures.period,
         tip_y_max=measures.tip_y_max,
         # The two cycles may have the same parameter value, as on the two sides of a fold.

@@ -25,7 +25,7 @@ class RowCrossing:
         """The crossing at the point `point` of a curve of special points of the kind `kind`."""
         special = SpecialPoint(
             kind=kind,
-            at=point.parameter,
+            parameter_value=point.parameter,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
             error=CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter),
@@ -38,7 +38,14 @@ class RowCrossing:
         point = self.special_point
         assert point.orbit is not None
         keeps_omega = point.orbit.form.keeps_omega
-        numbers = (self.row_index, point.kind, point.at, point.tip_y_max, point.error, keeps_omega)
+        numbers = (
+            self.row_index,
+            point.kind,
+            point.parameter_value,
+            point.tip_y_max,
+            point.error,
+            keeps_omega,
+        )
         return {"crossing": array([float(number) for number in numbers])} | orbit_arrays(point.orbit)
 
     @classmethod
@@ -48,7 +55,7 @@ class RowCrossing:
         orbit = orbit_from_arrays(arrays, bool(keeps_omega))
         point = SpecialPoint(
             kind=SpecialKind(int(kind)),
-            at=value,
+            parameter_value=value,
             period=orbit.period,
             tip_y_max=tip_y_max,
             error=error,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.along_parameter import interpolated_change
+from ...cycle.cycles_along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
@@ -101,7 +101,7 @@ class NormalDerivatives:
     cycle_distance: float
     """Distance between the two cycles of the difference quotient."""
     contraction_rate: float = inf
-    """Contraction rate of corrections, as in `NearbyCycleSolver`; inf if unknown."""
+    """Ratio of successive corrections, divided by the relative distance from the matrix; inf if unknown."""
     relative_curvature: float = inf
     """Modulus of the second derivative of the test function, divided by the first; inf if unknown."""
 

@@ -135,8 +135,9 @@ class _TracedCurve:
 
 @dataclass(frozen=True, slots=True)
 class _CurvesOfKind:
-    """Curves of one kind as a problem of `trace_all_curves`; other fields as in `SpecialCurveTracer`.
-    results: arrays of half curves, by number."""
+    """Curves of one kind as a problem of `trace_all_curves`. line_axis, row_axis: axes of the parameter along
+    a row and of the row parameter. special_points: points through which curves are traced. results: arrays of
+    half curves, by number."""
 
     kind: SpecialKind
     line_axis: PlaneAxis
@@ -203,7 +204,7 @@ class _CurvesOfKind:
 
     def _sort_key(self, i: int) -> tuple[float, float]:
         """Sort key of special point i: (value of the row parameter, value of the parameter along the row)."""
-        return self.special_points[i].row_value, self.special_points[i].at
+        return self.special_points[i].row_value, self.special_points[i].parameter_value
 
     def _lies_on_extrapolation(self, curve: SpecialPointCurve, special_point: RowSpecialPoint) -> bool:
         """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
@@ -212,12 +213,12 @@ class _CurvesOfKind:
         for end, last in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
-            x = self.line_axis.coordinate(end.at)
+            x = self.line_axis.coordinate(end.parameter_value)
             y = self.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
             fraction = (self.row_axis.coordinate(special_point.row_value) - y) / (last.row_coordinate - y)
-            chord = x + fraction * (self.line_axis.coordinate(last.at) - x)
-            distance = abs(chord - self.line_axis.coordinate(special_point.at))
+            chord = x + fraction * (self.line_axis.coordinate(last.parameter_value) - x)
+            distance = abs(chord - self.line_axis.coordinate(special_point.parameter_value))
             if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
@@ -236,4 +237,4 @@ def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, li
 def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
     """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
     ends = curve.points[0], curve.points[-1]
-    return sorted((p.row_coordinate, line_axis.coordinate(p.at)) for p in ends)
+    return sorted((p.row_coordinate, line_axis.coordinate(p.parameter_value)) for p in ends)

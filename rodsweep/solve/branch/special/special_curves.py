@@ -10,7 +10,7 @@ import numpy as np
 from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ...hopf.bautin_points import BautinPoint
-from ...orbit.normalised import polynomial_weights
+from ...orbit.normalised_orbit import polynomial_weights
 from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
 from .solved_curve_point import SolvedPoint
 from .special_point import SpecialKind
@@ -79,11 +79,11 @@ class CurveEndReason(IntEnum):
 class HopfEnd:
     """A Hopf point at which a curve of special points ends because the cycles vanish.
 
-    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
-    parameter. period: period of the vanishing cycles, in tau2.
+    parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
+    the row parameter. period: period of the vanishing cycles, in tau2.
     """
 
-    at: float
+    parameter_value: float
     row_value: float
     error: float
     period: float
@@ -93,11 +93,11 @@ class HopfEnd:
 class CurvePoint:
     """Stored quantities of a point of a curve of special points.
 
-    at: value of the parameter along a row, with the absolute error `error`. row_value: value of the row
-    parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
+    the row parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
     """
 
-    at: float
+    parameter_value: float
     row_value: float
     row_coordinate: float
     error: float
@@ -138,8 +138,8 @@ class TracedHalfCurve:
 
     def arrays(self) -> HalfCurveArrays:
         """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
-        the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each nearby
-        special point; and the arrays of `numbered_arrays` for the crossings."""
+        the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each
+        nearby special point; and the arrays of `numbered_arrays` for the crossings."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]
         return {
             "points": np.array(points, dtype=float).reshape(-1, len(CurvePoint.__slots__)),
@@ -196,7 +196,7 @@ def with_bautin_ends(
         if end is None or curve.kind != SpecialKind.fold:
             return end
         for point in known_points:
-            pairs = zip(plane.axes, point.values, (end.at, end.row_value), strict=True)
+            pairs = zip(plane.axes, point.values, (end.parameter_value, end.row_value), strict=True)
             if all(
                 abs(axis.coordinate(a) - axis.coordinate(b)) <= CURVE_IDENTITY_SETTINGS.max_hopf_distance
                 for axis, a, b in pairs
@@ -223,7 +223,7 @@ def extrapolated_hopf_end(points: Sequence[CurvePoint]) -> HopfEnd | None:
     if len(last_points) < CURVE_IDENTITY_SETTINGS.max_interpolated_points:
         return None
     squares = np.array([point.tip_y_max**2 for point in last_points])
-    table = np.array([[point.at, point.row_value, point.period] for point in last_points])
+    table = np.array([[point.parameter_value, point.row_value, point.period] for point in last_points])
     # The error estimate is the difference between the polynomials with and without the first point.
     values, values_of_lower_order = (np.dot(lagrange_weights(squares[i:], 0.0), table[i:]) for i in (0, 1))
     difference = abs(values[0] - values_of_lower_order[0]) + max(point.error for point in last_points)

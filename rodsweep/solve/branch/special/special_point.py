@@ -108,15 +108,15 @@ class SpecialKind(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpecialPoint:
-    """A special point of a branch. at: value of the continuation parameter. period: period of the cycle, in
-    tau2. tip_y_max: largest tip y of the cycle, in L."""
+    """A special point of a branch. parameter_value: value of the continuation parameter. period: period of
+    the cycle, in tau2. tip_y_max: largest tip y of the cycle, in L."""
 
     kind: SpecialKind
-    at: float
+    parameter_value: float
     period: float
     tip_y_max: float
     error: float
-    """Absolute error of the parameter value `at`."""
+    """Absolute error of the parameter value `parameter_value`."""
     period_error: float = nan
     """Relative difference of the period from the period at the exact special point."""
     tip_y_max_error: float = nan
@@ -130,8 +130,8 @@ class SpecialPoint:
     orbit: Orbit | None = field(default=None, repr=False, compare=False)
     """The cycle at a located special point; None if the point was not located."""
     amplitude_coefficient: float = nan
-    """At a Hopf point the amplitude coefficient of the branch, in L, as in `HopfBranchStart`; NaN at other
-    points."""
+    """At a Hopf point the coefficient a of the branch, in L: the tip reaches y = a sqrt(|p/p_H - 1|) at
+    parameter values p near the Hopf point p_H; NaN at other points."""
     coefficient_error: float = nan
     """Relative error of `amplitude_coefficient`."""
 
@@ -144,13 +144,13 @@ class SpecialPoint:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RowSpecialPoint:
     """A special point as the result file stores it. row_index: index of the row. row_value: value of the row
-    parameter. kind: kind of the point. at: value of the parameter along the row. period: in tau2. tip_y_max:
-    in L."""
+    parameter. kind: kind of the point. parameter_value: value of the parameter along the row. period: in
+    tau2. tip_y_max: in L."""
 
     row_index: int
     row_value: float
     kind: SpecialKind
-    at: float
+    parameter_value: float
     period: float
     tip_y_max: float
 
@@ -164,9 +164,9 @@ def _are_near(
 ) -> bool:
     """Whether kind, parameter and period of two special points agree. error: sum of the absolute errors of
     the two parameters."""
-    excess = abs(first.at - second.at) - error
+    excess = abs(first.parameter_value - second.parameter_value) - error
     return (
         first.kind == second.kind
-        and excess <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.at)
+        and excess <= SPECIAL_POINT_SETTINGS.max_relocation_distance * abs(first.parameter_value)
         and abs(first.period / second.period - 1) <= SPECIAL_POINT_SETTINGS.max_relocation_period_change
     )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod
 from ...changes.arm.path import path_problem
 from ...changes.kinds import Threshold
@@ -52,7 +52,7 @@ class HopfBranchStart:
         cycles exist at p' < p, otherwise a > 0.
         """
         # Along a stiffness the coordinate is 1/k, which falls as the parameter rises.
-        sign = -1.0 if Path(self.rod, self.parameter_name).is_compliance_path else 1.0
+        sign = -1.0 if ParameterPath(self.rod, self.parameter_name).is_compliance_path else 1.0
         # 0 = Re slope dp + Re c a^2, so a^2 = -Re slope p/Re c per relative change of p; a negative value
         # means cycles at smaller p.
         squared = -sign * self.growth_slope.real * self.parameter_coordinate / self.coefficients.landau.real
@@ -98,11 +98,11 @@ class HopfBranchStart:
 
 
 def hopf_branch_start(
-    path: Path, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
+    path: ParameterPath, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0
 ) -> HopfBranchStart:
     """The Hopf point with its normal form, at a crossing of the imaginary axis along the parameter path
     `path`; raises Unsolvable. keeps_omega: whether the angular velocity Omega is an unknown for all cycles of
-    the branch. min_coordinate_unit: as in `ArcLengthScale`."""
+    the branch. min_coordinate_unit: smallest unit of the parameter's coordinate in arc lengths."""
     w = complex(0.0, crossing.frequency)
     rod = path.rod_at(path.coordinate(crossing.value))
     _, slope, _ = path_problem(path).eigenvalue(w, path.coordinate(crossing.value))
@@ -135,7 +135,7 @@ def hopf_as_special_point(hopf: HopfBranchStart) -> SpecialPoint:
     """The Hopf point as a special point, for the start or the end of a branch."""
     return SpecialPoint(
         kind=SpecialKind.hopf,
-        at=hopf.crossing.value,
+        parameter_value=hopf.crossing.value,
         period=hopf.period,
         tip_y_max=0.0,
         error=hopf.crossing.error,

@@ -111,7 +111,8 @@ class CriticalModesOfPath:
 
     def _compute_modes(self, p: float, guesses: Complex | None) -> CriticalModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
-        leading modes; raises Unsolvable. guesses: as in `modes_at`."""
+        leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary
+        axis, (n,), one of each pair, if available."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
         nearest = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
         expected_count = 0 if nearest is None else nearest.unstable_count
@@ -167,7 +168,7 @@ class CriticalModesOfPath:
         if _needed_modes(spectrum) > max(modes, AXIS_MODE_SETTINGS.max_computed_modes):
             raise Unsolvable(
                 f"{self.problem.path.text_at(p)}: {spectrum.unstable_count} modes grow, but at most "
-                f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed"
+                f"{AXIS_MODE_SETTINGS.max_computed_modes} modes are computed; shorten the range"
             )
         slopes = spectrum.eigenvalues.copy()
         for i, w in enumerate(spectrum.eigenvalues.tolist()):

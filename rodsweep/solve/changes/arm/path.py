@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....arrays import Array, Complex
-from ....determinant.arm.along_path import ArmAlongPath
 from ....determinant.arm.arm_family import ArmFamily, interpolated_family
 from ....determinant.arm.count.modes_near_axis import modes_near_axis
 from ....determinant.arm.determinant import arm_determinant
+from ....determinant.arm.determinant_along_path import ArmAlongPath
 from ....determinant.arm.hull.hull import hull_of
 from ....determinant.certificate.winding_number import EigenvalueCount
-from ....determinant.parameter_path import Path
-from ....determinant.roots.newton import LocatedZero
+from ....determinant.parameter_path import ParameterPath
+from ....determinant.roots.newton import LocatedEigenvalue
 from ....model.dispersion import expected_unstable_count
 from ...spectrum.path.followed_arms import FollowedArms
 from ...spectrum.path.prediction import KnownRoots
@@ -65,7 +65,7 @@ class ArmPath(PathProblem):
     requested p.
     """
 
-    def __init__(self, path: Path):
+    def __init__(self, path: ParameterPath):
         super().__init__(path)
         self._followed_arms: FollowedArms | None = None
         self._solved_spectra: dict[float, Spectrum] = {}
@@ -181,7 +181,7 @@ class ArmPath(PathProblem):
             else (guess, *slope_and_error)
         )
 
-    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         return self._determinant_along_path.double_eigenvalue(x, p, expected_distance)
 
     def count_right_of(self, line: float, p: float) -> EigenvalueCount:
@@ -225,7 +225,7 @@ class ArmPath(PathProblem):
         return 1.0, 0.0
 
 
-def path_problem(path: Path) -> PathProblem:
+def path_problem(path: ParameterPath) -> PathProblem:
     """The eigenvalue problem along `path`: `UniformPath` for uniform rods of linear material, else
     `ArmPath`."""
     return UniformPath(path) if path.rod.is_uniform_and_linear else ArmPath(path)

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ....solve_progress import report
-from ...continuation.curve import CurveStop, follow_curve, zero_along_step
+from ...continuation.curve import StopReason, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
@@ -65,7 +65,7 @@ def trace_boundary(
     sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
-    curve is found there. sign: as in `BoundaryCurve`.
+    curve is found there. sign: 0 for a curve of Hopf points, else the sign of the double eigenvalue.
 
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
@@ -80,7 +80,7 @@ def trace_boundary(
     forward = follow_curve(curve, first, BOUNDARY_STEP_CONTROL, lambda _: report())
     backward = forward
     solutions = forward.solutions
-    if forward.end_reason is not CurveStop.closed:
+    if forward.end_reason is not StopReason.closed:
         backward = follow_curve(
             curve, BoundaryPoint(first.v, -first.tangent), BOUNDARY_STEP_CONTROL, lambda _: report()
         )

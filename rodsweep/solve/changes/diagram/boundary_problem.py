@@ -14,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.stability_boundary import Boundary, BoundarySolution
-from ...continuation.curve import Curve, CurveStop, StepControl, StepResult
+from ...continuation.curve import Curve, StepControl, StepResult, StopReason
 from ...unsolvable import Unsolvable
 
 BOUNDARY_STEP_CONTROL = StepControl(
@@ -153,11 +153,11 @@ class BoundaryCurveProblem:
         If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
         gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
         """
-        if curve.end_reason is CurveStop.closed:
+        if curve.end_reason is StopReason.closed:
             return BoundaryEndReason.closed
-        if curve.end_reason is CurveStop.max_solutions:
+        if curve.end_reason is StopReason.max_solutions:
             return BoundaryEndReason.list_full
-        if curve.end_reason is CurveStop.zero_margin:
+        if curve.end_reason is StopReason.zero_margin:
             return (
                 BoundaryEndReason.crushed if curve.margin_index == CRUSHED_MARGIN else BoundaryEndReason.edge
             )

@@ -1,8 +1,8 @@
 """Rows of a phase diagram: the class of the rod at each value along one axis, and all thresholds along the
 row.
 
-All thresholds along a row are found first (`along_path`). The thresholds determine the class of every point
-without a solve at the point, and each threshold is as accurate as Newton's method.
+All thresholds along a row are found first (`thresholds_along_path`). The thresholds determine the class of
+every point without a solve at the point, and each threshold is as accurate as Newton's method.
 """
 
 import math
@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from ....arrays import Array
 from ....model.rod import Rod
 from ...point_outcome import outcome_or_failure
-from ..along_path import ThresholdSearchResult
 from ..search_range import CRUSHING_END_SETTINGS
 from ..status import ThresholdStatus
 from ..thresholds import Thresholds, empty_thresholds, thresholds_with_status
+from ..thresholds_along_path import ThresholdSearchResult
 from .solvable_part import thresholds_of_solvable_part
 
 

@@ -8,10 +8,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ....arrays import Array
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod
 from ...unsolvable import Unsolvable
-from ..along_path import ThresholdSearchResult, find_thresholds
+from ..thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
 class Attempt(NamedTuple):
@@ -66,7 +66,9 @@ def thresholds_of_solvable_part(
 def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:
     """Search along a row between `row_ends`; a row along F must be searched beyond its pulls."""
     try:
-        result = find_thresholds(Path(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify)
+        result = find_thresholds(
+            ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify
+        )
     except Unsolvable as failure:
         return Attempt(None, str(failure))
     ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(row_ends[1], 0)

@@ -38,8 +38,8 @@ CHECKPOINT_FIELDS = dict(
 @dataclass(frozen=True, eq=False)
 class Calibration:
     """Measured errors of a mesh at an orbit, with convergence rates. space_errors, time_errors: errors due to
-    the elements and to the time intervals, (5,): four relative errors as in `path_differences`, and the
-    absolute error of the largest nontrivial multiplier."""
+    the elements and to the time intervals, (5,): relative errors of the period, of the largest y, of the
+    worst extremum and of the tip's path, and the absolute error of the largest nontrivial multiplier."""
 
     mesh: OrbitMesh
     space_errors: Array

@@ -47,7 +47,7 @@ class AmplitudeEquation:
 
     g: growth of ln |z| per return. period: period of the leading mode, in tau2. linear_growth_rate: exact
     linear growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear
-    growth rate of the integrated beam, in 1/tau2. growth_noise: growth per return that integration errors may
+    growth rate of the integrated beam, in 1/tau2. growth_error: growth per return that integration errors may
     add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
     """
 
@@ -55,7 +55,7 @@ class AmplitudeEquation:
         self.period = period
         self.linear_growth_rate = linear_growth_rate
         self.growth_excess = growth_excess
-        self.growth_noise = noise
+        self.growth_error = noise
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
@@ -96,18 +96,18 @@ class AmplitudeEquation:
         # With a known c the deviation from the linear rate is |c| |z|^2, whatever the noise.
         is_small = (
             abs(self.cubic_coefficient) * sizes[-1] ** 2 < tolerance
-            and growth - linear < tolerance + self.growth_noise
+            and growth - linear < tolerance + self.growth_error
         )
         return linear < 0 and (is_linear or is_small) and self._has_period_of_mode(times)
 
     def decays_faster(self, times: Array, states: Array) -> bool:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
-        cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_noise`. times: (k,);
+        cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times: (k,);
         states: (k, unknowns)."""
         growth, linear = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
-            self.growth_noise if is_known else 0
+            self.growth_error if is_known else 0
         )
 
     def factor_to_cycle(self, times: Array, states: Array) -> float | None:
@@ -123,7 +123,7 @@ class AmplitudeEquation:
         size = float(np.linalg.norm(states[-1]))
         # d|z|/dt = linear |z| - c |z|^3, so linear - growth = c |z|^2.
         cubic_coefficient = (linear - growth) / size**2
-        if abs(linear - growth) > self.growth_noise * (
+        if abs(linear - growth) > self.growth_error * (
             1 if isnan(self.cubic_coefficient) else AMPLITUDE_EQUATION_SETTINGS.min_significant_growth
         ):
             self.cubic_coefficient = cubic_coefficient
@@ -141,10 +141,10 @@ class AmplitudeEquation:
                     AMPLITUDE_EQUATION_SETTINGS.max_jump_factor,
                 )
             )
-        elif linear > 0 or (coefficient < 0 and growth > self.growth_noise):
+        elif linear > 0 or (coefficient < 0 and growth > self.growth_error):
             # The growth increases with the amplitude.
             factor = 1 / AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
-        elif coefficient > 0 or growth < -self.growth_noise:
+        elif coefficient > 0 or growth < -self.growth_error:
             factor = AMPLITUDE_EQUATION_SETTINGS.decaying_state_factor
         else:
             return None

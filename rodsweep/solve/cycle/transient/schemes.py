@@ -15,11 +15,11 @@ class TimeSchemeSettings:
     max_growth_for_accurate_scheme: float = 0.01
     """Linear growth per period, in modulus, below which the scheme is `accurate_scheme`."""
 
-    default_growth_noise: float = 1e-3
+    default_growth_error: float = 1e-3
     """Largest growth per period that integration errors of the schemes `default_scheme` and
     `fast_growth_scheme` may add; 3e-4 was measured."""
 
-    accurate_growth_noise: float = 1e-5
+    accurate_growth_error: float = 1e-5
     """Largest growth per period that integration errors of the scheme `accurate_scheme` may add; 8e-6 was
     measured."""
 
@@ -63,13 +63,13 @@ TIME_SCHEME_SETTINGS = TimeSchemeSettings()
 
 
 class TransientSchemes(NamedTuple):
-    """Time schemes of the first run and of all later runs of a motion. growth_noise: growth per period that
+    """Time schemes of the first run and of all later runs of a motion. growth_error: growth per period that
     integration errors may add. max_steps_per_return: maximum number of time steps, divided by the allowed
     number of returns."""
 
     first_run: TimeScheme
     later_runs: TimeScheme
-    growth_noise: float
+    growth_error: float
     max_steps_per_return: int
 
 
@@ -81,7 +81,7 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
         return TransientSchemes(
             accurate_scheme,
             accurate_scheme,
-            TIME_SCHEME_SETTINGS.accurate_growth_noise,
+            TIME_SCHEME_SETTINGS.accurate_growth_error,
             TIME_SCHEME_SETTINGS.accurate_max_steps_per_return,
         )
     first = (
@@ -92,6 +92,6 @@ def schemes_for_growth(growth: float, is_stored: bool) -> TransientSchemes:
     return TransientSchemes(
         first,
         TIME_SCHEME_SETTINGS.default_scheme,
-        TIME_SCHEME_SETTINGS.default_growth_noise,
+        TIME_SCHEME_SETTINGS.default_growth_error,
         TIME_SCHEME_SETTINGS.default_max_steps_per_return,
     )

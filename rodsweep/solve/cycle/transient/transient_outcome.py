@@ -11,7 +11,8 @@ from ..status import CycleStatus
 class TransientOutcome:
     """Outcome of integrating a motion. return_count: number of returns of the tip. cycle: the cycle that the
     motion approached, or None. unstable_cycle: the unstable cycle inside the torus, or None if the motion is
-    not on a torus. modulation_ratio: as in `Cycle`."""
+    not on a torus. modulation_ratio: frequency of the modulation of a motion on a torus over the frequency of
+    its oscillation; NaN for other motions."""
 
     status: CycleStatus
     message: str

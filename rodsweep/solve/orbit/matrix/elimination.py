@@ -19,7 +19,7 @@ from ....arrays import Array
 from ....discretization.plane_equations import write_jacobian
 from ....model.compiled.compilation import compiled_for_vectors
 from ...backend.products import square_product
-from ..semidiscrete import SemidiscreteEquations
+from ..equations import OrbitEquations
 from .inversion import INVERSION_SETTINGS, invert_matrix
 from .substitution import map_start_to_end, reduce_right_sides
 from .workspace import (
@@ -34,7 +34,7 @@ from .workspace import (
 
 @compiled_for_vectors
 def eliminate_newton_matrix(
-    points: Array, V: Array, duration: float, p: SemidiscreteEquations, factors: NewtonFactors, columns: Array
+    points: Array, V: Array, duration: float, p: OrbitEquations, factors: NewtonFactors, columns: Array
 ) -> Array:
     """Eliminates Newton's matrix of an orbit and writes it into `factors`. Returns the changes that the
     right-hand sides cause at the end of the last interval for a fixed start, (k, n).
@@ -81,7 +81,7 @@ def eliminate_newton_matrix(
 
 
 @compiled_for_vectors
-def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: SemidiscreteEquations) -> None:
+def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: OrbitEquations) -> None:
     """Eliminates the blocks B of one interval, (blocks, n, n), whose diagonal blocks are given. p: equations.
 
     right_matrices: output, (s, n, n): for each stage from the third, the matrix that gives the right-hand
@@ -117,9 +117,7 @@ def _eliminate_interval(B: Array, right_matrices: Array, parts: Array, p: Semidi
 
 
 @compiled_for_vectors
-def _eliminate_first_two_stages(
-    B: Array, right_matrices: Array, parts: Array, p: SemidiscreteEquations
-) -> None:
+def _eliminate_first_two_stages(B: Array, right_matrices: Array, parts: Array, p: OrbitEquations) -> None:
     """Eliminates the first two stages: computes the blocks of all later stages in B, (blocks, n, n), and
     their matrices in `right_matrices` (see `_eliminate_interval`). p: equations.
 

@@ -8,12 +8,12 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 from ...backend.products import matrix_product
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class InversionSettings(CompiledSettings):
+class InversionSettings(KernelConstants):
     """Settings for inverses and products of blocks."""
 
     panel_width: int = 12

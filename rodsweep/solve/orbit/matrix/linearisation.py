@@ -13,8 +13,8 @@ from ....discretization.nodal_rod import NO_JUMP_DERIVATIVE, NodalRodDerivative
 from ....discretization.state_layout import PLANE_COMPONENT_COUNT
 from ....discretization.stress.form import StressForm
 from ....model.compiled.compilation import compiled_for_vectors
+from ..equations import OrbitEquations
 from ..orbit import Orbit
-from ..semidiscrete import SemidiscreteEquations
 from .elimination import eliminate_newton_matrix
 from .inversion import INVERSION_SETTINGS, invert_matrix
 from .multipliers import multipliers_over_period, multipliers_over_solved_part
@@ -24,7 +24,7 @@ from .substitution import map_start_to_end, reduce_right_sides, substitute_stage
 from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
 
 NO_PARAMETER_CHANGE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
-"""Placeholder for the change of a rod if there is no parameter; compiled code never reads it."""
+"""Placeholder for the derivative of a rod if there is no parameter; compiled code never reads it."""
 
 
 class Linearisation:
@@ -40,7 +40,7 @@ class Linearisation:
         self._memory = MatrixMemory(
             workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknown_count
         )
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         factors = self._memory.factors
         derivatives = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
@@ -55,7 +55,7 @@ class Linearisation:
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""
         step: Array = newton_step_with_factors(
-            orbit.values, self._period_derivative, orbit.semidiscrete_equations, self._memory.factors
+            orbit.values, self._period_derivative, orbit.orbit_equations, self._memory.factors
         )
         return step
 
@@ -82,7 +82,7 @@ def eliminate_at_orbit(
     values: Array,
     count: int,
     derivatives: ParameterDerivatives,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Eliminates Newton's matrix at the orbit with the given `values`, (N,), and writes it into `factors`.
@@ -120,11 +120,11 @@ def eliminate_at_orbit(
         right_sides[1, n] = phase_right_side(points[0], derivatives.change, p.rod, p.node_matrices)
     # A contiguous copy: later corrections at nearby orbits need only this column.
     period_derivative = columns[:, :, 0].copy()
-    return orbit_changes(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
+    return orbit_increments(right_sides, period_derivative, columns[:, :, 1:], p, factors), period_derivative
 
 
 @compiled_for_vectors
-def closing_residual(points: Array, p: SemidiscreteEquations) -> Array:
+def closing_residual(points: Array, p: OrbitEquations) -> Array:
     """Residual S x(0) - x(end) of the closing condition, (n,), S: symmetry. points: states, (1 + K s, n)."""
     jump = -points[-1]
     for i in range(len(jump)):
@@ -134,14 +134,14 @@ def closing_residual(points: Array, p: SemidiscreteEquations) -> Array:
 
 
 @compiled_for_vectors
-def orbit_changes(
+def orbit_increments(
     right_sides: Array,
     period_derivative: Array,
     columns: Array,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> Array:
-    """Changes of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
+    """Increments of the orbit values, (k, N), for k right-hand sides, by the eliminated matrix `factors`.
     right_sides: right-hand sides of closing and phase conditions, (k, n + 1). columns: reduced right-hand
     sides of the stages, (K, s, k, n). period_derivative: reduced period derivative of the stage residuals,
     (K, s, n)."""
@@ -179,15 +179,15 @@ def orbit_changes(
 def reduced_residuals(
     points: Array,
     duration: float,
-    rod: SemidiscreteEquations,
-    p: SemidiscreteEquations,
+    rod: OrbitEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """Residuals of `points`, (1 + K s, n), with the equations `rod`, reduced by a matrix of a nearby rod `p`.
     duration: total length of the intervals, in tau2.
 
-    Returns (columns, ends): reduced residuals, (K, s, 1, n), and change of the end of the last interval for a
-    fixed start, (1, n).
+    Returns (columns, ends): reduced residuals, (K, s, 1, n), and increment of the state at the end of the
+    last interval for a fixed start, (1, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)
@@ -204,17 +204,17 @@ def reduced_residuals(
 @compiled_for_vectors
 def reduced_variation_sides(
     values: Array,
-    rod: SemidiscreteEquations,
+    rod: OrbitEquations,
     derivatives: ParameterDerivatives,
     variations: Array,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     factors: NewtonFactors,
 ) -> tuple[Array, Array]:
     """The right-hand sides of `write_variation_sides` with the equations `rod`, reduced by a matrix of
     a nearby rod `p`.
 
-    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and changes of the end
-    of the last interval for a fixed start, (m, n).
+    Returns (columns, ends): reduced right-hand sides for m `variations`, (K, s, m, n), and increments of
+    the state at the end of the last interval for a fixed start, (m, n).
     """
     K = len(factors.eliminated_blocks)
     s = len(p.stage_differentiation)
@@ -231,7 +231,7 @@ def reduced_variation_sides(
 
 @compiled_for_vectors
 def newton_step_with_factors(
-    values: Array, period_derivative: Array, p: SemidiscreteEquations, factors: NewtonFactors
+    values: Array, period_derivative: Array, p: OrbitEquations, factors: NewtonFactors
 ) -> Array:
     """Newton's step, (N,), at the orbit values `values`, (N,). p: equations of the orbit. factors,
     period_derivative: from `eliminate_at_orbit` at a nearby orbit."""
@@ -243,4 +243,4 @@ def newton_step_with_factors(
     # The residuals of the stages move the end, too; this change is subtracted from the jump.
     right_sides[0, :n] = closing_residual(points, p) - ends[0]
     right_sides[0, n] = -phase_residual(points[0], p.rod, p.node_matrices)
-    return orbit_changes(right_sides, period_derivative, columns, p, factors)[0]
+    return orbit_increments(right_sides, period_derivative, columns, p, factors)[0]

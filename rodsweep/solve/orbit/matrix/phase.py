@@ -16,7 +16,7 @@ from ....model.compiled.compilation import compiled_for_vectors
 
 @compiled_for_vectors
 def phase_right_side(start: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices) -> float:
-    """Minus the derivative of the phase condition along a change of the parameters, at the state `start` at t
+    """Minus the derivative of the phase condition with respect to the parameter, at the state `start` at t
     = 0, (n,): the right-hand side of the phase equation. change: derivatives of the nodal values c of the
     rod. m: matrices of the mesh."""
     V = np.empty(c.drag.shape)

@@ -16,7 +16,7 @@ from ....discretization.plane_equations import (
 )
 from ....discretization.state_layout import stress_index, velocity_index
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import SemidiscreteEquations
+from ..equations import OrbitEquations
 from .substitution import add_products
 
 
@@ -29,7 +29,7 @@ class ParameterDerivatives(NamedTuple):
 
 
 @compiled_for_vectors
-def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: SemidiscreteEquations) -> None:
+def write_rates_of_state(x: Array, F: Array, V: Array, G: Array, p: OrbitEquations) -> None:
     """Writes the right-hand side of M dx/dt = F(x), (n,), into F, and the velocities and strain rates at the
     state x, (n,), into V and G, (3, nodes + 1). p: equations of the orbit."""
     write_balance(x, V, G, p.rod, p.node_matrices)
@@ -50,9 +50,9 @@ def _store_stresses(G: Array, F: Array) -> None:
 
 @compiled_for_vectors
 def write_rate_derivatives(
-    x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: SemidiscreteEquations
+    x: Array, F: Array, V: Array, out: Array, change: NodalRodDerivative, p: OrbitEquations
 ) -> None:
-    """Writes the derivative of F(x) of `write_rates_of_state` along a change of the parameters into F, (n,).
+    """Writes the derivative of F(x) of `write_rates_of_state` with respect to the parameter into F, (n,).
 
     x: state, (n,). V: velocities at x, (3, nodes + 1). out: work array, (3, 3, nodes + 1). change:
     derivatives of the arrays of the rod. p: equations of the orbit.
@@ -68,7 +68,7 @@ def write_rate_derivatives(
 
 
 @compiled_for_vectors
-def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquations, out: Array) -> None:
+def write_stage_residuals(points: Array, duration: float, p: OrbitEquations, out: Array) -> None:
     """Writes the residuals h F(x_i) - sum_j d_ij M x_j of all stages into `out`, (K, s, n).
 
     points: states x_j at the start and at all stages, in order, (1 + K s, n). duration: total length of the
@@ -92,7 +92,7 @@ def write_stage_residuals(points: Array, duration: float, p: SemidiscreteEquatio
 def write_right_sides(
     points: Array,
     duration: float,
-    p: SemidiscreteEquations,
+    p: OrbitEquations,
     derivatives: ParameterDerivatives,
     V: Array,
     columns: Array,
@@ -100,9 +100,10 @@ def write_right_sides(
     """Writes k right-hand sides of Newton's system into `columns`, (K, s, k, n), and the velocities of the
     stages into V, (K, s, 3, nodes + 1).
 
-    Column 0: derivative of the residuals with respect to the period. Column 1: the `write_stage_residuals`.
-    Column 2, if present: derivative of the residuals along the parameter of `derivatives`. points, duration,
-    p: as in `write_stage_residuals`."""
+    Column 0: derivative of the residuals with respect to the period. Column 1: residuals by
+    `write_stage_residuals`. Column 2, if present: derivative of the residuals along the parameter of
+    `derivatives`. points: states at the start and at all stages, in order, (1 + K s, n). duration: total
+    length of the intervals, in tau2. p: equations."""
     K, s, count, n = columns.shape
     G = np.empty(V.shape[2:])
     changes = np.empty((3, *V.shape[2:]))
@@ -127,13 +128,13 @@ def write_right_sides(
 
 @compiled_for_vectors
 def write_variation_sides(
-    values: Array, p: SemidiscreteEquations, partials: ParameterDerivatives, variations: Array, columns: Array
+    values: Array, p: OrbitEquations, partials: ParameterDerivatives, variations: Array, columns: Array
 ) -> None:
     """Writes the derivatives of the `write_stage_residuals` of an orbit along k variations into `columns`,
     (K, s, k, n).
 
-    values: values of the orbit, (N,). p: equations of the orbit. variations: changes of the values and of the
-    parameter of `partials`, (k, N + 1).
+    values: values of the orbit, (N,). p: equations of the orbit. variations: variations of the values and of
+    the parameter of `partials`, (k, N + 1).
     """
     K, s, count, n = columns.shape
     points = values[:-1].reshape(1 + K * s, n)

@@ -14,8 +14,8 @@ import numpy as np
 from scipy.linalg import schur
 
 from ....arrays import Array, Complex
+from ..equations import OrbitEquations
 from ..orbit import Orbit
-from ..semidiscrete import SemidiscreteEquations
 from .substitution import map_start_to_end, substitute_stages
 from .workspace import INTERVAL_MAP, NewtonFactors
 
@@ -46,15 +46,15 @@ class ShootingIntervals:
     edges: tuple[int, ...]
     flow_maps: Array
 
-    def end_changes(
-        self, factors: NewtonFactors, columns: Array, end_increments: Array, p: SemidiscreteEquations
+    def increments_of_ends(
+        self, factors: NewtonFactors, columns: Array, end_increments: Array, p: OrbitEquations
     ) -> Array:
-        """Changes that k right-hand sides cause at the ends of all shooting intervals, for fixed starts of
-        the shooting intervals, (m, k, n).
+        """Increments of the states at the ends of all shooting intervals for fixed starts, (m, k, n), for k
+        right-hand sides.
 
-        columns: reduced right-hand sides, (K, s, k, n). end_increments: changes of the end of the last time
-        interval for a fixed start of the first time interval, (k, n), the result for a single shooting
-        interval. factors: eliminated matrix. p: equations of the orbit.
+        columns: reduced right-hand sides, (K, s, k, n). end_increments: increments of the state at the
+        end of the last time interval for a fixed start of the first time interval, (k, n): the result for a
+        single shooting interval. factors: eliminated matrix. p: equations of the orbit.
         """
         ends = np.zeros((len(self.flow_maps), *end_increments.shape))
         if len(ends) == 1:
@@ -65,12 +65,12 @@ class ShootingIntervals:
                 map_start_to_end(factors.eliminated_blocks[k], columns[k], p, end)
         return ends
 
-    def stage_changes(
-        self, factors: NewtonFactors, starts: Array, columns: Array, p: SemidiscreteEquations
+    def stage_increments(
+        self, factors: NewtonFactors, starts: Array, columns: Array, p: OrbitEquations
     ) -> Array:
-        """Changes of all stages, (K, s, 1, n). starts: changes of the starts of the shooting intervals, (m,
-        n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated matrix. p: equations of the
-        orbit."""
+        """Increments of all stages, (K, s, 1, n). starts: increments of the states at the starts of the
+        shooting intervals, (m, n). columns: reduced right-hand sides, (K, s, 1, n). factors: eliminated
+        matrix. p: equations of the orbit."""
         out = np.empty_like(columns)
         for start, (first, last) in zip(starts, pairwise(self.edges), strict=True):
             part = factors._replace(eliminated_blocks=factors.eliminated_blocks[first:last])

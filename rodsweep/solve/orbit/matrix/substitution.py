@@ -2,14 +2,14 @@
 sides.
 
 The first two stages of an interval need only the inverses of their diagonal blocks; later stages need all
-blocks of the interval, B: (blocks, n, n), as in `NewtonFactors`.
+blocks of the interval, B: (blocks, n, n), one interval's part of `NewtonFactors.eliminated_blocks`.
 """
 
 import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled_for_vectors
-from ..semidiscrete import SemidiscreteEquations
+from ..equations import OrbitEquations
 from .workspace import (
     FIRST_STAGE,
     INTERVAL_MAP,
@@ -21,10 +21,11 @@ from .workspace import (
 
 
 @compiled_for_vectors
-def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> None:
+def reduce_right_sides(B: Array, columns: Array, p: OrbitEquations) -> None:
     """Reduces k right-hand sides of one interval, `columns`, (s, k, n), in place. The right-hand sides of the
-    first two stages are unchanged. The right-hand side of the last stage becomes the change of the interval's
-    end for a fixed start. B: eliminated blocks of the interval, (blocks, n, n). p: equations."""
+    first two stages are unchanged. The right-hand side of the last stage becomes the increment of the state
+    at the interval's end for a fixed start. B: eliminated blocks of the interval, (blocks, n, n). p:
+    equations."""
     s, count, n = columns.shape
     d = p.stage_differentiation
     mass = p.mass
@@ -44,21 +45,21 @@ def reduce_right_sides(B: Array, columns: Array, p: SemidiscreteEquations) -> No
 
 
 @compiled_for_vectors
-def map_start_to_end(B: Array, columns: Array, p: SemidiscreteEquations, ends: Array) -> None:
-    """Replaces `ends`, the changes of the start of an interval, (k, n), by the changes of the end of the
-    interval. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
+def map_start_to_end(B: Array, columns: Array, p: OrbitEquations, ends: Array) -> None:
+    """Replaces `ends`, the increments of the state at the start of an interval, (k, n), by the increments at
+    its end. B: eliminated blocks of the interval, (blocks, n, n). columns: reduced right-hand sides of the
     stages, (s, k, n). p: equations."""
-    # The map of an interval acts on M x_0, as in `eliminate_newton_matrix`.
+    # The eliminated map of an interval acts on M x_0, not on x_0.
     scaled_ends = ends * p.mass
     ends[:] = columns[-1]
     add_products(B[INTERVAL_MAP], scaled_ends, ends, 1.0)
 
 
 @compiled_for_vectors
-def _write_first_two_stages(B: Array, y: Array, p: SemidiscreteEquations, t: Array, u: Array) -> None:
-    """Writes the changes of the first two stages into t and u, (k, n). B: eliminated blocks, (blocks, n, n).
-    y: right-hand sides, of which only the first two stages are used, (s, k, n). The changes of later stages
-    are taken as 0."""
+def _write_first_two_stages(B: Array, y: Array, p: OrbitEquations, t: Array, u: Array) -> None:
+    """Writes the increments of the first two stages into t and u, (k, n). B: eliminated blocks, (blocks, n,
+    n). y: right-hand sides, of which only the first two stages are used, (s, k, n). The increments of later
+    stages are taken as 0."""
     d = p.stage_differentiation
     mass = p.mass
     (count, n) = t.shape
@@ -101,10 +102,12 @@ def add_products(A: Array, x: Array, y: Array, factor: float) -> None:
 
 @compiled_for_vectors
 def substitute_stages(
-    initial_increment: Array, columns: Array, p: SemidiscreteEquations, factors: NewtonFactors, out: Array
+    initial_increment: Array, columns: Array, p: OrbitEquations, factors: NewtonFactors, out: Array
 ) -> None:
-    """Writes the changes of all stages into `out`, (K, s, k, n). initial_increment: changes of the start, (k,
-    n). columns: reduced right-hand sides, (K, s, k, n). factors: eliminated matrix. p: equations."""
+    """Writes the Newton increments of all stages into `out`, (K, s, k, n), for k right-hand sides.
+
+    initial_increment: increments of the state at t = 0, (k, n). columns: reduced right-hand sides, (K, s, k,
+    n). factors: eliminated matrix. p: equations."""
     K, s, count, n = columns.shape
     y = np.empty((2, count, n))
     first = initial_increment.copy()
@@ -131,9 +134,9 @@ def substitute_stages(
 
 @compiled_for_vectors
 def _substitute_stage(B: Array, a: int, columns: Array, scaled_increment: Array, out: Array) -> None:
-    """Writes the changes of stage a >= 2 into out[a]. B: eliminated blocks, (blocks, n, n). columns: reduced
-    right-hand sides, (s, k, n). scaled_increment: M times the changes of the start, (k, n). out: changes of
-    all stages, (s, k, n), in which the changes of later stages are known."""
+    """Writes the increments of stage a >= 2 into out[a]. B: eliminated blocks, (blocks, n, n). columns:
+    reduced right-hand sides, (s, k, n). scaled_increment: M times the increments of the state at the start,
+    (k, n). out: increments of all stages, (s, k, n), in which those of later stages are known."""
     s = len(columns)
     out[a] = 0.0
     # `reduce_right_sides` has solved the last stage for a fixed start; the effect of the start is added.

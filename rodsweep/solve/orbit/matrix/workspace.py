@@ -70,8 +70,8 @@ class NewtonFactors(NamedTuple):
     eliminated_blocks: (K, `block_count(s)`, n, n). Blocks `FIRST_STAGE` and `SECOND_STAGE` are the inverses
     of the pivot blocks of these stages. The blocks `stage_block` of later stages are the inverses of pivot
     blocks on the diagonal, row multipliers below, and Schur-updated blocks above. The remaining blocks
-    multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the change of the end, `start_block(a)` the
-    right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all intervals, (n, n).
+    multiply M x_0, x_0: state at the start; `INTERVAL_MAP` gives the increment of the end, `start_block(a)`
+    the right-hand side of stage a, 2 <= a <= s - 2. propagator: map P over all intervals, (n, n).
     closing_inverse: inverse of the remaining matrix for start and period, (n + 1, n + 1).
     """
 

@@ -9,14 +9,16 @@ from ....determinant.arm.count.count import count_right_of
 from ....determinant.arm.determinant import ArmDeterminant
 from ....determinant.arm.family_values import propagators_at
 from ....determinant.arm.hull.region import hull_at
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ..candidates import lines_for_count
 from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues
-from .prediction import Track
+from .prediction import FollowedEigenvalues
 
 
-def confirmed_count_at(path: Path, interval: ArmInterval, p: float, modes: int, point_track: Track) -> int:
+def confirmed_count_at(
+    path: ParameterPath, interval: ArmInterval, p: float, modes: int, point_track: FollowedEigenvalues
+) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this.
 
@@ -28,7 +30,7 @@ def confirmed_count_at(path: Path, interval: ArmInterval, p: float, modes: int, 
 
 
 def confirmed_line(
-    path: Path,
+    path: ParameterPath,
     interval: ArmInterval,
     p: float,
     followed: tuple[Complex, Array],

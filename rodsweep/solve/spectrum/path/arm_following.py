@@ -35,7 +35,7 @@ from .following import (
     newton_step,
     store_root,
 )
-from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
+from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
 
 PropagatorsWithSlopes = tuple[float, Array, Array, Array]
 """(bound W of |w|, propagators valid for |w| <= W, derivatives of the propagators with respect to the path
@@ -48,7 +48,7 @@ def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> Corre
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
     rounding error is the error of the products at the tip only."""
     value = path_value_by_chain(w, level[0], level[1], level[2])
-    return newton_step(w, value, value.noise)
+    return newton_step(w, value, value.rounding_error)
 
 
 @compiled
@@ -57,16 +57,16 @@ def _converged_step_and_error(
 ) -> tuple[CorrectedEigenvalue, float]:
     """(last Newton step, error) of an arm's eigenvalue, after Newton steps until `converged_error` is finite.
 
-    first: result of the first step. crowding: as in `converged_error`. exact: whether the remainder must be
-    below the rounding error, and the error must contain rounding and interpolation along the whole arm.
-    level: propagators of the arm. The error is inf without convergence.
+    first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
+    whether the remainder must be below the rounding error, and the error must contain rounding and
+    interpolation along the whole arm. level: propagators of the arm. The error is inf without convergence.
     """
     step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
         error = converged_error(step, crowding, exact)
         if error < math.inf:
             if exact:
-                error_of_D = error_of_interpolated_chain(step.w, level[0], level[1], step.S, level[3])
+                error_of_D = error_of_interpolated_chain(step.w, level[0], level[1], step.log_scale, level[3])
                 error = max(error, error_of_D / step.D_slope)
             return step, error
         step = correct_eigenvalue_of_arm(step.w, level)
@@ -86,7 +86,7 @@ def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) 
 
 @compiled
 def _refine_all_eigenvalues(
-    track: Track, i: int, guess: Complex, modes: int, level: PropagatorsWithSlopes
+    track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithSlopes
 ) -> bool:
     """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track.
 
@@ -119,7 +119,7 @@ def _refine_all_eigenvalues(
 
 @compiled
 def proved_count_right_of_line(
-    track: Track, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithSlopes
+    track: FollowedEigenvalues, i: int, modes: int, hull: EigenvalueHull, level: PropagatorsWithSlopes
 ) -> int:
     """Number of leading eigenvalues of point i that are proved to be all eigenvalues to the right of a line;
     0 without a proof.
@@ -152,7 +152,12 @@ def proved_count_right_of_line(
 
 @compiled
 def follow_eigenvalues_of_arms(
-    track: Track, family: ArmFamily, hulls: PathHulls, p: Array, modes: int, proved_counts: NDArray
+    track: FollowedEigenvalues,
+    family: ArmFamily,
+    hulls: PathHulls,
+    p: Array,
+    modes: int,
+    proved_counts: NDArray,
 ) -> int:
     """Follows eigenvalues of arms along the path variables p, (points,), and returns the number of points
     reached.

@@ -24,7 +24,7 @@ from ....determinant.arm.completeness import (
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.arm.hull.region import PathHulls, hull_at
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ....determinant.roots.roots import Roots
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURES
@@ -33,19 +33,19 @@ from ..search import SpectrumSearch
 from ..spectrum import SpectrumRequest
 from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
-from .prediction import Track, slice_track, start_track
+from .prediction import FollowedEigenvalues, slice_track, start_track
 
 
 class ArmInterval(NamedTuple):
     """Points p of a path, (n,), whose eigenvalues were followed with one family of arms.
 
-    track: as in `follow_eigenvalues_of_arms`. proved_modes: number of leading modes proved complete at each
-    point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
+    track: the eigenvalues followed to these points. proved_modes: number of leading modes proved complete at
+    each point, (n,). arm_count: number of given points inside the family, of which the first n were reached.
     further_modes: number of modes followed in addition to the wanted modes.
     """
 
     p: Array
-    track: Track
+    track: FollowedEigenvalues
     proved_modes: NDArray[np.int64]
     family: ArmFamily
     hulls: PathHulls
@@ -58,7 +58,7 @@ class ArmInterval(NamedTuple):
 
 
 def follow_interval(
-    path: Path,
+    path: ParameterPath,
     p: Array,
     request: SpectrumRequest,
     previous: ArmInterval | None = None,
@@ -79,7 +79,7 @@ def follow_interval(
     ):
         if best is not None and not (
             _follows_too_few_modes(best)
-            or (not counts_follow and _more_modes_prove_middle(path, best, request, added_modes))
+            or (not counts_follow and _proves_middle(path, best, request, added_modes))
         ):
             break
         interval = (
@@ -112,17 +112,16 @@ def _is_better_interval(interval: ArmInterval, other: ArmInterval, modes: int) -
     return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
 
 
-def _more_modes_prove_middle(path: Path, interval: ArmInterval, request: SpectrumRequest, added: int) -> bool:
+def _proves_middle(path: ParameterPath, interval: ArmInterval, request: SpectrumRequest, added: int) -> bool:
     """Whether following `added` additional modes would prove completeness at the middle point among the
     points without a proof."""
     unproved = np.flatnonzero(interval.proved_modes < request.modes)
-    return _more_modes_prove_point(
-        path, interval, float(interval.p[unproved[len(unproved) // 2]]), request, added
-    )
+    middle = float(interval.p[unproved[len(unproved) // 2]])
+    return _more_modes_prove_point(path, interval, middle, request, added)
 
 
 def _more_modes_prove_point(
-    path: Path, interval: ArmInterval, p: float, request: SpectrumRequest, added_modes: int
+    path: ParameterPath, interval: ArmInterval, p: float, request: SpectrumRequest, added_modes: int
 ) -> bool:
     """Whether the wanted modes at path variable p, inside the interval `interval`, would be proved complete
     if `added_modes` modes were followed in addition."""
@@ -138,7 +137,7 @@ def _more_modes_prove_point(
 
 
 def _follow_with_further_modes(
-    path: Path, p: Array, request: SpectrumRequest, added_modes: int, previous: ArmInterval | None
+    path: ParameterPath, p: Array, request: SpectrumRequest, added_modes: int, previous: ArmInterval | None
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_modes` modes
     followed in addition to the wanted modes; None if the first point fails or no family is found."""
@@ -182,13 +181,12 @@ def _follow_with_further_modes(
 
 
 def family_and_hulls(
-    path: Path, p: Array, first_eigenvalues: Complex, modes: int
+    path: ParameterPath, p: Array, first_eigenvalues: Complex, modes: int
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
     equal, if the arms are not smooth in p, or if no elements resolve an arm.
 
-    first_eigenvalues: eigenvalues at the first point, (m,), in descending order. modes: number of requested
-    modes.
+    first_eigenvalues: eigenvalues at the first point, (m,), in descending order. modes: requested number.
     """
     low = float(p.min())
     high = float(p.max())
@@ -227,7 +225,9 @@ def _eigenvalues_of_previous_interval(
     return previous.track.w[-1][previous.track.descending_order[-1]]
 
 
-def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, added_modes: int) -> Complex | None:
+def first_eigenvalues(
+    path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int
+) -> Complex | None:
     """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
     solve fails.
     """
@@ -235,7 +235,7 @@ def first_eigenvalues(path: Path, p: float, request: SpectrumRequest, added_mode
     return None if roots is None else roots.w[has_conjugate(roots.w)]
 
 
-def _leading_roots(path: Path, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:
+def _leading_roots(path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:
     """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_modes` more
     modes; None if the solve fails.
     """

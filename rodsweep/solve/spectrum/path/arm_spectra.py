@@ -8,7 +8,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.arm.hull.hull import hulls_along
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ..spectrum import FollowedPoints, SpectrumRequest
 from .arm_count import confirmed_count_at
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
@@ -18,7 +18,7 @@ from .carried_count import assess_points, leading_eigenvalues
 from .prediction import slice_track
 
 
-def follow_spectra_of_arms(path: Path, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
+def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
     """Spectra of the arms at the path variables p, (n,), from the first point to the last point reached; None
     if no point is reached."""
     interval = follow_interval(path, p, request, counts_follow=True)
@@ -38,7 +38,7 @@ def follow_spectra_of_arms(path: Path, p: Array, request: SpectrumRequest) -> Fo
     return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
 
 
-def _with_finer_hulls(path: Path, interval: ArmInterval) -> ArmInterval:
+def _with_finer_hulls(path: ParameterPath, interval: ArmInterval) -> ArmInterval:
     """The interval `interval` with hulls at more arms, hence closer to the hull of each arm."""
     hull_positions = np.linspace(
         interval.family.p_low, interval.family.p_high, ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval

@@ -14,7 +14,7 @@ import numpy as np
 from ....arrays import Array, Complex
 from ....determinant.arm.count.no_crossing import proves_no_crossing, sampled_point_indices
 from ....determinant.arm.count.settings import NO_CROSSING_SETTINGS
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from .arm_count import confirmed_line
 from .arm_interval import ArmInterval
 from .carried_count import leading_eigenvalues
@@ -32,7 +32,7 @@ class CarriedArmCountSettings:
 CARRIED_ARM_COUNT_SETTINGS = CarriedArmCountSettings()
 
 
-class FollowedEigenvalues(NamedTuple):
+class SortedEigenvalues(NamedTuple):
     """Followed eigenvalues of an interval by descending real part, and their errors, (points, m) each.
 
     lines: real part of the rightmost line that lies left of all requested eigenvalues, (points,).
@@ -52,7 +52,7 @@ class CarriedCountChain(NamedTuple):
     lines: list[float]
 
 
-def carry_counts(path: Path, interval: ArmInterval, modes: int) -> None:
+def carry_counts(path: ParameterPath, interval: ArmInterval, modes: int) -> None:
     """Fills `interval.proved_modes` at points without a proof, wherever a count can be carried to them.
 
     modes: number of requested modes.
@@ -60,7 +60,7 @@ def carry_counts(path: Path, interval: ArmInterval, modes: int) -> None:
     w, error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
     last = w[:, modes - 1]
     lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(last)
-    followed = FollowedEigenvalues(w, error, lines)
+    followed = SortedEigenvalues(w, error, lines)
     # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
     unproved = np.flatnonzero((interval.proved_modes < modes) & (w[:, -1].real <= 0))
     for run in np.split(unproved, np.flatnonzero(np.diff(unproved) > 1) + 1):
@@ -82,7 +82,11 @@ def carry_counts(path: Path, interval: ArmInterval, modes: int) -> None:
 
 
 def _longest_chain(
-    path: Path, interval: ArmInterval, followed: FollowedEigenvalues, end_indices: tuple[int, int], modes: int
+    path: ParameterPath,
+    interval: ArmInterval,
+    followed: SortedEigenvalues,
+    end_indices: tuple[int, int],
+    modes: int,
 ) -> CarriedCountChain:
     """The longest chain of points found from the first to the last index in `end_indices`; without lines if
     no count can be carried from the first point."""
@@ -114,9 +118,9 @@ def _longest_chain(
 
 
 def _confirmed_line_at(
-    path: Path,
+    path: ParameterPath,
     interval: ArmInterval,
-    followed: FollowedEigenvalues,
+    followed: SortedEigenvalues,
     index_and_line: tuple[int, float],
     modes: int,
 ) -> float | None:
@@ -127,7 +131,9 @@ def _confirmed_line_at(
     return confirmed_line(path, interval, float(interval.p[i]), eigenvalues_and_errors, modes, line)
 
 
-def _is_line_free(path: Path, interval: ArmInterval, line: float, end_indices: tuple[int, int]) -> bool:
+def _is_line_free(
+    path: ParameterPath, interval: ArmInterval, line: float, end_indices: tuple[int, int]
+) -> bool:
     """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
     points = sampled_point_indices(*end_indices)
     known_w = interval.track.w[points], interval.track.error[points]
@@ -136,9 +142,7 @@ def _is_line_free(path: Path, interval: ArmInterval, line: float, end_indices: t
     return proves_no_crossing(line, rods, p, known_w, interval.family, interval.hulls)
 
 
-def _store_proved_modes(
-    interval: ArmInterval, followed: FollowedEigenvalues, chain: CarriedCountChain
-) -> None:
+def _store_proved_modes(interval: ArmInterval, followed: SortedEigenvalues, chain: CarriedCountChain) -> None:
     """Fills `interval.proved_modes` at the points of a chain at which no followed eigenvalue is close to the
     line."""
     for (first, last), line in zip(pairwise(chain.points), chain.lines, strict=True):

@@ -15,13 +15,13 @@ from ....arrays import Array, Complex
 from ....determinant.moving_line import IntervalEnd, proves_no_crossing
 from ....determinant.roots.settings import ROOT_SETTINGS
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 from ....model.rod import Coefficients
-from .prediction import Track
+from .prediction import FollowedEigenvalues
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CarriedCountSettings(CompiledSettings):
+class CarriedCountSettings(KernelConstants):
     """Settings for a count that is carried from point to point of a path."""
 
     base_rectangles: int = 60
@@ -35,14 +35,14 @@ class CarriedCountSettings(CompiledSettings):
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary
     axis."""
     min_gap: float = 1e-6
-    """No line is drawn in a gap whose relative half-width, as in `wide_gap`, is less than this."""
+    """No line is drawn in a gap whose relative half-width (see `wide_gap`) is less than this."""
 
 
 CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 
 
 @compiled
-def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
+def line_in_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
     of this real part). The half-width is at most `wide_gap`, and 0 if the line is not to the left of the
     imaginary axis. gap: number of eigenvalues to the right of the gap.
@@ -56,7 +56,7 @@ def line_in_gap(track: Track, i: int, gap: int) -> tuple[float, float]:
 
 
 @compiled
-def widest_gap(track: Track, i: int, modes: int) -> int:
+def widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
     """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough.
 
     The gap lies to the left of the leading `modes` and of the imaginary axis.
@@ -72,7 +72,9 @@ def widest_gap(track: Track, i: int, modes: int) -> int:
 
 
 @compiled
-def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array) -> bool:
+def _stays_open(
+    track: FollowedEigenvalues, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array
+) -> bool:
     """Whether exactly the leading `gap` eigenvalues lie to the right of a moving line at every point between
     two points.
 
@@ -92,7 +94,9 @@ def _stays_open(track: Track, ends: tuple[int, int], gap: int, lines: tuple[floa
 
 
 @compiled
-def _widest_open_gap(track: Track, ends: tuple[int, int], modes: int, proved_count: int, p: Array) -> int:
+def _widest_open_gap(
+    track: FollowedEigenvalues, ends: tuple[int, int], modes: int, proved_count: int, p: Array
+) -> int:
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
     gap stays open.
 
@@ -112,7 +116,7 @@ def _widest_open_gap(track: Track, ends: tuple[int, int], modes: int, proved_cou
 
 
 @compiled
-def _interval_end(track: Track, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
+def _interval_end(track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     """Point i of a path as an end of a moving line, which lies in the middle of a gap there.
     gap: number of eigenvalues to the right of the gap. p: (points,). coefficients: (points, 4).
     """
@@ -122,7 +126,12 @@ def _interval_end(track: Track, i: int, gap: int, p: Array, coefficients: Array)
 
 @compiled
 def carry_count(
-    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int, proved_counts: NDArray
+    track: FollowedEigenvalues,
+    coefficients: Array,
+    p: Array,
+    direction: Coefficients,
+    modes: int,
+    proved_counts: NDArray,
 ) -> int:
     """Index of the last point to which the count at the first point can be carried.
 
@@ -159,7 +168,7 @@ def carry_count(
 
 @compiled
 def assess_points(
-    track: Track, proved_counts: NDArray, modes: int, accuracy: float
+    track: FollowedEigenvalues, proved_counts: NDArray, modes: int, accuracy: float
 ) -> tuple[NDArray, NDArray]:
     """Returns (is_good, unstable_counts), (points,) each. is_good: whether the point is certified and its
     leading `modes` are accurate. unstable_counts: number of unstable modes.
@@ -187,7 +196,7 @@ def assess_points(
 
 
 @compiled
-def leading_eigenvalues(track: Track, modes: int) -> tuple[Complex, Array]:
+def leading_eigenvalues(track: FollowedEigenvalues, modes: int) -> tuple[Complex, Array]:
     """The leading `modes` eigenvalues and their errors at every point of a track, (points, modes) each."""
     n = track.w.shape[0]
     w = np.empty((n, modes), np.complex128)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.arm.arm_family import ArmFamily
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ..spectrum import Spectrum, SpectrumRequest
 from ..status import SpectrumStatus
 from .arm_count import confirmed_count_at
@@ -16,7 +16,7 @@ from .arm_following import follow_eigenvalues_of_arms
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
 from .arm_interval import ArmInterval, follow_interval
 from .carried_count import assess_points, leading_eigenvalues
-from .prediction import KnownRoots, Track, slice_track, start_track
+from .prediction import FollowedEigenvalues, KnownRoots, slice_track, start_track
 
 
 class FollowedArms:
@@ -27,7 +27,7 @@ class FollowedArms:
     a point, a new interval starts at a later point. intervals: the intervals followed so far.
     """
 
-    def __init__(self, path: Path, p: Array, modes: int):
+    def __init__(self, path: ParameterPath, p: Array, modes: int):
         """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to be proved
         complete at each point.
         """
@@ -132,7 +132,7 @@ class FollowedArms:
 
     def _track_from_nearest_point(
         self, interval: ArmInterval, p: float, modes: int
-    ) -> tuple[Track | None, int]:
+    ) -> tuple[FollowedEigenvalues | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
         point nearest to p. interval: an interval that contains p. modes: number of leading modes to be
         proved.
@@ -162,7 +162,7 @@ class ProvedEigenvalues(NamedTuple):
     """
 
     max_tried_modes: int
-    track: Track
+    track: FollowedEigenvalues
     proved_modes: int
 
     def spectrum(self, modes: int, accuracy: float) -> Spectrum | None:

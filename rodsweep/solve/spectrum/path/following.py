@@ -18,13 +18,13 @@ from ....determinant.roots.roots import sort_descending, taylor_parabola_roots
 from ....determinant.roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ....determinant.value import DETERMINANT_SETTINGS
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 from ....model.rod import Coefficients
-from .prediction import Track, find_conjugates, predict_eigenvalues, set_two_guesses
+from .prediction import FollowedEigenvalues, find_conjugates, predict_eigenvalues, set_two_guesses
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FollowingSettings(CompiledSettings):
+class FollowingSettings(KernelConstants):
     """Settings of Newton's method for followed eigenvalues."""
 
     max_newton_steps: int = 8
@@ -45,7 +45,7 @@ FOLLOWING_SETTINGS = FollowingSettings()
 class CorrectedEigenvalue(NamedTuple):
     """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w.
 
-    D_slope: |dD/dw| exp(-S) before the step. S: its scale.
+    D_slope: |dD/dw| exp(-S) before the step, S = `log_scale`.
     """
 
     w: complex
@@ -53,7 +53,7 @@ class CorrectedEigenvalue(NamedTuple):
     step_length: float
     rounding_error: float
     D_slope: float
-    S: float
+    log_scale: float
 
 
 @compiled
@@ -64,7 +64,7 @@ def correct_eigenvalue(
     gamma3)/dp.
     """
     value = determinant_along_path(w, coefficients, direction)
-    return newton_step(w, value, DETERMINANT_SETTINGS.typical_noise * value.noise)
+    return newton_step(w, value, DETERMINANT_SETTINGS.typical_rounding_fraction * value.rounding_error)
 
 
 @compiled
@@ -76,13 +76,13 @@ def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> Cor
     """
     size = abs(value.D_w)
     if not size > 0:
-        return CorrectedEigenvalue(w, 0j, math.inf, math.inf, 0.0, value.S)
+        return CorrectedEigenvalue(w, 0j, math.inf, math.inf, 0.0, value.log_scale)
     step = value.D / value.D_w
     slope = -value.D_p / value.D_w
     if w.imag == 0:
         step = complex(step.real, 0.0)
         slope = complex(slope.real, 0.0)
-    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size, size, value.S)
+    return CorrectedEigenvalue(w - step, slope, abs(step), rounding / size, size, value.log_scale)
 
 
 @compiled
@@ -120,7 +120,7 @@ def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> 
 
 
 @compiled
-def store_root(track: Track, i: int, k: int, conjugate: int, step: CorrectedEigenvalue) -> bool:
+def store_root(track: FollowedEigenvalues, i: int, k: int, conjugate: int, step: CorrectedEigenvalue) -> bool:
     """Writes the eigenvalue with index k of point i to the track, and its conjugate to index `conjugate`
     unless `conjugate` is negative. step: the last Newton step of the eigenvalue.
 
@@ -147,8 +147,9 @@ def _iterate_to_convergence(
     """Returns (last Newton step, error) of an eigenvalue of a uniform rod, after Newton steps until
     `converged_error` is finite.
 
-    first: result of the first step. crowding, exact: as in `converged_error`. rod: coefficients of the rod.
-    direction: d(F, nu, c2, gamma3)/dp. The error is inf without convergence.
+    first: result of the first step. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact:
+    whether the remainder must be below the rounding error. rod: coefficients of the rod. direction: d(F, nu,
+    c2, gamma3)/dp. The error is inf without convergence.
     """
     step = first
     for _ in range(FOLLOWING_SETTINGS.max_newton_steps):
@@ -181,7 +182,7 @@ def are_distinct_roots(w: Complex, error: Array) -> bool:
 
 @compiled
 def _refine_all_eigenvalues(
-    track: Track, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
+    track: FollowedEigenvalues, i: int, guess: Complex, modes: int, rod: Coefficients, direction: Coefficients
 ) -> bool:
     """Refines the guesses `guess` for all eigenvalues of point i, (m,), and writes the eigenvalues to the
     track; the `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
@@ -218,7 +219,7 @@ def _refine_all_eigenvalues(
 
 @compiled
 def follow_eigenvalues(
-    track: Track, coefficients: Array, p: Array, direction: Coefficients, modes: int
+    track: FollowedEigenvalues, coefficients: Array, p: Array, direction: Coefficients, modes: int
 ) -> int:
     """Follows eigenvalues of uniform rods along the path variables p, (points,), and returns the number of
     points reached.

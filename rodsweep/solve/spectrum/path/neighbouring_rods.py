@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ....arrays import COMPLEX_NAN, Array, Complex
 from ....determinant.certificate.winding_number import count_right_of
-from ....determinant.parameter_path import Path
+from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod, coefficients_of
 from ...backend.solver_pools import destroy_pooled_solvers
 from ...point_outcome import FAILURES
@@ -25,7 +25,7 @@ from ..status import SpectrumStatus
 from .arm_spectra import follow_spectra_of_arms
 from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
 from .following import follow_eigenvalues
-from .prediction import Track, slice_track, start_track
+from .prediction import FollowedEigenvalues, slice_track, start_track
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +46,7 @@ class NeighbouringRods:
     are its values.
     """
 
-    path: Path
+    path: ParameterPath
     values: Array
 
     def __len__(self) -> int:
@@ -156,7 +156,7 @@ def _followed_eigenvalues(
 
 
 def _proved_counts_along(
-    rods: NeighbouringRods, track: Track, modes: int, first_count: int
+    rods: NeighbouringRods, track: FollowedEigenvalues, modes: int, first_count: int
 ) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
@@ -214,7 +214,7 @@ def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int
 def warm_up() -> None:
     """Loads compiled code and creates the solver objects, so that the first sweep takes no extra time."""
     warm_up_search()
-    path = Path(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
+    path = ParameterPath(Rod(F=15.0, k1=1e4, k2=1e4, gamma3=1e-4), "F")
     follow_spectra(
         NeighbouringRods(path, np.linspace(15.0, 45.0, 12)), SpectrumRequest(2, 1e-4, certify=True)
     )

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from ....arrays import Array, Complex
 from ....model.compiled.compilation import compiled
-from ....model.compiled.settings import CompiledSettings
+from ....model.compiled.kernel_constants import KernelConstants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EigenvaluePredictionSettings(CompiledSettings):
+class EigenvaluePredictionSettings(KernelConstants):
     """Settings for the prediction of two eigenvalues that meet."""
 
     max_steps_to_meeting: float = 4.0
@@ -34,7 +34,7 @@ class EigenvaluePredictionSettings(CompiledSettings):
 EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 
 
-class Track(NamedTuple):
+class FollowedEigenvalues(NamedTuple):
     """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
 
     descending_order: indices of the eigenvalues at each point by descending real part, then descending
@@ -53,22 +53,22 @@ class KnownRoots(NamedTuple):
     error: Array
 
 
-def start_track(first: Complex, points: int) -> Track:
+def start_track(first: Complex, points: int) -> FollowedEigenvalues:
     """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,), in
     descending order.
     """
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
-    track = Track(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
+    track = FollowedEigenvalues(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)
     track.w[0] = first
     return track
 
 
-def slice_track(track: Track, start: int, stop: int) -> Track:
+def slice_track(track: FollowedEigenvalues, start: int, stop: int) -> FollowedEigenvalues:
     """The points of a track with indices from `start` to `stop` - 1."""
     indices = slice(start, stop)
-    return Track(
+    return FollowedEigenvalues(
         track.w[indices], track.slope[indices], track.error[indices], track.descending_order[indices]
     )
 
@@ -140,13 +140,14 @@ def _pair_sum_and_difference(w: Complex, slope: Complex, k: int, j: int) -> tupl
 
 @compiled
 def _predict_pair(
-    track: Track, i: int, pair: tuple[int, int], steps: tuple[float, float]
+    track: FollowedEigenvalues, i: int, pair: tuple[int, int], steps: tuple[float, float]
 ) -> tuple[complex, complex, bool]:
     """Returns (guess, guess, undecided) for the two eigenvalues `pair` at point i; the guess with the larger
     real part or frequency comes first.
 
     undecided: whether D must show if the two eigenvalues are real or a complex pair. Both guesses are then
-    half the sum. steps: as in `extrapolate_hermite`.
+    half the sum. steps: distances in p from the point before the last to the last, and from the last to point
+    i.
     """
     k, j = pair
     # Where two real eigenvalues meet and become a pair, each has a square root in p; middle and squared half
@@ -186,7 +187,9 @@ def set_two_guesses(
 
 
 @compiled
-def predict_eigenvalues(track: Track, i: int, p: Array, guess: Complex, partner: NDArray) -> None:
+def predict_eigenvalues(
+    track: FollowedEigenvalues, i: int, p: Array, guess: Complex, partner: NDArray
+) -> None:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
     (points,).
 

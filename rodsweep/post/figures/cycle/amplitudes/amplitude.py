@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from .....config.arm.axes import CHANGED_PARAMETER
 from .....config.task.limit_cycle import LONGEST_AXIS
 from .....errors import InputError
-from .....results.file.view import View
+from .....results.file.view import ResultView
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from ... import style
 from ...grid_slices import left_out_clause
@@ -30,7 +30,7 @@ UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 
 line."""
 
 
-def draw_amplitude(views: Sequence[View], is_narrow: bool = False) -> tuple[Figure, str]:
+def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
     power against a parameter.
 
@@ -105,7 +105,7 @@ def _draw_branches(
     return handles
 
 
-def _legend_entries_of_files(views: Sequence[View], name: str) -> dict[int, tuple[str, bool | None]]:
+def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int, tuple[str, bool | None]]:
     """Returns {id(view): (legend entry, is_upward)}; the path is no key, because all Datasets of Python have
     the same path. is_upward: whether the parameter `name` increased during the continuation; None unless the
     files differ in this direction.

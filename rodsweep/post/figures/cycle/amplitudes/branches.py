@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .....arrays import Array
 from .....errors import InputError
-from .....results.file.view import View
+from .....results.file.view import ResultView
 from .....results.layouts.limit_cycle import CYCLE_STATUSES
 from .....sweep.points.points import lines_along
 from ....located_thresholds import LocatedThreshold, StoredThresholds
@@ -23,7 +23,7 @@ class AmplitudeSeries:
     0.
     """
 
-    view: View
+    view: ResultView
     parameters: dict[str, float]
     """Parameters that are constant along the line, by name."""
     x: Array
@@ -55,7 +55,7 @@ class AmplitudeSeries:
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
 
 
-def abscissa_parameter(view: View) -> str:
+def abscissa_parameter(view: ResultView) -> str:
     """Name of the parameter on the horizontal axis: F, or the parameter with the most values if F is
     constant. Raises InputError for a file with one point.
     """
@@ -66,7 +66,7 @@ def abscissa_parameter(view: View) -> str:
     return name
 
 
-def amplitude_branches(view: View, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeSeries]:
+def amplitude_branches(view: ResultView, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeSeries]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
     units of the drawn quantities.
     """

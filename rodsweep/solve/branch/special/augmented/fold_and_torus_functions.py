@@ -87,7 +87,7 @@ class FoldFunction:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
         matrix = self.matrix
         tangent = self.null_vectors
-        p = orbit.semidiscrete_equations
+        p = orbit.orbit_equations
         change = replace(orbit, values=tangent[:-1])
         columns, ends = matrix.residual_variations(orbit, tangent[None])
         row = np.empty(len(orbit.start_state))
@@ -119,7 +119,7 @@ class TorusFunction:
         if pair is None:
             raise Unsolvable("the multipliers that cross the unit circle have become real")
         self.multiplier = pair
-        p = matrix.orbit.semidiscrete_equations
+        p = matrix.orbit.orbit_equations
         self.shifted_propagator = (
             matrix.propagator - (1 + AUGMENTED_SETTINGS.inverse_iteration_shift) * pair * p.symmetry
         )
@@ -129,7 +129,7 @@ class TorusFunction:
             start /= np.linalg.norm(start)
         self.border = start.conj()
         K, s, n = matrix.orbit.stage_states.shape
-        self.null_vectors = matrix.orbit_changes_at_fixed_parameter(
+        self.null_vectors = matrix.orbit_increments_at_fixed_parameter(
             _real_and_imaginary(start), np.zeros((K, s, 2, n))
         )
         n = len(start)
@@ -155,12 +155,12 @@ class TorusFunction:
             part[0] + 1j * part[1] for part in (self.null_vectors[:, :n], self.null_vectors[:, -2 - n : -2])
         )
         right_side = np.append(
-            self.multiplier * (orbit.semidiscrete_equations.symmetry @ start), 1 - self.border @ start
+            self.multiplier * (orbit.orbit_equations.symmetry @ start), 1 - self.border @ start
         )
         right_side[:-1] -= end + ends[0] + 1j * ends[1]
         change = np.linalg.solve(self.bordered_propagator, right_side)
         self.multiplier += complex(change[-1])
-        self.null_vectors = self.null_vectors + self.matrix.orbit_changes_at_fixed_parameter(
+        self.null_vectors = self.null_vectors + self.matrix.orbit_increments_at_fixed_parameter(
             _real_and_imaginary(change[:-1]), columns
         )
 

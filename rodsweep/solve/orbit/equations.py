@@ -7,7 +7,7 @@ from ...discretization.elements.mesh import NodeMatrices
 from ...discretization.nodal_rod import NodalRod
 
 
-class SemidiscreteEquations(NamedTuple):
+class OrbitEquations(NamedTuple):
     """Data of the equations of an orbit: rod and mesh in space, collocation in time, closing condition x(T/p)
     = S x(0).
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
-from ..parameter_path import Path
-from ..roots.newton import FAILED_ZERO, LocatedZero
+from ..parameter_path import ParameterPath
+from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue
 from .arm_family import ArmFamily
@@ -43,9 +43,9 @@ ARM_DOUBLE_EIGENVALUE_SETTINGS = ArmDoubleEigenvalueSettings()
 
 
 class _DoubleEigenvalueJacobian(NamedTuple):
-    """Derivatives of D and D_w by p and w at real w, all times exp(-S)."""
+    """Derivatives of D and D_w by p and w at real w, all times exp(-S), S = `log_scale`."""
 
-    S: float
+    log_scale: float
     D_p: float
     D_ww: float
     D_wp: float
@@ -81,7 +81,7 @@ class ArmAlongPath:
     p itself.
     """
 
-    def __init__(self, path: Path, family: Callable[[float], ArmFamily | None] = lambda p: None):
+    def __init__(self, path: ParameterPath, family: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path = path
         self.family_at = family
 
@@ -102,22 +102,23 @@ class ArmAlongPath:
         determinant = self.determinant(p)
         w, error = refine_eigenvalue_and_error(guess, determinant)
         value = determinant.value(w)
-        return w, -self.derivative_by_p(w, p, value.S) / value.D_w, error
+        return w, -self.derivative_by_p(w, p, value.log_scale) / value.D_w, error
 
     def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: scale of the result."""
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: logarithm of the scale of
+        the result."""
         stencil, h = self._difference_stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:
             neighbour = self.determinant(p + offset * h).value(w)
-            slope += weight * neighbour.D * math.exp(neighbour.S - S)
+            slope += weight * neighbour.D * math.exp(neighbour.log_scale - S)
         return slope / h
 
-    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedZero:
+    def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         """The double real eigenvalue D = D_w = 0 near the guess (x, p), by Newton's method.
 
-        expected_distance: expected distance of p from the guess. Returns `FAILED_ZERO` if p moves by more
-        than twice `expected_distance` or to no valid arm, if the sign of x changes, if the Jacobian is
+        expected_distance: expected distance of p from the guess. Returns `FAILED_EIGENVALUE` if p moves by
+        more than twice `expected_distance` or to no valid arm, if the sign of x changes, if the Jacobian is
         singular, or without convergence.
         """
         start = x
@@ -134,20 +135,20 @@ class ArmAlongPath:
             p += step.in_p
             # Negated comparisons are also true for NaN.
             if not abs(p - first) <= 2 * expected_distance or not x * start > 0 or not self._is_valid_at(p):
-                return FAILED_ZERO
+                return FAILED_EIGENVALUE
             if step.is_converged(last):
                 if family is None:
-                    return LocatedZero(x, p, *step.errors)
+                    return LocatedEigenvalue(x, p, *step.errors)
                 # The interpolation error of a family is relative to its largest p. The last steps use D of
                 # the arms themselves.
                 uses_families = False
             last = abs(step.in_x)
-        return FAILED_ZERO
+        return FAILED_EIGENVALUE
 
     def _jacobian(self, x: float, p: float, expected_distance: float) -> _DoubleEigenvalueJacobian:
         """Derivatives of D and D_w at real w = x and p, by differences; expected_distance: see
         `double_eigenvalue`."""
-        S = self._determinant_value(x, p).S
+        S = self._determinant_value(x, p).log_scale
         h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
         D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
         stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * expected_distance)
@@ -166,7 +167,7 @@ class ArmAlongPath:
             W, polynomials = self.determinant(p).propagators_for(abs(x))
         value = determinant_along_chain(complex(x, 0.0), W, polynomials)
         S, D_p, D_ww, D_wp = jacobian
-        scale = math.exp(value.S - S)
+        scale = math.exp(value.log_scale - S)
         D = value.D.real * scale
         D_w = value.D_w.real * scale
         cross = D_w * D_wp - D_p * D_ww
@@ -195,7 +196,7 @@ class ArmAlongPath:
     def _real_determinant(self, x: float, p: float, S: float) -> tuple[float, float]:
         """D exp(-S) and D_w exp(-S), real, at real w = x, for the arm at p."""
         value = self._determinant_value(x, p)
-        scale = math.exp(value.S - S)
+        scale = math.exp(value.log_scale - S)
         return value.D.real * scale, value.D_w.real * scale
 
     def _difference_stencil(self, p: float, max_step: float) -> tuple[tuple[tuple[int, float], ...], float]:

@@ -107,7 +107,8 @@ def predicted_normalised_values(values: Array, data: Array, orders: Array, weigh
     data. A datum is a slope, or the difference of another orbit's normalised values from the current values.
 
     values: normalised values of the current orbit, (N + 1,). data: slopes, or normalised values of other
-    orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights: as in `polynomial_weights`, (m,).
+    orbits, (m, N + 1). orders: 1 for a slope, 0 for values, (m,). weights: weight of each datum in the
+    interpolation polynomial, (m,).
     """
     out = np.zeros(len(values))
     weight_of_values = 1.0

@@ -13,15 +13,15 @@ from surveyed import few
 
 import rodsweep as rs
 from rodsweep.results.file.view import read_view
-from rodsweep.sweep.points.ranges import IndexSet, index_count
-from rodsweep.sweep.points.stretches import (
-    MIN_STRETCH_AXIS_VALUES,
-    STRETCH_POINTS,
-    Stretches,
-    StretchResult,
-    StretchSolver,
-    stretches_along_longest_axis,
+from rodsweep.sweep.points.groups import (
+    GROUP_POINTS,
+    MIN_GROUP_AXIS_VALUES,
+    GroupResult,
+    GroupSolver,
+    PointGroups,
+    groups_along_longest_axis,
 )
+from rodsweep.sweep.points.ranges import IndexSet, index_count
 
 SPECTRA = """
 task: spectrum
@@ -31,45 +31,45 @@ parameters:
   k2: [50, 1.0e4]
   gamma3: [0, 1.0e-4]
 """
-LAST_POINTS = 200 - STRETCH_POINTS
-"""Number of points of the second and last stretch of each line of SPECTRA."""
+LAST_POINTS = 200 - GROUP_POINTS
+"""Number of points of the second and last group of each line of SPECTRA."""
 EVERY = ("F", "k1", "k2", "gamma3")
 SHAPES = [(200, 3, 2, 2), (3, 258, 2, 1), (2, 2, 64, 5), (1, 1, 1, 9)]
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_every_point_is_in_one_stretch_of_neighbours(shape):
-    stretches = stretches_along_longest_axis(shape, EVERY[: len(shape)])
-    parts = [stretches.indices(n) for n in range(stretches.count)]
+    groups = groups_along_longest_axis(shape, EVERY[: len(shape)])
+    parts = [groups.indices(n) for n in range(groups.count)]
     assert sorted(np.concatenate(parts).tolist()) == list(range(math.prod(shape)))
     for part in parts:
         places = np.array(np.unravel_index(part, shape))
-        others = np.delete(places, stretches.axis, axis=0)
-        assert len(part) <= STRETCH_POINTS
+        others = np.delete(places, groups.axis, axis=0)
+        assert len(part) <= GROUP_POINTS
         assert (others == others[:, :1]).all()
-        assert (np.diff(places[stretches.axis]) == 1).all()
+        assert (np.diff(places[groups.axis]) == 1).all()
 
 
 def test_the_axis_with_most_values_is_followed_and_a_short_one_is_not():
-    assert stretches_along_longest_axis((5, 9, 9, 2), EVERY).axis == 1
-    assert stretches_along_longest_axis((1, 1, 1, MIN_STRETCH_AXIS_VALUES), EVERY).axis == 3
-    assert stretches_along_longest_axis((1, MIN_STRETCH_AXIS_VALUES - 1, 1, 1), EVERY) is None
-    assert stretches_along_longest_axis((99, 9, 8), ("", "F", "k2")).axis == 1
-    assert stretches_along_longest_axis((99, 99), ("", "")) is None
+    assert groups_along_longest_axis((5, 9, 9, 2), EVERY).axis == 1
+    assert groups_along_longest_axis((1, 1, 1, MIN_GROUP_AXIS_VALUES), EVERY).axis == 3
+    assert groups_along_longest_axis((1, MIN_GROUP_AXIS_VALUES - 1, 1, 1), EVERY) is None
+    assert groups_along_longest_axis((99, 9, 8), ("", "F", "k2")).axis == 1
+    assert groups_along_longest_axis((99, 99), ("", "")) is None
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_stretches_to_do_are_those_that_miss_a_point(shape):
-    stretches = stretches_along_longest_axis(shape, EVERY[: len(shape)])
+def test_groups_to_do_are_those_that_miss_a_point(shape):
+    groups = groups_along_longest_axis(shape, EVERY[: len(shape)])
     count = math.prod(shape)
-    assert stretches.unsolved_ranges([(0, count)]) == [(0, stretches.count)]
-    assert stretches.missing_total([(0, stretches.count)], [(0, count)]) == count
+    assert groups.unsolved_ranges([(0, count)]) == [(0, groups.count)]
+    assert groups.missing_total([(0, groups.count)], [(0, count)]) == count
     missing = [(0, 2), (5, 6), (count - 1, count)] if count > 9 else [(3, 4)]
     lacks = IndexSet(missing)
-    expected = [n for n in range(stretches.count) if lacks[stretches.indices(n)].any()]
-    todo = stretches.unsolved_ranges(missing)
+    expected = [n for n in range(groups.count) if lacks[groups.indices(n)].any()]
+    todo = groups.unsolved_ranges(missing)
     assert [n for ends in todo for n in range(*ends)] == expected
-    assert stretches.missing_total(todo, missing) == index_count(missing)
+    assert groups.missing_total(todo, missing) == index_count(missing)
 
 
 def test_of_a_stretch_only_missing_points_are_kept():
@@ -79,13 +79,13 @@ def test_of_a_stretch_only_missing_points_are_kept():
 
     def follow(indices):
         asked.append(indices.tolist())
-        return StretchResult({"growth_rate": 10.0 * indices}, indices % 4 == 0)
+        return GroupResult({"growth_rate": 10.0 * indices}, indices % 4 == 0)
 
     def solve(index):
         asked.append(index)
         return f"told {index}"
 
-    solver = StretchSolver(Stretches((10, 2), 0), follow, solve, IndexSet([(4, 11)]))
+    solver = GroupSolver(PointGroups((10, 2), 0), follow, solve, IndexSet([(4, 11)]))
     results = solver(0)
     index, kept = next(results)
     assert index.tolist() == [4, 8]
@@ -122,7 +122,7 @@ def test_followed_spectra_are_as_accurate_as_those_of_points_alone(command):
 @pytest.mark.long
 @pytest.mark.parametrize("whole_job", few([True, False], 1), ids=few(["all ranks", "one rank"], 1))
 def test_resume_after_a_kill_gives_the_same_spectra(command, whole_job):
-    """Killed while ranks wait behind their third stretch, of 128 or 72 points: what is journalled stays."""
+    """Killed while ranks wait behind their third group, of 128 or 72 points: what is journalled stays."""
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", ranks=2, patch=slowly(FOR_EVER, 3))
@@ -157,19 +157,19 @@ def test_points_of_a_stretch_that_are_solved_alone_are_kept_one_by_one(command):
 
 
 def test_a_stretch_of_which_a_part_was_written_is_redone_and_its_rest_kept(command):
-    """A record is torn in the middle of a stretch: the points before it are kept, none is written twice."""
+    """A record is torn in the middle of a group: the points before it are kept, none is written twice."""
     command.write("c.yaml", SPECTRA)
     path = command.directory / "c.h5"
     process = command.started("run", "c.yaml", patch=slowly(FOR_EVER, 2))
-    pause_until_journalled(process, path, 2 * STRETCH_POINTS)
+    pause_until_journalled(process, path, 2 * GROUP_POINTS)
     process.kill()
     process.communicate(timeout=PATIENCE)
     (journal,) = (command.directory / "c.h5.journal").glob("rank-*")
-    record = (journal.stat().st_size - 100) // (2 * STRETCH_POINTS)
+    record = (journal.stat().st_size - 100) // (2 * GROUP_POINTS)
     with journal.open("r+b") as file:
         file.truncate(journal.stat().st_size - 20 * record - 7)
     kept = read_view(path).journalled_count
-    assert 2 * STRETCH_POINTS - 28 < kept < 2 * STRETCH_POINTS - 18
+    assert 2 * GROUP_POINTS - 28 < kept < 2 * GROUP_POINTS - 18
     again = command("run", "c.yaml")
     assert again.returncode == 0, again.stderr
     assert f"{2400 - kept} of 2400 points to do, {kept} kept" in again.stdout
@@ -189,8 +189,8 @@ def test_stopped_run_ends_with_whole_stretches_and_goes_on(command):
     with h5py.File(command.directory / "c.h5") as file:
         kept = (file["status"][...] == 0).reshape(200, -1)
     assert kept.sum() == done
-    assert set(kept[:STRETCH_POINTS].sum(axis=0)) <= {0, STRETCH_POINTS}
-    assert set(kept[STRETCH_POINTS:].sum(axis=0)) <= {0, LAST_POINTS}
+    assert set(kept[:GROUP_POINTS].sum(axis=0)) <= {0, GROUP_POINTS}
+    assert set(kept[GROUP_POINTS:].sum(axis=0)) <= {0, LAST_POINTS}
     assert command("run", "c.yaml").returncode == 0
     assert command("run", "c.yaml", "-o", "whole.h5").returncode == 0
     assert same(content(command.directory / "c.h5"), content(command.directory / "whole.h5"))
@@ -249,7 +249,7 @@ FEW_FORCES = "F: {start: 0, stop: 49.75, num: 20}"
 @pytest.mark.parametrize(
     ("first", "larger", "kept"),
     [
-        ("", "F: {start: 0, stop: 66.25, num: 266}", STRETCH_POINTS),
+        ("", "F: {start: 0, stop: 66.25, num: 266}", GROUP_POINTS),
         ("", "F: {start: 0, stop: 49.75, num: 200}\n  k1: [100, 200, 1.0e4, .inf]", 200),
         (FEW_FORCES, f"{FEW_FORCES}\n  k2: {{start: 50, stop: 600, num: 31}}", 0),
         ("", "F: {start: -0.25, stop: 49.75, num: 201}", 0),
@@ -257,7 +257,7 @@ FEW_FORCES = "F: {start: 0, stop: 49.75, num: 20}"
     ids=["longer", "another line", "along another axis", "shifted"],
 )
 def test_extended_grid_keeps_what_a_run_of_the_whole_gives_to_the_last_bit(command, first, larger, kept):
-    """Of each of the three lines as many points as are in stretches of the same points."""
+    """Of each of the three lines as many points as are in groups of the same points."""
     parameters = {"F": "{start: 0, stop: 49.75, num: 200}", "k1": "[100, 1.0e4, .inf]"}
     parameters |= {"k2": "50", "gamma3": "1.0e-4"}
     texts = []

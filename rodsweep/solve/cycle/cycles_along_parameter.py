@@ -16,7 +16,7 @@ from ...discretization.stress.form import StressForm
 from ..continuation.curve import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
-from ..orbit.normalised import (
+from ..orbit.normalised_orbit import (
     normalised_orbit_values,
     normalised_tangent,
     polynomial_weights,
@@ -87,7 +87,8 @@ class CyclePredictor:
 
     @cached_property
     def normalised_values(self) -> Array:
-        """Values of the solved orbit as in `normalised_orbit_values`, (N + 1,)."""
+        """Values of the solved orbit, divided by its size where they change sign under the reflection, and
+        the squared size, (N + 1,)."""
         return normalised_orbit_values(self.orbit)
 
     def weights(self, step: float) -> Array:

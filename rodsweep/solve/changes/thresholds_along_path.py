@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 from ...determinant.certificate.covering import Box, cover_with_boxes
 from ...determinant.certificate.first_boxes import first_boxes
-from ...determinant.parameter_path import Path, coefficients_at, determinant_along_path
-from ...determinant.roots.newton import LocatedZero
+from ...determinant.parameter_path import ParameterPath, coefficients_at, determinant_along_path
+from ...determinant.roots.newton import LocatedEigenvalue
 from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
@@ -72,7 +72,7 @@ class PathCrossings:
     """Crossings of the imaginary axis along `path`. gaps: intervals of the parameter that may contain further
     crossings. search_end: end of the search. evaluation_count: number of evaluations of D in the covering."""
 
-    path: Path
+    path: ParameterPath
     crossings: list[Threshold]
     gaps: list[tuple[float, float]]
     search_end: SearchEnd
@@ -95,7 +95,7 @@ class PathCrossings:
 
 
 def find_thresholds(
-    path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
+    path: ParameterPath, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdSearchResult:
     """All thresholds along `path` for parameter values from `start` to `stop`; `certify` requests a proof.
 
@@ -133,7 +133,7 @@ def find_thresholds(
 
 
 def find_axis_crossings(
-    path: Path, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
+    path: ParameterPath, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
     exchanges of the leading eigenvalue; takes half the time of `find_thresholds`. `proved`: the covering is
@@ -197,7 +197,7 @@ def _crossings(
     return PathCrossings(problem.path, crossings, gaps, search_end)
 
 
-def _crossings_by_covering(path: Path, low: float, high: float) -> PathCrossings:
+def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> PathCrossings:
     """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
@@ -215,7 +215,7 @@ def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def _crossings_without_leading_pair(
-    path: Path, crossings: tuple[Threshold, ...], oscillates: bool, count: int
+    path: ParameterPath, crossings: tuple[Threshold, ...], oscillates: bool, count: int
 ) -> list[float]:
     """Path variables of the crossings whose pair must lead, but does not lead according to the exchanges.
     oscillates: whether a pair leads at the start. count: number of unstable modes at the start."""
@@ -230,7 +230,7 @@ def _crossings_without_leading_pair(
     return missed
 
 
-def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
+def _hopf_crossing(path: ParameterPath, zero: LocatedEigenvalue) -> Threshold:
     """Crossing at a zero of D on the axis."""
     coefficients = coefficients_at(zero.p, path.origin, path.direction)
     value = determinant_along_path(complex(0.0, zero.eta_or_x), coefficients, path.direction)
@@ -239,7 +239,7 @@ def _hopf_crossing(path: Path, zero: LocatedZero) -> Threshold:
     return Threshold(parameter_value, kind, zero.eta_or_x, 0.0, error, frequency_error=zero.error)
 
 
-def _undecided_intervals(path: Path, undecided: list[Box]) -> list[tuple[float, float]]:
+def _undecided_intervals(path: ParameterPath, undecided: list[Box]) -> list[tuple[float, float]]:
     """Disjoint intervals of the parameter covered by the boxes `undecided`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in undecided):

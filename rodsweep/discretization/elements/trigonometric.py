@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled_for_vectors
-from ...model.compiled.settings import CompiledSettings
+from ...model.compiled.kernel_constants import KernelConstants
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TrigonometricMaximumSettings(CompiledSettings):
+class TrigonometricMaximumSettings(KernelConstants):
     """Settings for maxima and zeros of trigonometric polynomials."""
 
     max_steps: int = 8

@@ -11,7 +11,7 @@ from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.core.typing.typeof import typeof, typeof_impl
 
 
-class CompiledSettings:
+class KernelConstants:
     """Base class of frozen dataclasses of numbers and tuples of numbers that are global constants of modules.
 
     A compiled function may read fields and properties of such a constant, but call no method. The machine
@@ -32,9 +32,9 @@ class CompiledSettings:
 
 
 class _SettingsType(types.Type):
-    """The numba type of one `CompiledSettings` object. settings: the object."""
+    """The numba type of one `KernelConstants` object. settings: the object."""
 
-    def __init__(self, settings: CompiledSettings) -> None:
+    def __init__(self, settings: KernelConstants) -> None:
         self.settings = settings
         super().__init__(name=repr(settings))
 
@@ -49,8 +49,8 @@ class _SettingsType(types.Type):
 register_default(_SettingsType)(models.OpaqueModel)
 
 
-@typeof_impl.register(CompiledSettings)
-def _type_of(settings: CompiledSettings, context: Any) -> _SettingsType:
+@typeof_impl.register(KernelConstants)
+def _type_of(settings: KernelConstants, context: Any) -> _SettingsType:
     return _SettingsType(settings)
 
 
@@ -64,9 +64,7 @@ class _FieldTypeResolver(AttributeTemplate):
 
 
 @lower_constant(_SettingsType)
-def _lower_settings_object(
-    context: Any, builder: Any, kind: _SettingsType, settings: CompiledSettings
-) -> Any:
+def _lower_settings_object(context: Any, builder: Any, kind: _SettingsType, settings: KernelConstants) -> Any:
     return context.get_dummy_value()
 
 

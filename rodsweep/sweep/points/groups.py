@@ -1,0 +1,151 @@
+"""Groups of points: neighbouring points on a grid line of a sweep that are solved together.
+
+The division of grid lines into groups depends only on the grid. Results therefore depend neither on the
+number of ranks nor on points of an earlier run: if any point of a group is missing, eigenvalues are
+followed again along the complete group.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .ranges import IndexRange, IndexSet, index_count, indices_along, merged_ranges
+
+GROUP_POINTS = 128
+"""Maximum number of points in a stretch. Arms along a path share what is computed once per stretch; longer
+groups would leave fewer work items to the ranks."""
+MIN_GROUP_AXIS_VALUES = 8
+"""Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much
+to follow eigenvalues."""
+GROUPES_PER_BLOCK = 1 << 12
+"""Number of groups tested for missing points in a single array operation, which bounds the memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class GroupResult:
+    """Result of a group of n points solved together.
+
+    values: every variable of the result file at the points, (n, ...), by name. is_solved: mask of the points
+    that were solved together, (n,); all other points must be solved one by one.
+    """
+
+    values: dict[str, NDArray]
+    is_solved: NDArray[np.bool_]
+
+    def part_at(self, indices: NDArray[np.int64]) -> "GroupResult":
+        """The part of the result at the positions `indices` in the group, (m,)."""
+        values = {name: column[indices] for name, column in self.values.items()}
+        return GroupResult(values, self.is_solved[indices])
+
+
+SolveGroup = Callable[[NDArray[np.int64]], GroupResult]
+"""Function from the flat indices of the points of a group, (n,), to the result of the group."""
+
+
+@dataclass(frozen=True, slots=True)
+class PointGroups:
+    """All groups, runs of neighbouring points along one axis whose eigenvalues are followed from point to
+    point, of a grid of shape `shape` along its axis number `axis`."""
+
+    shape: tuple[int, ...]
+    axis: int
+
+    @property
+    def line_count(self) -> int:
+        """Number of grid lines along the axis."""
+        return math.prod(self.shape) // self.shape[self.axis]
+
+    @property
+    def count(self) -> int:
+        """Number of groups in the grid.
+
+        PointGroups are ordered by position along the axis, and at equal positions in row-major order of the
+        remaining axes. Consecutive groups are therefore neighbours in the file.
+        """
+        return self.line_count * -(-self.shape[self.axis] // GROUP_POINTS)
+
+    def indices(self, group: int) -> NDArray[np.int64]:
+        """Flat indices of the points of the group number `group`, (n,)."""
+        segment, line = divmod(group, self.line_count)
+        positions = np.arange(
+            segment * GROUP_POINTS, min((segment + 1) * GROUP_POINTS, self.shape[self.axis])
+        )
+        return indices_along(self.shape, self.axis, line, positions)
+
+    def missing_counts(self, groups: IndexRange, missing: IndexSet) -> NDArray[np.int64]:
+        """Number of points in `missing` of each group in a range of group numbers, (groups,)."""
+        segment, line = np.divmod(np.arange(*groups)[:, None], self.line_count)
+        positions = segment * GROUP_POINTS + np.arange(GROUP_POINTS)
+        index = indices_along(self.shape, self.axis, line, positions)
+        return (missing[index] & (positions < self.shape[self.axis])).sum(axis=1)
+
+    def unsolved_ranges(self, missing: Sequence[IndexRange]) -> list[IndexRange]:
+        """Ranges of the numbers of groups with missing points; missing: ranges of flat indices."""
+        if index_count(missing) == math.prod(self.shape):
+            return [(0, self.count)]
+        missing_points = IndexSet(missing)
+        ranges: list[IndexRange] = []
+        for start in range(0, self.count, GROUPES_PER_BLOCK):
+            end = min(start + GROUPES_PER_BLOCK, self.count)
+            incomplete = self.missing_counts((start, end), missing_points) > 0
+            edges = start + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
+            ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
+        return merged_ranges(ranges)
+
+    def missing_total(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
+        """Number of missing points in the given groups. groups: ranges of group numbers. missing:
+        ranges of flat indices.
+        """
+        missing_points = IndexSet(missing)
+        number = 0
+        for start, end in groups:
+            for block_start in range(start, end, GROUPES_PER_BLOCK):
+                block = (block_start, min(block_start + GROUPES_PER_BLOCK, end))
+                number += int(self.missing_counts(block, missing_points).sum())
+        return number
+
+
+def groups_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) -> PointGroups | None:
+    """Groups of a grid along the first of its longest usable axes; None if no usable axis has
+    MIN_GROUP_AXIS_VALUES values.
+
+    shape: shape of the grid. varied: the only parameter that varies along each axis; "" for an axis of
+    several parameters, which is not usable.
+    """
+    followable_axes = [axis for axis, name in enumerate(varied) if name]
+    axis = max(followable_axes, key=lambda i: shape[i], default=None)
+    return PointGroups(shape, axis) if axis is not None and shape[axis] >= MIN_GROUP_AXIS_VALUES else None
+
+
+@dataclass(frozen=True, slots=True)
+class GroupSolver:
+    """Function from the number of a group of points to the results of its missing points.
+
+    groups: all groups of the grid. solve_group: solves the points of a group together. solve:
+    solves a point, given its flat index, that could not be solved together with its group. missing: flat
+    indices of the missing points.
+    """
+
+    groups: PointGroups
+    solve_group: SolveGroup
+    solve: Callable[[int], Any]
+    missing: IndexSet
+
+    def __call__(self, group: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
+        """Solves a group of points; yields (flat indices, (m,), `GroupResult`) of all missing points that
+        are solved together, then (flat index, outcome) of each further missing point.
+
+        A run that ends between two points loses no point that was yielded before.
+        """
+        indices = self.groups.indices(group)
+        result = self.solve_group(indices)
+        missing = self.missing[indices]
+        solved_indices = np.flatnonzero(missing & result.is_solved)
+        if len(solved_indices):
+            yield indices[solved_indices], result.part_at(solved_indices)
+        for index in indices[missing & ~result.is_solved].tolist():
+            yield index, self.solve(index)
