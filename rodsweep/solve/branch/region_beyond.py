@@ -163,8 +163,8 @@ class RegionBeyond:
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)
         if not curve.complete:
-            coordinates = [self.path.coordinate(point.parameter_value) for point in curve.points]
-            self.stop_at(max(coordinates) if self.index == 1 else min(coordinates))
+            # The part of the branch that is not followed begins at its last cycle.
+            self.stop_at(self.path.coordinate(curve.points[-1].parameter_value))
         passage = curve.end_passage
         return None if passage is None or passage.index == self.index else replace(passage, index=self.index)
 

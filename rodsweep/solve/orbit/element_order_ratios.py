@@ -16,10 +16,6 @@ from .tails import coefficients_of_elements
 class OrderRatioSettings:
     """Settings for the orders of the elements of a mesh relative to the largest order."""
 
-    added_order: int = 0
-    """Order of an element, minus the order at which its coefficients fall below the aim `max_tail`. With 0
-    the errors of a mesh are those of the elements of the largest order; with 2 the elements of two to five
-    segments had a tenth more unknowns at equal errors."""
     min_order: int = 4
     """Smallest order of an element that is chosen from coefficients."""
     min_ratio: float = 0.2
@@ -59,8 +55,4 @@ def _needed_order(c: Array, max_tail: float, order: int) -> int:
     most `order`. Two orders are tested, because one coefficient may vanish by parity. c: moduli of the
     coefficients of orders 0 to p, (p + 1,)."""
     small_indices = np.flatnonzero(np.maximum(c[:-1], c[1:]) <= max_tail)
-    return (
-        order
-        if not len(small_indices)
-        else min(int(small_indices[0]) + ORDER_RATIO_SETTINGS.added_order, order)
-    )
+    return int(small_indices[0]) if len(small_indices) else order
