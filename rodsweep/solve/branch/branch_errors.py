@@ -181,7 +181,7 @@ def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(
+    bounded_errors: Array = np.minimum(
         BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first_errors, second_errors)
     )
-    return bounded
+    return bounded_errors
