@@ -13,25 +13,25 @@ from ..results.file.creation import FilePlan
 from ..solve.backend.availability import require_solvers, start_solvers
 from ..sweep.points.flutter_forces import FlutterForces, flutter_force_of_rod
 from ..sweep.points.grid import rods_for_flutter_forces
+from ..sweep.ranks import Ranks
 from ..sweep.stop import StopRequest
-from ..sweep.team import Team
 from ..tasks.protocol import Task
 
 
 @dataclass(slots=True)
 class _SharedComputations:
-    """Computations divided among the ranks of `team`. Each rank omits its remaining items after a stop
+    """Computations divided among the ranks of `ranks`. Each rank omits its remaining items after a stop
     signal, recorded in `stop`.
     """
 
-    team: Team
+    ranks: Ranks
     stop: StopRequest
     has_skipped_items: bool = False
     """Whether this rank has omitted an item after a stop signal."""
 
     def gather_in_order(self, items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
         """Results of `work` for all items, in order, on every rank; None for an omitted item."""
-        return self.team.map_in_order(items, lambda item: self._run_unless_stopped(work, item))
+        return self.ranks.map_in_order(items, lambda item: self._run_unless_stopped(work, item))
 
     def _run_unless_stopped(self, work: Callable[[Any], Any], item: Any) -> Any:
         self.has_skipped_items = self.has_skipped_items or bool(self.stop)
@@ -40,41 +40,43 @@ class _SharedComputations:
     @property
     def any_rank_stopped(self) -> bool:
         """Whether any rank has omitted an item. Collective: all ranks call together."""
-        return any(self.team.gather_on_all_ranks(self.has_skipped_items))
+        return any(self.ranks.gather_on_all_ranks(self.has_skipped_items))
 
 
-def with_variables_from_config(plan: FilePlan, task: Task, team: Team, stop: StopRequest) -> FilePlan | None:
+def with_variables_from_config(
+    plan: FilePlan, task: Task, ranks: Ranks, stop: StopRequest
+) -> FilePlan | None:
     """The plan of a result file, with the variables that do not depend on points, computed by all ranks
     together.
 
     None if a stop signal came before the computation ended.
     """
-    computations = _SharedComputations(team, stop)
+    computations = _SharedComputations(ranks, stop)
     variables = task.variables_from_config(computations.gather_in_order)
     return None if computations.any_rank_stopped else replace(plan, variables_from_config=lambda: variables)
 
 
-def shared_flutter_forces(config: Config, team: Team, stop: StopRequest) -> FlutterForces | None:
+def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> FlutterForces | None:
     """Flutter force of every rod whose load is relative to flutter, by rod, computed by all ranks together.
 
     None if a stop signal came before the computation ended.
     """
-    rods = team.call_on_first_rank(lambda: rods_for_flutter_forces(config))
+    rods = ranks.call_on_first_rank(lambda: rods_for_flutter_forces(config))
     if not all(
         rod.is_uniform_and_linear for rod in rods
     ):  # a rank without a rod must start PETSc with the others
-        team.require_on_all_ranks(require_solvers)
-        team.require_on_all_ranks(start_solvers)
-    computations = _SharedComputations(team, stop)
+        ranks.require_on_all_ranks(require_solvers)
+        ranks.require_on_all_ranks(start_solvers)
+    computations = _SharedComputations(ranks, stop)
     forces = computations.gather_in_order(rods, flutter_force_of_rod)
     return None if computations.any_rank_stopped else dict(zip(rods, forces, strict=True))
 
 
-def report_stop(team: Team, stop: StopRequest) -> None:
+def report_stop(ranks: Ranks, stop: StopRequest) -> None:
     """Prints, on the first rank, that a signal stopped the run before the result file was created.
 
     Collective: all ranks call together.
     """
-    signal_name = max(team.gather_on_all_ranks(stop.name))
-    if team.is_first:
+    signal_name = max(ranks.gather_on_all_ranks(stop.name))
+    if ranks.is_first:
         click.echo(f"stopped by {signal_name}; no point is computed yet, the same command starts again")

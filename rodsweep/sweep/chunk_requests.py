@@ -16,8 +16,8 @@ from collections.abc import Callable
 from ..solve_progress import SolvePosition
 from .chunk_queue import NO_WORK_LEFT, ChunkQueue, RankReport
 from .points.ranges import IndexRange
+from .ranks import Ranks
 from .stop import StopRequest
-from .team import Team
 
 REQUEST_TAG = 71
 """MPI tag of a rank's request for a chunk, a `RankReport`."""
@@ -49,12 +49,12 @@ class ChunkServer:
     """Takes chunks for the first rank, and answers the requests of all other ranks, also from a thread."""
 
     def __init__(
-        self, team: Team, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
+        self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
     ):
         """show_position: function (text on the progress of a long point, fractions of all unfinished points
         done, summed) that displays the progress.
         """
-        self.team = team
+        self.ranks = ranks
         self.queue = queue
         self.stop = stop
         self.show_position = show_position
@@ -62,16 +62,16 @@ class ChunkServer:
         """Ranks that wait for a chunk, in the order of their requests."""
         self.answered_in_advance: set[int] = set()
         """Ranks whose next request has been answered in advance."""
-        self.working_ranks = set(range(1, team.size))
+        self.working_ranks = set(range(1, ranks.size))
         """Other ranks that have not been told that no work is left."""
-        self.mpi_status = team.MPI.Status()
+        self.mpi_status = ranks.MPI.Status()
         self.positions: dict[int, SolvePosition] = {}
         """Latest reported progress within a long point, by rank."""
         self.serving_lock = threading.Lock()
         self.last_served = 0.0
         """Time of the last poll for messages between two points, on the monotonic clock, in s."""
         self.thread: threading.Thread | None = None
-        if team.size > 1:
+        if ranks.size > 1:
             # A daemon, so that an exception on this rank does not wait for the thread.
             self.thread = threading.Thread(target=self._serve_until_over, name="chunk queue", daemon=True)
             self.thread.start()
@@ -128,12 +128,12 @@ class ChunkServer:
         if self.stop and not self.queue.is_stopped:
             self.queue.stop()
             for rank in self.working_ranks:
-                self.team.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
+                self.ranks.comm.send(self.stop.name, dest=rank, tag=STOP_TAG)
 
     def _serve(self) -> None:
         """Handles all waiting messages: stop requests, progress, and requests for chunks."""
-        comm = self.team.comm
-        MPI = self.team.MPI
+        comm = self.ranks.comm
+        MPI = self.ranks.MPI
         with self.serving_lock:
             while comm.Iprobe(source=MPI.ANY_SOURCE, tag=STOP_TAG, status=self.mpi_status):
                 self.stop.adopt(comm.recv(source=self.mpi_status.Get_source(), tag=STOP_TAG))
@@ -150,8 +150,8 @@ class ChunkServer:
 
     def _receive_positions(self) -> None:
         """Receives all waiting reports of progress within long points."""
-        comm = self.team.comm
-        MPI = self.team.MPI
+        comm = self.ranks.comm
+        MPI = self.ranks.MPI
         while comm.Iprobe(source=MPI.ANY_SOURCE, tag=PROGRESS_TAG, status=self.mpi_status):
             rank = self.mpi_status.Get_source()
             self.positions[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
@@ -165,7 +165,7 @@ class ChunkServer:
         """
         if report.is_in_advance:
             if (chunk := self.queue.next_chunk_in_advance(rank)) is not None:
-                self.team.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
+                self.ranks.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
                 self.answered_in_advance.add(rank)
             return
         if report.stop_signal:  # the report may arrive before the rank's message with STOP_TAG
@@ -180,7 +180,7 @@ class ChunkServer:
 
     def _serve_until_over(self) -> None:
         """Body of the thread: answers messages of the other ranks until all of them have finished."""
-        with self.team.abort_all_ranks_on_error():
+        with self.ranks.abort_all_ranks_on_error():
             while self.working_ranks:
                 self._serve()
                 is_polled = time.monotonic() - self.last_served < POLL_SECONDS_IF_ANSWERED
@@ -190,8 +190,8 @@ class ChunkServer:
 class ChunkClient:
     """Takes chunks for a rank other than the first, by messages to the first rank."""
 
-    def __init__(self, team: Team, stop: StopRequest):
-        self.comm = team.comm
+    def __init__(self, ranks: Ranks, stop: StopRequest):
+        self.comm = ranks.comm
         self.stop = stop
         self.stop_exchanged = False
 

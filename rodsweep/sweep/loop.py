@@ -14,8 +14,8 @@ from ..solve_progress import SolveStopped, reporting_to
 from .chunk_queue import MAX_CHUNK_TIME_RATIO, NO_WORK_LEFT, ChunkQueue, RankReport, chunk_seconds
 from .chunk_requests import ChunkClient, ChunkServer
 from .points.ranges import IndexRange
+from .ranks import Ranks
 from .stop import RankListener, StopRequest
-from .team import Team
 
 Indices = int | NDArray[np.int64]
 """Flat index of one point, or flat indices, (n,), of points that are stored together."""
@@ -77,7 +77,7 @@ class SweepCallbacks:
 
 
 def sweep(
-    team: Team, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
+    ranks: Ranks, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
 ) -> RankStatistics:
     """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
     finished.
@@ -86,12 +86,14 @@ def sweep(
     current point, or abandons the point after GRACE_SECONDS (see `stop`).
     """
     requests = (
-        ChunkServer(team, queue, stop, progress.show_position) if team.is_first else ChunkClient(team, stop)
+        ChunkServer(ranks, queue, stop, progress.show_position)
+        if ranks.is_first
+        else ChunkClient(ranks, stop)
     )
     with suppress(SolveStopped), reporting_to(RankListener(requests, stop)):
         loop.prepare()
     progress(0)
-    return _RankLoop(team, requests, loop, progress, stop).solve_chunks()
+    return _RankLoop(ranks, requests, loop, progress, stop).solve_chunks()
 
 
 class _RankLoop:
@@ -99,13 +101,13 @@ class _RankLoop:
 
     def __init__(
         self,
-        team: Team,
+        ranks: Ranks,
         requests: ChunkServer | ChunkClient,
         loop: SweepCallbacks,
         progress: ProgressSink,
         stop: StopRequest,
     ):
-        self.team = team
+        self.ranks = ranks
         self.requests = requests
         self.callbacks = loop
         self.progress = progress
@@ -135,7 +137,7 @@ class _RankLoop:
             chunk = self.requests.next_chunk(report)
         if isinstance(self.requests, ChunkServer):
             self.requests.close()
-        self.team.wait_for_all()
+        self.ranks.wait_for_all()
         return RankStatistics(
             self.points, busy_seconds, time.monotonic() - start - busy_seconds, self.was_interrupted
         )
@@ -145,7 +147,7 @@ class _RankLoop:
 
         Later items stay unsolved after a stop request, or if the chunk takes too long.
         """
-        patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.team.size)
+        patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.ranks.size)
         item = chunk[0]
         points_before = self.points
         while item < chunk[1] and not self.stop:

@@ -127,8 +127,8 @@ def run_patched(command, patch, ranks=2):
         "import time\nimport rodsweep.cli.run.shard_solver as shard_solver\nreal = shard_solver.sweep\n"
         + patch
         + "\nfrom dataclasses import replace\n"
-        "def sweep(team, todo, loop, *words):\n"
-        "    return real(team, todo, replace(loop, solve=patched(team.rank, loop.solve)), *words)\n"
+        "def sweep(ranks, todo, loop, *words):\n"
+        "    return real(ranks, todo, replace(loop, solve=patched(ranks.rank, loop.solve)), *words)\n"
         "shard_solver.sweep = sweep\n"
     )
     return command("run", "c.yaml", ranks=ranks, patch=patch)

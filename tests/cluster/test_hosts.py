@@ -30,8 +30,8 @@ import rodsweep.sweep.loop as loop
 
 real = loop.sweep
 
-def sweep(team, todo, work, *words):
-    own, other = (pathlib.Path(f"begun-{{rank}}") for rank in (team.rank, 1 - team.rank))
+def sweep(ranks, todo, work, *words):
+    own, other = (pathlib.Path(f"begun-{{rank}}") for rank in (ranks.rank, 1 - ranks.rank))
 
     def solve(unit):
         own.touch()
@@ -40,7 +40,7 @@ def sweep(team, todo, work, *words):
             time.sleep(0.01)
         return work.solve(unit)
 
-    return real(team, todo, replace(work, solve=solve), *words)
+    return real(ranks, todo, replace(work, solve=solve), *words)
 
 loop.sweep = sweep
 """
@@ -58,7 +58,7 @@ def wait(reached):
     while not reached() and time.monotonic() < end:
         time.sleep(0.01)
 
-def sweep(team, todo, work, *words):
+def sweep(ranks, todo, work, *words):
     solve = work.solve
 
     def solve_long(index):
@@ -72,10 +72,10 @@ def sweep(team, todo, work, *words):
             solved.write(b".")
         return solve(index)
 
-    if not team.is_first:
+    if not ranks.is_first:
         wait(inside.exists)
-    own = solve_long if team.is_first else solve_elsewhere
-    return real(team, todo, replace(work, solve=own), *words)
+    own = solve_long if ranks.is_first else solve_elsewhere
+    return real(ranks, todo, replace(work, solve=own), *words)
 
 loop.sweep = sweep
 """

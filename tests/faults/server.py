@@ -316,14 +316,14 @@ def import_all() -> None:
 def load(solving: bool, configs: list[str]) -> None:
     """Compiles what is compiled at first use for some configs, after `import_all`."""
     from rodsweep.errors import EnvironmentIncomplete
-    from rodsweep.sweep.team import Team
+    from rodsweep.sweep.ranks import Ranks
     from rodsweep.tasks.running.job import job_of_file
 
     for path in configs:
         job = job_of_file(Path(path), ())
         job.task.cost()
         if solving:
-            Team()
+            Ranks()
             with suppress(EnvironmentIncomplete):
                 job.task.solver().warm_up()
     find_provenance(solving)

@@ -178,8 +178,8 @@ class Mail:
 def claims(mail, todo, monkeypatch, show=lambda words, begun: None):
     """The first rank's claims among two ranks, without a thread."""
     monkeypatch.setattr(ChunkServer, "_serve_until_over", lambda self: None)
-    team = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
-    return ChunkServer(team, ChunkQueue(todo, 2), StopRequest(), show)
+    ranks = SimpleNamespace(MPI=mail, comm=mail, size=2, first=True)
+    return ChunkServer(ranks, ChunkQueue(todo, 2), StopRequest(), show)
 
 
 def test_each_chunk_is_answered_once_whether_asked_for_ahead_or_not(monkeypatch):

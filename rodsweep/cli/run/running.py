@@ -15,8 +15,8 @@ from ...results.file.store import ResultFileWriter
 from ...results.file.view import read_view
 from ...solve.backend.availability import require_solvers, require_working_directory
 from ...sweep.points.ranges import IndexRange, index_count
+from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
-from ...sweep.team import Team
 from ...tasks.protocol import SweepWideResult
 from ...tasks.running.failures import parameters_text, reasons_of_changed_points
 from ...tasks.running.job import Job, job_of_config, plan_of
@@ -32,16 +32,16 @@ from .sweep_wide_computation import PendingSweepWideVariables, SweepWideComputat
 def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest) -> int:
     """Runs the config file `path`, or a shard of it, on all ranks; returns the exit status of the command."""
     require_working_directory()
-    team = Team()
-    with team.abort_all_ranks_on_error():
-        config, text = team.call_on_first_rank(lambda: load_config(path, request.overrides))
+    ranks = Ranks()
+    with ranks.abort_all_ranks_on_error():
+        config, text = ranks.call_on_first_rank(lambda: load_config(path, request.overrides))
         with refusals_with_file(path):
-            if (flutter := shared_flutter_forces(config, team, stop)) is None:
-                report_stop(team, stop)
+            if (flutter := shared_flutter_forces(config, ranks, stop)) is None:
+                report_stop(ranks, stop)
                 return STOPPED_STATUS
-            job = team.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
-        team.require_on_all_ranks(require_solvers)
-        return _RankRun(team, job, output, request, stop).run()
+            job = ranks.call_on_first_rank(lambda: job_of_config(path, config, text, flutter))
+        ranks.require_on_all_ranks(require_solvers)
+        return _RankRun(ranks, job, output, request, stop).run()
 
 
 class _RankRun:
@@ -50,10 +50,10 @@ class _RankRun:
     store: ResultFileWriter
     """The result file, on the first rank, after `_open_store`."""
 
-    def __init__(self, team: Team, job: Job, output: Path, request: RunRequest, stop: StopRequest):
+    def __init__(self, ranks: Ranks, job: Job, output: Path, request: RunRequest, stop: StopRequest):
         from ...solve.backend.petsc import blas_description
 
-        self.team = team
+        self.ranks = ranks
         self.job = job
         self.output = output
         self.stop = stop
@@ -62,13 +62,13 @@ class _RankRun:
         self.clock_at_start = time.monotonic()
         self.date_at_start = provenance.utc_time()
         self.seconds = 0.0
-        self.log = TracebackLog(output, team.rank, self._point_text, request.strict)
+        self.log = TracebackLog(output, ranks.rank, self._point_text, request.strict)
         self.solver = guarded_solver(job.solver(), job.layout, self.log)
-        self.kernels = provenance.merged_blas_kernels(team.gather(blas_description()) or [])
+        self.kernels = provenance.merged_blas_kernels(ranks.gather(blas_description()) or [])
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.shard_solver = ShardSolver(
-            team=team,
+            ranks=ranks,
             job=job,
             solver=self.solver,
             plan=self.plan,
@@ -80,21 +80,21 @@ class _RankRun:
         )
         sweep_wide = self.solver.sweep_wide_solver
         self.sweep_wide = sweep_wide and SweepWideComputation(
-            team, sweep_wide, output, self.plan.fingerprint, self.log.append_exception, stop
+            ranks, sweep_wide, output, self.plan.fingerprint, self.log.append_exception, stop
         )
 
     def run(self) -> int:
         """Solves the missing points, writes the results into the file, and returns the exit status."""
         replaces = self.request.fresh or self.request.extend
-        if self.team.call_on_first_rank(lambda: replaces or not self.output.exists()):
-            plan = with_variables_from_config(self.plan, self.job.task, self.team, self.stop)
+        if self.ranks.call_on_first_rank(lambda: replaces or not self.output.exists()):
+            plan = with_variables_from_config(self.plan, self.job.task, self.ranks, self.stop)
             if plan is None:
-                report_stop(self.team, self.stop)
+                report_stop(self.ranks, self.stop)
                 return STOPPED_STATUS
             self.plan = plan
-        missing = self.team.call_on_first_rank(self._open_store)
+        missing = self.ranks.call_on_first_rank(self._open_store)
         items, count = self.shard_solver.items_to_solve(missing)
-        if self.team.is_first:
+        if self.ranks.is_first:
             points = self.job.points.count
             shard = f"; shard {self.shard}" if self.shard.shard_count > 1 else ""
             kept = f", {points - index_count(missing)} kept" if points > index_count(missing) else ""
@@ -103,17 +103,17 @@ class _RankRun:
             self._print_message(f"{self.output}: {count} of {counted(points, 'point')} to do{kept}{shard}")
         contributions: list[RunContribution] = []
         if count:
-            self.team.call_on_first_rank(self._record_blas_kernels)
+            self.ranks.call_on_first_rank(self._record_blas_kernels)
             contributions = (
-                self.team.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
+                self.ranks.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
             )
-        pending = self.team.call_on_first_rank(lambda: self._add_journals(count, contributions))
+        pending = self.ranks.call_on_first_rank(lambda: self._add_journals(count, contributions))
         solved: dict[str, int] = {}
         if self.sweep_wide:
             title = None if self.request.quiet else self.job.title
             pending, solved = self.sweep_wide.solve_all(pending, self.prepare, title)
-        exceptions = sum(self.team.gather(self.log.count) or [])
-        return self.team.call_on_first_rank(
+        exceptions = sum(self.ranks.gather(self.log.count) or [])
+        return self.ranks.call_on_first_rank(
             lambda: self._finish(count, contributions, pending, solved, exceptions)
         )
 
@@ -131,7 +131,7 @@ class _RankRun:
         """
         self.seconds = time.monotonic() - self.clock_at_start
         if count:
-            history = run_history(contributions, self.team.MPI.Get_library_version())
+            history = run_history(contributions, self.ranks.MPI.Get_library_version())
             attributes = {"started": self.date_at_start, "stopped": self.stop.name}
             self.store.add_journals(last_run_attributes(self.plan) | history | attributes)
         if not self._lacks_sweep_wide_variables(index_count(self.store.missing())):
@@ -225,7 +225,7 @@ class _RankRun:
         unsolved_count = self.shard_solver.items_to_solve(missing_points)[1]
         text = f"shard {self.shard} of {self.output}" if missing_points else f"{self.output}"
         run_end = RunStatistics(
-            ranks=self.team.size,
+            ranks=self.ranks.size,
             requested_points=count,
             unsolved_points=unsolved_count,
             stored_points=self.job.points.count - index_count(missing_points),

@@ -20,8 +20,8 @@ from ...sweep.points.chains import ChainSolver
 from ...sweep.points.groups import GroupResult, GroupSolver
 from ...sweep.points.ranges import IndexRange, IndexSet, Shard, index_count
 from ...sweep.progress import ProgressReporter, SilentProgress
+from ...sweep.ranks import Ranks
 from ...sweep.stop import StopRequest
-from ...sweep.team import Team
 from ...tasks.protocol import Solver
 from ...tasks.running.failures import FailureReasons
 from ...tasks.running.job import Job
@@ -33,11 +33,11 @@ class ShardSolver:
     """Solves the points of a shard of a job, and writes the results into journals next to the result file
     `output`.
 
-    team: all ranks. solver: solver of the points. plan: plan of the result file. stop: stop request of this
+    ranks: all ranks. solver: solver of the points. plan: plan of the result file. stop: stop request of this
     process.
     """
 
-    team: Team
+    ranks: Ranks
     job: Job
     solver: Solver
     plan: FilePlan
@@ -88,14 +88,16 @@ class ShardSolver:
             else:
                 journal.append(int(index), solver.record(int(index), result), is_new)
 
-        is_shown = self.team.is_first and not self.quiet
+        is_shown = self.ranks.is_first and not self.quiet
         reporter = ProgressReporter(count, self.job.title) if is_shown else SilentProgress()
         directory = journal_directory(self.output)
         try:
-            with closing(Journal(directory, self.team.rank, plan.layout, plan.fingerprint)) as journal:
+            with closing(Journal(directory, self.ranks.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_item(IndexSet(missing), directory)
                 loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
-                contribution = sweep(self.team, ChunkQueue(items, self.team.size), loop, reporter, self.stop)
+                contribution = sweep(
+                    self.ranks, ChunkQueue(items, self.ranks.size), loop, reporter, self.stop
+                )
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write into the folder of {self.output}: {error.strerror or error}"

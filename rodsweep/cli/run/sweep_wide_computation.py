@@ -14,8 +14,8 @@ from ...solve_progress import SolveStopped, reporting_to
 from ...sweep.chunk_queue import ChunkQueue, DependentItemQueue
 from ...sweep.loop import Indices, RankStatistics, SweepCallbacks, sweep
 from ...sweep.progress import ProgressReporter, SilentProgress
+from ...sweep.ranks import Ranks
 from ...sweep.stop import RankListener, SingleRankCommunication, StopRequest
-from ...sweep.team import Team
 from ...tasks.protocol import NamedArrays, SweepWideResult, SweepWideSolver, WorkItems
 from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemExceptionNote
 
@@ -38,7 +38,7 @@ class SweepWideComputation:
 
     def __init__(
         self,
-        team: Team,
+        ranks: Ranks,
         solver: SweepWideSolver,
         output: Path,
         fingerprint: str,
@@ -48,7 +48,7 @@ class SweepWideComputation:
         """solver: computes the variables. output: the result file. fingerprint: digest of config and points.
         note: function called with every unforeseen exception; the result of the work item is then empty.
         """
-        self.team = team
+        self.ranks = ranks
         self.solver = solver
         self.output = output
         self.note = note
@@ -68,10 +68,10 @@ class SweepWideComputation:
         items = pending.work_items
         while items is not None:
             pending = PendingSweepWideVariables(True, items)
-            contributions = self.team.gather(self.solve(items, prepare, title)) or []
+            contributions = self.ranks.gather(self.solve(items, prepare, title)) or []
             count = sum(contribution.solved_points for contribution in contributions)
             solved_counts[items.outcome] = solved_counts.get(items.outcome, 0) + count
-            items = self.team.call_on_first_rank(partial(self._next_items, items))
+            items = self.ranks.call_on_first_rank(partial(self._next_items, items))
         return pending, solved_counts
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
@@ -89,14 +89,14 @@ class SweepWideComputation:
             results.clear()
             return new_results
 
-        queue = ChunkQueue([], self.team.size)
-        if self.team.is_first:
+        queue = ChunkQueue([], self.ranks.size)
+        if self.ranks.is_first:
             self.results = self.item_results.read()
-            queue = DependentItemQueue(items, self.results, self.team.size)
+            queue = DependentItemQueue(items, self.results, self.ranks.size)
         self._exchange_starts(items)
         reporter = (
             ProgressReporter(None, f"{title}, curves", items.progress_noun)
-            if self.team.is_first and title
+            if self.ranks.is_first and title
             else SilentProgress()
         )
         loop = SweepCallbacks(
@@ -107,7 +107,7 @@ class SweepWideComputation:
             item_label=items.item_label,
         )
         try:
-            return sweep(self.team, queue, loop, reporter, self.stop)
+            return sweep(self.ranks, queue, loop, reporter, self.stop)
         finally:
             reporter.close()
 
@@ -115,8 +115,8 @@ class SweepWideComputation:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again. items: the current work items.
         """
-        item_numbers = self.team.call_on_first_rank(lambda: items.items_to_solve(self.results))
-        for starts in self.team.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
+        item_numbers = self.ranks.call_on_first_rank(lambda: items.items_to_solve(self.results))
+        for starts in self.ranks.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
             self.solver.add_initial_data(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:

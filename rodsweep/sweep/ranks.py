@@ -17,7 +17,7 @@ LONGEST_PAUSE = 1e-2
 """Longest pause, in seconds, between two tests of a barrier."""
 
 
-class Team:
+class Ranks:
     """All ranks of MPI_COMM_WORLD, seen from this rank; a single rank without an MPI launcher."""
 
     def __init__(self) -> None:
