@@ -186,8 +186,8 @@ def _with_interval(
 def _crossings(
     problem: PathProblem, ends: tuple[float, float], certify: bool, max_crossings: float
 ) -> PathCrossings:
-    """Crossings for path variables between `ends`: by boxes, or for nonuniform arms by counts of unstable modes
-    (argument principle), proved if `certify`. max_crossings: number after which the search of an arm ends."""
+    """Crossings for path variables between `ends`: by boxes, or for nonuniform arms by counts of unstable
+    modes (argument principle), proved if `certify`. max_crossings: number at which the search ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *ends)
     search = CrossingSearch(problem, certify)
