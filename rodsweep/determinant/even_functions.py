@@ -1,4 +1,5 @@
-"""The functions s(M, P^2) and d(M, P^2) that give D, computed by a series for small z+- or from the roots q.
+"""The functions s(M, P^2) and d(M, P^2) that give D, computed by a series for small z+- or from the roots q
+of the dispersion relation (`rodsweep.determinant.value`), z+- = (q1 +- q2)^2.
 
 With the squares z+- of the exponents of D, s = E(z+) + E(z-) and d = (E(z+) - E(z-))/(z+ - z-) are even in P,
 and entire in M = (z+ + z-)/2 and P^2. All derivatives of D follow from s, d, s' = ds/dM, d' = dd/dM and d* =

@@ -51,15 +51,16 @@ CoefficientsAlongForce = tuple[Coefficients, Coefficients]
 
 
 def onset_between(
-    rods: CoefficientsAlongForce, ends: tuple[float, float], before_w: Complex, after_w: Complex
+    rods: CoefficientsAlongForce, end_forces: tuple[float, float], before_w: Complex, after_w: Complex
 ) -> StabilityChange | None:
-    """The double real eigenvalue between the two forces `ends`; None if Newton's method does not find it.
+    """The double real eigenvalue between the two forces `end_forces`; None if Newton's method does not find
+    it.
 
     before_w, after_w: leading eigenvalues at the first and second force, (modes,). The
     two leading eigenvalues are real at the first force and complex at the second. ((w1 - w2)/2)^2 is almost
     linear in F; Newton's method starts at its zero.
     """
-    low, high = ends
+    low, high = end_forces
     first_w = before_w[0].item()  # Python's numbers, for speed
     second_w = before_w[1].item()
     complex_w = after_w[0].item()
@@ -75,19 +76,19 @@ def onset_between(
 
 def stability_change_between(
     rods: CoefficientsAlongForce,
-    ends: tuple[float, float],
+    end_forces: tuple[float, float],
     before_w: Complex,
     after_w: Complex,
     unstable_count: int,
 ) -> StabilityChange | None:
-    """The loss or return of stability between the two forces `ends`: the first crossing if stability is lost,
-    the last crossing if stability returns.
+    """The loss or return of stability between the two forces `end_forces`: the first crossing if stability is
+    lost, the last crossing if stability returns.
 
     before_w, after_w: leading eigenvalues at the first and second force, (modes,).
     unstable_count: number of growing modes at the unstable force. Returns None unless the number of crossings
     found is unstable_count/2.
     """
-    zeros = sorted(crossings_between(*ends, before_w, after_w, *rods).tolist())
+    zeros = sorted(crossings_between(*end_forces, before_w, after_w, *rods).tolist())
     if not zeros or 2 * len(zeros) != unstable_count:
         return None
     loses_stability = after_w[0].real > 0

@@ -161,20 +161,20 @@ class RodBranches:
         straight = int(self._v["unstable_at_start"]) >= 0 and bool((counts >= 0).all())
         return straight and all(curve.is_decided for curve in self.curves)
 
-    def straight_ranges(self, ends: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
-        """Returns (stable, unstable): ranges within `ends` in which the straight rod is stable, or unstable.
+    def straight_ranges(self, span: ParameterRange) -> tuple[list[ParameterRange], list[ParameterRange]]:
+        """Returns (stable, unstable): ranges within `span` in which the straight rod is stable, or unstable.
         Both lists are empty if special points of some branch are not stored."""
-        intervals = [] if self.hidden_count else self.straight_pieces(ends)
+        intervals = [] if self.hidden_count else self.straight_pieces(span)
         stable, unstable = ([(a, b) for a, b, value in intervals if value == kind] for kind in (1, 0))
         return union_of_ranges(stable), union_of_ranges(unstable)
 
-    def straight_pieces(self, ends: ParameterRange) -> list[tuple[float, float, int]]:
-        """(low, high, stability) between Hopf points within `ends`: 1 stable, 0 unstable, -1 unknown."""
+    def straight_pieces(self, span: ParameterRange) -> list[tuple[float, float, int]]:
+        """(low, high, stability) between Hopf points within `span`: 1 stable, 0 unstable, -1 unknown."""
         v = self._v
         is_hopf = v["special_kind"] == HOPF
         values, indices = np.unique(v["special_at"][is_hopf], return_index=True)
         after_counts = v["special_unstable_after"][is_hopf][indices]
-        edges = [ends[0], *(float(a) for a in values), max(ends[1], *values) if len(values) else ends[1]]
+        edges = [span[0], *(float(a) for a in values), max(span[1], *values) if len(values) else span[1]]
         counts = [int(v["unstable_at_start"]), *(int(count) for count in after_counts)]
         return [
             (low, high, -1 if count < 0 else int(count == 0))

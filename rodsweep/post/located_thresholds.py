@@ -53,7 +53,7 @@ class LocatedThreshold:
 
 
 @dataclass(frozen=True, slots=True)
-class BracketedThreshold:
+class UnlocatedThreshold:
     """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
     low, high: parameter values of the two points.
     """
@@ -64,7 +64,7 @@ class BracketedThreshold:
     """`hopf` if the rod is unstable above the interval, `restabilization` if the rod is stable above."""
 
 
-def sort_position(change: LocatedThreshold | BracketedThreshold) -> float:
+def sort_position(change: LocatedThreshold | UnlocatedThreshold) -> float:
     """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
     interval.
     """
@@ -115,7 +115,7 @@ class StoredThresholds:
                 continue
             self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
-    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
+    def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
         return sorted({*self.thresholds_on(line), *self._stored_between(line, -inf)}, key=sort_position)
 
@@ -125,7 +125,7 @@ class StoredThresholds:
         high = line.x.max(initial=-inf)
         return [point for point in self.thresholds_by_rod.get(rod, []) if _lies_between(point, low, high)]
 
-    def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | BracketedThreshold]:
+    def thresholds_on(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
         """Thresholds on a line of points, in increasing order of the parameter; an empty list for a line
         without points.
 
@@ -135,7 +135,7 @@ class StoredThresholds:
         if not len(line.x):
             return []
         stored = self._stored_between(line, line.x.min())
-        thresholds: list[LocatedThreshold | BracketedThreshold] = [*stored]
+        thresholds: list[LocatedThreshold | UnlocatedThreshold] = [*stored]
         changes = [point for point in stored if point.changes_stability]
         finite_indices = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
         sorted_indices = finite_indices[np.argsort(line.x[finite_indices], kind="stable")]
@@ -146,7 +146,7 @@ class StoredThresholds:
             high = float(x[i + 1])
             if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
                 thresholds.append(
-                    BracketedThreshold(low, high, "hopf" if is_growing[i + 1] else "restabilization")
+                    UnlocatedThreshold(low, high, "hopf" if is_growing[i + 1] else "restabilization")
                 )
         return sorted(thresholds, key=sort_position)
 

@@ -26,29 +26,31 @@ def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
 
 
 def largest_first_mesh(
-    points: Points, mesh_of: Callable[[Rod], Elements], ends: Mapping[str, Array] | None = None
+    points: Points, mesh_of: Callable[[Rod], Elements], parameter_ends: Mapping[str, Array] | None = None
 ) -> Elements | None:
     """The initial mesh with the most nodes among sampled points of a sweep and the corners of its grid; None
     if the rod model applies to no point.
 
-    mesh_of: function from a rod to its initial mesh. ends: ends, (n,), of the range in which each rod is
-    searched, by name of the parameter; meshes are compared at these values.
+    mesh_of: function from a rod to its initial mesh. parameter_ends: ends, (n,), of the range in which each
+    rod is searched, by name of the parameter; meshes are compared at these values.
     """
     indices = {*sampled_points(points).tolist(), *_corners(points)}
     rods = (
-        rod for index in sorted(indices) for rod in _rods_at_parameter_ends(points.rod(index), ends or {})
+        rod
+        for index in sorted(indices)
+        for rod in _rods_at_parameter_ends(points.rod(index), parameter_ends or {})
     )
     return max(map(mesh_of, rods), key=lambda mesh: mesh.node_count, default=None)
 
 
-def _rods_at_parameter_ends(rod: Rod, ends: Mapping[str, Array]) -> Iterator[Rod]:
-    """Yields the rod with every combination of the parameter values in `ends`, by name, (n,) each.
+def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:
+    """Yields the rod with every combination of the parameter values in `parameter_ends`, by name, (n,) each.
 
     A force is lowered to just below the crushing force. Combinations outside the range of the model are
     omitted.
     """
-    for values in product(*(column.tolist() for column in ends.values())):
-        end_values = dict(zip(ends, values, strict=True))
+    for values in product(*(column.tolist() for column in parameter_ends.values())):
+        end_values = dict(zip(parameter_ends, values, strict=True))
         if "F" in end_values:
             force = end_values.pop("F")
             end_rod = rod.with_values(**end_values)

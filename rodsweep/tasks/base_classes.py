@@ -88,6 +88,7 @@ class CertifiedTask(Task):
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
+        """Rows of the table of modelled and neglected effects, with a row on the certificate."""
         quantity, reason = self.never_modelled
         rows = [
             *rod_check_rows(self.parameter_values),

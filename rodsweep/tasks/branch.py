@@ -146,14 +146,18 @@ SPECIAL_POINT_FIELDS = {
 """Field of `SpecialPoint` by name of the variable, where the two names differ."""
 
 
-def _special_point_values(point: "SpecialPoint", start: int, crossing: "Threshold | None") -> dict[str, Any]:
+def _special_point_values(
+    point: "SpecialPoint", first_cycle_index: int, crossing: "Threshold | None"
+) -> dict[str, Any]:
     """Variables of the file for one special point.
 
-    start: index, among all cycles of the rod, of the first cycle of the point's branch. crossing: crossing of
-    the straight rod at the point, None if the point is not a Hopf point.
+    first_cycle_index: index, among all cycles of the rod, of the first cycle of the point's branch. crossing:
+    crossing of the straight rod at the point, None if the point is not a Hopf point.
     """
     values = {
-        "special_point": start + point.index_of_cycle_before + 1 if point.index_of_cycle_before >= 0 else 0,
+        "special_point": first_cycle_index + point.index_of_cycle_before + 1
+        if point.index_of_cycle_before >= 0
+        else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": crossing.unstable_after if crossing else -1,
     }

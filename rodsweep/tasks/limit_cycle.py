@@ -128,6 +128,7 @@ class LimitCycleTask(Task):
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def check_rows(self) -> list[CheckRow]:
+        """Rows of the table of modelled and neglected effects, and of stored variables."""
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.rod_values["gamma1"])[:5]
         marched = options.method == "integration"

@@ -65,7 +65,7 @@ class PhaseDiagramTask(CertifiedTask):
                 "from the Hopf points of each row"
             )
             if options.curves:
-                cycles += ", and on branches that curves of folds and torus points cross"
+                cycles += ", and on the detached branches that the fold and torus curves cross"
         return [
             ("monotone, oscillatory, flutter", True, "task: phase_diagram"),
             ("crossings along each row", True, f"at most {options.crossings} are stored for each row"),

@@ -102,7 +102,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
         f"rubber is some {_one_digit_text(100 * rubber_stiffening(largest))} % stiffer at this compression",
         "real materials are no longer linear at this compression",
     )[validity]
-    shortening = " and ".join(texts) or "neither a load nor a flutter load shortens the arm"
+    shortening = " and ".join(texts) or "no load is given and no flutter was found, so none is checked"
     place = " at the weakest section" if assessment.arm.shape.varies else ""
     return Check(validity, f"Compression: {shortening} (F/k1){place}; {remark}.", can_change_verdict=True)
 
@@ -119,7 +119,7 @@ def _rubber_compression_check(assessment: "Assessment") -> Check:
     if flutter is not None:
         shortens = "the flutter load shortens it" if texts else "the flutter load shortens the arm"
         texts.append(f"{shortens} by {100 * _weakest_section_shortening(arm, flutter):.2g} %")
-    shortening = " and ".join(texts) or "neither a load nor a flutter load shortens the arm"
+    shortening = " and ".join(texts) or "no load is given and no flutter was found, so none is checked"
     place = " at the weakest section" if arm.shape.varies else ""
     return Check(
         Validity.applies, f"Compression: {shortening}{place}; the law of rubber includes large compression."

@@ -8,7 +8,7 @@ from known_cycles import UNSTABLE, hopf_variables, make_view, store
 
 from rodsweep.post.figures.cycle.amplitudes.amplitude import draw_amplitude
 from rodsweep.post.figures.cycle.amplitudes.square_root import square_root_laws
-from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
+from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
 from rodsweep.post.summary.stability import stability_lines
 from rodsweep.sweep.points.points import lines_along
 from rodsweep.tasks.protocol import solve_on_one_rank
@@ -96,7 +96,7 @@ def test_a_window_of_flutter_has_a_hopf_point_at_each_end():
 def test_a_change_that_no_search_has_located_lies_between_two_points():
     view = swept((100,), constant)
     view.variables.update(hopf_variables("F", []))
-    assert changes_on(view) == [BracketedThreshold(27.0, 28.0, "hopf")]
+    assert changes_on(view) == [UnlocatedThreshold(27.0, 28.0, "hopf")]
     (line,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert line == "F** (straight rod starts to flutter): between 27 and 28"
 

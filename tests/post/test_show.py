@@ -12,7 +12,7 @@ from shown import HOPF, STABLE_AGAIN, shown
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.post.located_thresholds import BracketedThreshold, LocatedThreshold, StoredThresholds
+from rodsweep.post.located_thresholds import LocatedThreshold, StoredThresholds, UnlocatedThreshold
 from rodsweep.post.summary import summary_of
 from rodsweep.post.summary.errors import absolute_errors, known_range_text
 from rodsweep.post.summary.number_texts import axis_values_text, number_with_error
@@ -88,7 +88,7 @@ def test_an_unfinished_file_says_between_which_forces_stability_changes(command)
         assert "change_F" not in view.variables
     view.variables["growth_rate"][:] = np.array([-1.0, -1, 1, 1]).reshape(-1, 1, 1, 1, 1)
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(45, 60, "hopf")]
+    assert StoredThresholds(view, "F").thresholds_on(line) == [UnlocatedThreshold(45, 60, "hopf")]
     assert command("merge", "all.h5", "1.h5", "2.h5").returncode == 0
     assert "flutter): 49.758004916" in command("show", "all.h5").stdout
 
@@ -101,7 +101,7 @@ def test_a_change_that_is_not_understood_is_a_bracket(command):
     located = job_of_file(command.directory / "c.yaml", ()).task.variables_from_points(view.variables)
     view = replace(view, variables=dict(view.variables) | {v.name: values for v, values in located})
     (line,) = lines_along(view.point_columns, "F")
-    assert StoredThresholds(view, "F").thresholds_on(line) == [BracketedThreshold(40, 60, "hopf")]
+    assert StoredThresholds(view, "F").thresholds_on(line) == [UnlocatedThreshold(40, 60, "hopf")]
     (told,), _ = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     assert told == "F** (straight rod starts to flutter): between 40 and 60"
 

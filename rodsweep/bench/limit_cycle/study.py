@@ -48,10 +48,10 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     reference = solve_reference()
-    followers = every_nth_setting(
+    following_contenders = every_nth_setting(
         [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)], stride
     )
-    measured = measure_following(reference, followers, rounds)
+    measured = measure_following(reference, following_contenders, rounds)
     blocks = [introduction(rounds), *peers.notes, work_table(measured), time_at_error_table(measured)]
     blocks.append(
         compare_settling(

@@ -30,8 +30,8 @@ FIRST_RANK_PREFIX = "first"
 OTHER_RANKS_PREFIX = "other"
 """Prefix of the names of the files with the peak memory of the remaining ranks."""
 SOLVED, INSTANT, KILLED = "solved", "instant", "killed"
-"""Kinds of solver: the real solver; a solver that returns random results at once; this solver, with a kill of
-the process at the last point."""
+"""Kinds of solver: the real solver; random results at once; random results at once, and the process is killed
+at the last point."""
 CONFIG_NAME = "c.yaml"
 """Name of the config in the directory of a sweep."""
 SPECTRUM_CONFIG = """
@@ -55,7 +55,8 @@ class SweepCase:
     """A sweep to be run.
 
     points: number of points. directories: directories with a config. If there are several, each config has a
-    part of the points, and one command per directory runs, all at the same time. solver_kind: kind of solver.
+    part of the points, and one command per directory runs, all at the same time. solver_kind:
+    SOLVED, INSTANT or KILLED.
     """
 
     name: str

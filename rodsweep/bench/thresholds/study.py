@@ -188,15 +188,19 @@ def measure_rods(
     return measurements
 
 
-def threshold_error(case: ThresholdCase, kind: str, first: FirstThreshold) -> dict[str, Any]:
-    """Fields of `Measurement` for the computed threshold `first` of the kind `kind`: error, failure, cost,
-    and correct decimal digits per eigenproblem (0 if the threshold was missed).
+def threshold_error(case: ThresholdCase, kind: str, computed_threshold: FirstThreshold) -> dict[str, Any]:
+    """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `kind`: error,
+    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed).
     """
-    error = case.error_of(kind, first.force)
-    outcome = "missed" if isnan(first.force) else f"wrong ({first.force:.2f})"
+    error = case.error_of(kind, computed_threshold.force)
+    outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
-    work = {"eigenproblems": first.solves, "determinants": first.determinants, "products": first.products}
-    values = work | {"digits": nan if isnan(getattr(case, kind)) else digits / first.solves}
+    work = {
+        "eigenproblems": computed_threshold.solves,
+        "determinants": computed_threshold.determinants,
+        "products": computed_threshold.products,
+    }
+    values = work | {"digits": nan if isnan(getattr(case, kind)) else digits / computed_threshold.solves}
     return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}
 
 

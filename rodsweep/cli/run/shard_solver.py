@@ -13,7 +13,7 @@ import numpy as np
 from ...errors import EnvironmentIncomplete
 from ...results.file.creation import FilePlan
 from ...results.run.checkpoints import Checkpoints
-from ...results.run.journal import Journal, journal_directory, journalled_points_clause
+from ...results.run.journal import Journal, journal_directory, kept_points_clause
 from ...sweep.chunk_queue import ChunkQueue
 from ...sweep.loop import Indices, SweepCallbacks, sweep
 from ...sweep.points.chains import ChainSolver
@@ -101,7 +101,7 @@ class ShardSolver:
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write into the folder of {self.output}: {error.strerror or error}"
-                f"{journalled_points_clause(directory, plan.fingerprint)}: make room and run again"
+                f"{kept_points_clause(directory, plan.fingerprint)}: make room and run again"
             ) from error
         finally:
             reporter.close()

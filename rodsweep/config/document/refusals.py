@@ -109,7 +109,7 @@ def _typing_error_count(key: str, name: str) -> float | None:
 
 
 def _edit_distance(first: str, second: str) -> int:
-    """Edit distance of the words a and second: number of inserted, deleted, changed and exchanged
+    """Edit distance of the words `first` and `second`: number of inserted, deleted, changed and exchanged
     neighbouring letters.
     """
     rows = [list(range(len(second) + 1))]

@@ -81,57 +81,57 @@ class Remainder(NamedTuple):
 
 
 def prove_complete(
-    line: float, known: Complex, errors: Array, determinant: ArmDeterminant, hull: EigenvalueHull
+    line: float, known_w: Complex, errors: Array, determinant: ArmDeterminant, hull: EigenvalueHull
 ) -> tuple[bool, int]:
     """Returns (whether all eigenvalues with Re w >= line are proved to be known, number of evaluations of D).
 
-    line: if positive, or if no hull exists, nothing is proved. known, errors: known eigenvalues and their
-    absolute errors, (n,) each. Eigenvalues whose conjugate is not in `known` are treated as unknown. Raises
+    line: if positive, or if no hull exists, nothing is proved. known_w, errors: known eigenvalues and their
+    absolute errors, (n,) each. Eigenvalues whose conjugate is not in `known_w` are treated as unknown. Raises
     FloatingPointError if no elements resolve the arm.
     """
     if not math.isfinite(hull.a) or not line <= 0:
         return False, 0
     # R must be real: an eigenvalue without its conjugate stays among the unknown ones.
-    pairs = has_conjugate(known)
-    largest_w = float(np.abs(known).max())
+    pairs = has_conjugate(known_w)
+    largest_w = float(np.abs(known_w).max())
     examined_count = 0
     for k, max_ratio in COMPLETENESS_SETTINGS.proof_trials():
         points = points_right_of_hull(line, hull.a, hull.c, k)
         if _last_proof_point(points) <= max_ratio * largest_w:
             propagators = determinant.propagators_for(points[-1])
-            remainder = remainder_of_sum(line, known[pairs], errors[pairs], hull, points, propagators)
+            remainder = remainder_of_sum(line, known_w[pairs], errors[pairs], hull, points, propagators)
             examined_count += k
             if proves_completeness(remainder):
                 return True, examined_count
     return False, examined_count
 
 
-def has_conjugate(known: Complex) -> Array:
+def has_conjugate(known_w: Complex) -> Array:
     """Mask, (n,), of known eigenvalues that are real or whose conjugate is known too."""
-    conjugates = set(known.conj().tolist())
-    return np.array([w in conjugates for w in known.tolist()], dtype=bool)
+    conjugates = set(known_w.conj().tolist())
+    return np.array([w in conjugates for w in known_w.tolist()], dtype=bool)
 
 
-def largest_w_of_proof(line: float, hull: EigenvalueHull, known: Complex) -> float:
+def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> float:
     """Largest |w| at which the first possible trial of `prove_complete` evaluates D; inf if no trial is
-    possible. line: Re w of the vertical line. known: known eigenvalues, (n,).
+    possible. line: Re w of the vertical line. known_w: known eigenvalues, (n,).
     """
-    largest_w = float(np.abs(known).max())
+    largest_w = float(np.abs(known_w).max())
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         if (last := _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))) <= ratio * largest_w:
             return last
     return math.inf
 
 
-def cheapest_proof(line: float, hull: EigenvalueHull, known: Complex, modes: int) -> tuple[int, float]:
+def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, modes: int) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof).
 
-    line: Re w of the vertical line. known: approximate eigenvalues, (n,), leading first. The cheapest proof
+    line: Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof
     has the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible.
     """
     cheapest = 0, math.inf
-    sizes = np.maximum.accumulate(np.abs(known)).tolist()
-    ends_whole = [*(known[1:] != known[:-1].conj()).tolist(), True]
+    sizes = np.maximum.accumulate(np.abs(known_w)).tolist()
+    ends_whole = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         last = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
         for count in range(modes, len(sizes) + 1):

@@ -94,8 +94,8 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 
 @compiled
 def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
-    """(L, K): the rates d sqrt(z)/dw and d sqrt(z)/dp, averaged over the two exponentials of D with their
-    moduli as weights.
+    """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, averaged over the two exponentials
+    of D with their moduli as weights.
     """
     root_plus = cmath.sqrt(centre.z_plus)
     root_minus = cmath.sqrt(centre.z_minus)

@@ -232,8 +232,8 @@ def _refine_candidates(
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Raises, in place, the errors of two entries of w that are the same root of D to the distance
-    2 |D'/D''| of the next root.
+    """Sets, in place, the errors of two entries of w that converged to the same root of D to at least
+    2 |D'/D''|, the distance of the next root.
 
     w, error: roots and their errors, (n,).
     """

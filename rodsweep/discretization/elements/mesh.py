@@ -149,9 +149,9 @@ def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegr
     )
 
 
-def integration_matrix(nodes: Array, ends: Array) -> Array:
+def integration_matrix(nodes: Array, upper_limits: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
-    element of length 1, from its start to each of `ends`, (m,).
+    element of length 1, from its start to each of `upper_limits`, (m,).
 
     Nodes and ends are coordinates in [-1, 1] of the element.
     """
@@ -159,6 +159,6 @@ def integration_matrix(nodes: Array, ends: Array) -> Array:
     return np.array(
         [
             (end + 1) / 4 * weights @ lagrange_interpolation_matrix(nodes, -1 + (end + 1) * (points + 1) / 2)
-            for end in ends
+            for end in upper_limits
         ]
     )

@@ -122,30 +122,37 @@ def _diagram_of_rods(
 
 @lru_cache(maxsize=CACHED_DIAGRAM_COUNT)
 def _cached_rod_diagram(
-    second: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
+    second_parameter: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
-    """Diagram up to the load `F_max` on the values `rows` of the parameter `second`; callers must not change
-    it. keywords: further keywords of the sweep.
+    """Diagram up to the load `F_max` on the values `rows` of the parameter `second_parameter`; callers must
+    not change it. keywords: further keywords of the sweep.
     """
-    axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second: list(rows)}
+    axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(rows)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
-    return diagram_from_phase_result(data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second]), second)
+    return diagram_from_phase_result(
+        data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second_parameter]), second_parameter
+    )
 
 
-def diagram_from_phase_result(data: Dataset, second: str) -> dict[str, Any]:
+def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `phase_diagram` or
-    `spectrum` over F and the parameter `second`.
+    `spectrum` over F and the parameter `second_parameter`.
     """
-    counts = data["unstable_count"].transpose(second, "F").values
+    counts = data["unstable_count"].transpose(second_parameter, "F").values
     if "class" in data:
-        is_crushed = flag_words(data["class"].transpose(second, "F")) == "crushed"
+        is_crushed = flag_words(data["class"].transpose(second_parameter, "F")) == "crushed"
         counts = np.where(is_crushed, CRUSHED_COUNT, counts)
-    diagram = {"x": data["F"].values, "y": data[second].values, "unstable_count": counts, **_empty_curves()}
+    diagram = {
+        "x": data["F"].values,
+        "y": data[second_parameter].values,
+        "unstable_count": counts,
+        **_empty_curves(),
+    }
     if "crossing_at" in data:
-        diagram |= region_bounds(data, second)
+        diagram |= region_bounds(data, second_parameter)
     for curve in ("curve", "cycle_curve"):
-        if f"{curve}_F" in data and f"{curve}_{second}" in data:
-            names = {"x": "F", "y": second, "number": "number"}
+        if f"{curve}_F" in data and f"{curve}_{second_parameter}" in data:
+            names = {"x": "F", "y": second_parameter, "number": "number"}
             diagram |= {f"{curve}_{key}": data[f"{curve}_{name}"].values for key, name in names.items()}
             diagram[f"{curve}_kind"] = flag_words(data[f"{curve}_kind"])
     return diagram | {"crossing_x": np.zeros(0), "crossing_y": np.zeros(0), "crossing_kind": []}

@@ -7,7 +7,7 @@ import numpy as np
 from ...results.file.view import ResultView
 from ...sweep.points.points import ParameterLine, lines_along
 from ...wording import count_of_total, counted
-from ..located_thresholds import BracketedThreshold, LocatedThreshold
+from ..located_thresholds import LocatedThreshold, UnlocatedThreshold
 from .arm.arm import thresholds_of_arm
 from .number_texts import error_text, stated_error
 
@@ -25,7 +25,7 @@ OTHER_THRESHOLD_WORDS = {
     "restabilization": "the straight rod is stable again, as {name} grows, at {name}",
 }
 """Phrase for a threshold along any parameter other than F, by kind."""
-Threshold = LocatedThreshold | BracketedThreshold
+Threshold = LocatedThreshold | UnlocatedThreshold
 """Threshold of the straight rod: located, or bracketed by two points of the file."""
 
 
@@ -78,7 +78,7 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
         texts = ((" and ".join(map(_position_text, by_line[i])), names[i]) for i in by_line)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error}"
     if not located:
-        ends = [(point.low, point.high) for point in points if isinstance(point, BracketedThreshold)]
+        ends = [(point.low, point.high) for point in points if isinstance(point, UnlocatedThreshold)]
         low = min(low for low, _ in ends)
         high = max(high for _, high in ends)
         return f"between {low:.6g} and {high:.6g}{lines_text}"
@@ -97,6 +97,6 @@ def _position_text(threshold: Threshold) -> str:
     """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
     ends.
     """
-    if isinstance(threshold, BracketedThreshold):
+    if isinstance(threshold, UnlocatedThreshold):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

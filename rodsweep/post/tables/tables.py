@@ -152,7 +152,7 @@ def merged_columns(
     result = []
     for column in cycles:
         values = column.rows(cycle_rows)
-        counterpart = by_name.get(_special_variable_name(column.name, parameter))
+        counterpart = by_name.get(_special_point_variable(column.name, parameter))
         if counterpart is not None:
             others = counterpart.rows(special_rows)
             joined = np.where(values.absent, others.values, values.values)
@@ -161,15 +161,15 @@ def merged_columns(
     return [*result, by_name["special_kind"].rows(special_rows)]
 
 
-def _special_variable_name(name: str, parameter: str) -> str:
-    """Name of the variable of special points that corresponds to the variable `name` of cycles. parameter:
-    followed parameter.
+def _special_point_variable(cycle_variable: str, parameter: str) -> str:
+    """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles.
+    parameter: followed parameter.
     """
-    if name == f"branch_{parameter}":
+    if cycle_variable == f"branch_{parameter}":
         return "special_at"
-    if parameter == "F" and name in {f"branch_{load}" for load in LOADS}:
+    if parameter == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
         return "special_at_si"
-    return f"special_{name}"
+    return f"special_{cycle_variable}"
 
 
 def _values_at_items(view: ResultView, name: str, count: int, rows: Rows) -> NDArray:

@@ -24,9 +24,9 @@ from ..run.journal import (
     JOURNAL_GLOB,
     delete_matching_files,
     journal_directory,
-    journalled_points_clause,
     journals_with_fingerprint,
     journals_without_fingerprint,
+    kept_points_clause,
     move_journals_aside,
     read_journals,
     read_reasons,
@@ -57,7 +57,7 @@ class ResultFileWriter:
         self.plan = plan
         self.notes: list[str] = []
         """Notes for the user, on points that are computed again, on journals, and on a moved file."""
-        with disk_refusals(path, self._journalled_points_clause):
+        with disk_refusals(path, self._kept_points_clause):
             self.replacement = FileReplacement(path)
             self.journal_directory = self.replacement.journal_directory
             try:
@@ -170,7 +170,7 @@ class ResultFileWriter:
 
     def restore_missing_file(self) -> None:
         """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
-        with disk_refusals(self.path, self._journalled_points_clause):
+        with disk_refusals(self.path, self._kept_points_clause):
             self._restore_missing_file()
 
     def _restore_missing_file(self) -> None:
@@ -203,7 +203,7 @@ class ResultFileWriter:
 
         additions: variables that end the file; None if points are missing.
         """
-        with disk_refusals(self.path, self._journalled_points_clause):
+        with disk_refusals(self.path, self._kept_points_clause):
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first_block = next(blocks, None)
             reasons = read_reasons(self.journal_directory, layout, fingerprint)
@@ -223,9 +223,9 @@ class ResultFileWriter:
             for journal in journals:
                 journal.unlink(missing_ok=True)
 
-    def _journalled_points_clause(self) -> str:
+    def _kept_points_clause(self) -> str:
         """Clause for messages with the directory of journalled points; empty if no points are in journals."""
-        return journalled_points_clause(journal_directory(self.path), self.plan.fingerprint)
+        return kept_points_clause(journal_directory(self.path), self.plan.fingerprint)
 
     def status_counts(self) -> dict[str, int]:
         """Number of points with each status, by the name of the status."""

@@ -160,7 +160,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
     return new_directory
 
 
-def journalled_points_clause(directory: Path, fingerprint: str) -> str:
+def kept_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
     points. fingerprint: digest of config and points.
     """

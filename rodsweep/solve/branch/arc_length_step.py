@@ -12,7 +12,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..continuation.follower import StepControl, StepResult, advance
+from ..continuation.curve import StepControl, StepResult, advance
 from ..cycle.accuracy.cycle_verdict import RefinedCycle
 from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,

@@ -55,17 +55,19 @@ def follow_asymmetric_branch(breaking_index: int, name: str, limits: BranchLimit
 
 
 def _follow_to_end(
-    curve: BranchCurve, first: Callable[[], tuple[BranchCycle, BranchLimits]], limits: BranchLimits
+    curve: BranchCurve,
+    solve_first_cycle: Callable[[], tuple[BranchCycle, BranchLimits]],
+    limits: BranchLimits,
 ) -> BranchCurve:
-    """The branch `curve`, which has only its first special point, followed to its end. first: function that
-    solves the first cycle and returns it with the limits of the branch."""
+    """The branch `curve`, which has only its first special point, followed to its end. solve_first_cycle:
+    function that solves the first cycle and returns it with the limits of the branch."""
     if limits.max_cycles < 1:
         curve.end(
             BranchEnd(_end_without_cycle(curve, BranchEndReason.list_full), complete=False, list_full=True)
         )
         return curve
     try:
-        start, limits = first()
+        start, limits = solve_first_cycle()
     except Unsolvable as reason:
         curve.end(
             BranchEnd(_end_without_cycle(curve, reason_of_failure(reason), str(reason)), complete=False)
@@ -80,10 +82,11 @@ def _follow_to_end(
     return follow_from_cycle(curve, start, limits)
 
 
-def follow_from_cycle(curve: BranchCurve, first: BranchCycle, limits: BranchLimits) -> BranchCurve:
-    """The branch `curve`, followed to its end from its first cycle `first`, which has measured errors."""
-    record = BranchRecord(curve, limits.accuracy, first)
-    last: BranchCycle | BranchEnd = first
+def follow_from_cycle(curve: BranchCurve, first_cycle: BranchCycle, limits: BranchLimits) -> BranchCurve:
+    """The branch `curve`, followed to its end from its first cycle `first_cycle`, which has measured
+    errors."""
+    record = BranchRecord(curve, limits.accuracy, first_cycle)
+    last: BranchCycle | BranchEnd = first_cycle
     while isinstance(last, BranchCycle):
         report(partial(_branch_progress, curve, last, limits))
         last = _append_next_cycle(record, last, limits)
@@ -133,10 +136,10 @@ def _end_without_cycle(curve: BranchCurve, reason: BranchEndReason, message: str
     )
 
 
-def index_of_passed_range_end(point: BranchCycle, ends: tuple[float, float]) -> int:
-    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range. ends:
-    smallest and largest coordinate of the range."""
-    low, high = ends
+def index_of_passed_range_end(point: BranchCycle, range_ends: tuple[float, float]) -> int:
+    """Index of the range end that a cycle has passed: 0 below the range, 1 above, -1 within the range.
+    range_ends: smallest and largest coordinate of the range."""
+    low, high = range_ends
     if point.parameter_coordinate < low:
         return 0
     return 1 if point.parameter_coordinate > high else -1

@@ -22,30 +22,34 @@ from .branch_errors import BRANCH_ERROR_SETTINGS, BranchCalibration, BranchDeriv
 
 
 def measured_branch_calibration(
-    found: ConvergedOrbit, derivatives: BranchDerivatives, accuracy: float, before: Calibration | None
+    solved: ConvergedOrbit,
+    derivatives: BranchDerivatives,
+    accuracy: float,
+    previous_calibration: Calibration | None,
 ) -> BranchCalibration:
-    """Errors of the mesh of the cycle `found`, measured by comparison with two finer meshes; raises
-    Unsolvable. derivatives: derivatives of the branch at `found`. accuracy: relative accuracy of `found`.
-    before: calibration at a previous cycle, for the convergence rates; None if there is no such cycle."""
-    mesh = mesh_of(found.orbit)
-    orbit = found.orbit
+    """Errors of the mesh of the cycle `solved`, measured by comparison with two finer meshes; raises
+    Unsolvable. derivatives: derivatives of the branch at `solved`. accuracy: relative accuracy of `solved`.
+    previous_calibration: calibration at a previous cycle, for the convergence rates; None if there is no such
+    cycle."""
+    mesh = mesh_of(solved.orbit)
+    orbit = solved.orbit
     finer, fraction = finer_meshes(mesh)
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CyclePath(orbit)
-    multipliers = multipliers_and_trivial_error(found)[0]
+    multipliers = multipliers_and_trivial_error(solved)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, finer, strict=True):
         fine = condition.solve_on_mesh(
             target,
-            found,
+            solved,
             BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,
             FINER_MESH_SETTINGS.max_matrix_distance,
         )
         part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= fraction
-    known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, before)
+    known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, previous_calibration)
     return BranchCalibration(known, parts[:, -1], tip_y_sensitivity(rough, derivatives))
 
 

@@ -162,7 +162,7 @@ class BranchCalibration:
         cycle to the second at which the interpolated cycle lies. sensitivity: |(p/y) dy/dp| of the
         interpolated cycle."""
         mean = [
-            _interpolated_errors(own_errors, other_errors, fraction)
+            _log_interpolated_errors(own_errors, other_errors, fraction)
             for own_errors, other_errors in (
                 (self.at_equal_parameter.space_errors, other.at_equal_parameter.space_errors),
                 (self.at_equal_parameter.time_errors, other.at_equal_parameter.time_errors),
@@ -175,12 +175,14 @@ class BranchCalibration:
         return BranchCalibration(calibration, mean[2], sensitivity)
 
 
-def _interpolated_errors(first: Array, second: Array, fraction: float) -> Array:
-    """Geometric interpolation between the errors `first` and `second`, arrays of equal shape, at the fraction
-    `fraction` of the distance from `first`; times `interpolation_factor`, but at most the larger of the two
-    errors."""
+def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction: float) -> Array:
+    """Geometric interpolation between the errors `first_errors` and `second_errors`, arrays of equal shape,
+    at the fraction `fraction` of the distance from `first_errors`; times `interpolation_factor`, but at most
+    the larger of the two errors."""
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
-    logarithms = np.log(np.maximum([first, second], BRANCH_ERROR_SETTINGS.min_error))
+    logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first, second))
+    bounded: Array = np.minimum(
+        BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first_errors, second_errors)
+    )
     return bounded

@@ -215,17 +215,17 @@ def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> 
 
 
 def _with_interpolated_errors(
-    last: BranchCycle, point: BranchCycle, end: BranchCycle, fraction: float, accuracy: float
+    start: BranchCycle, point: BranchCycle, end: BranchCycle, fraction: float, accuracy: float
 ) -> BranchCycle:
-    """The cycle `point` with errors interpolated between the measured cycles `last` and `end`, all on the
+    """The cycle `point` with errors interpolated between the measured cycles `start` and `end`, all on the
     same mesh; raises Unsolvable.
 
-    fraction: fraction of the arc length from `last` to `end` at which `point` lies. accuracy: relative
+    fraction: fraction of the arc length from `start` to `end` at which `point` lies. accuracy: relative
     accuracy of the cycles. The errors of `point` are measured instead if its coefficient tails are much
-    larger than at `last` and `end`, or if the parameter changes more slowly than at `last` and `end`, as near
-    a fold: the errors at `last` and `end` are then no bound.
+    larger than at `start` and `end`, or if the parameter changes more slowly than at `start` and `end`, as
+    near a fold: the errors at `start` and `end` are then no bound.
     """
-    ends = (last, end)
+    ends = (start, end)
     is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(measured.parameter_rate) for measured in ends
     )
@@ -235,7 +235,7 @@ def _with_interpolated_errors(
     )
     if is_slow or float(error_growth) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
-    calibration = last.calibration.interpolate(
+    calibration = start.calibration.interpolate(
         end.calibration, fraction, tip_y_sensitivity(point.cycle.path, point.derivatives)
     )
     return with_calibration(point, calibration, accuracy)

@@ -35,14 +35,14 @@ class BranchRecord:
     """Record of the cycles of a branch during the continuation. The errors of a cycle are final after errors
     have been measured at this cycle or at a later cycle."""
 
-    def __init__(self, curve: BranchCurve, accuracy: float, first: BranchCycle) -> None:
-        """curve: the branch, to which cycles are appended. accuracy: relative accuracy. first: the first
-        cycle, with measured errors."""
+    def __init__(self, curve: BranchCurve, accuracy: float, first_cycle: BranchCycle) -> None:
+        """curve: the branch, to which cycles are appended. accuracy: relative accuracy. first_cycle: the
+        first cycle, with measured errors."""
         self.curve = curve
         self.accuracy = accuracy
-        self._last_measured = first
+        self._last_measured = first_cycle
         self._unmeasured: list[BranchCycle] = []
-        curve.points.append(BranchPoint.from_cycle(first, accuracy))
+        curve.points.append(BranchPoint.from_cycle(first_cycle, accuracy))
 
     def append(self, point: BranchCycle) -> None:
         """Appends the cycle `point`, whose errors are not measured."""

@@ -109,12 +109,12 @@ def _solve_branches_or_raise(
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
     unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, crossings, keeps_omega, unit)
-    reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
+    end_reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
     if path.is_compliance_path:
         ends = ends[::-1]
-        reasons = reasons[::-1]
+        end_reasons = end_reasons[::-1]
     accuracy = accuracy_near_hopf_points(hopfs, request.accuracy)
-    limits = BranchLimits(hopfs, ends, reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
+    limits = BranchLimits(hopfs, ends, end_reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
     search = BranchSearch(limits, request.along)
     search.follow_within_range()
     search.follow_into_range(regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin))

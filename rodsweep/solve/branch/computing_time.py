@@ -36,12 +36,13 @@ def fraction_done(start: float, current: float, expected_end: float) -> float:
     return min(max(fraction, 0.0), 1.0) ** COMPUTING_TIME_SETTINGS.distance_exponent
 
 
-def fractions_before_branches(starts: Sequence[float], ends: ParameterRange) -> list[float]:
+def fractions_before_branches(starts: Sequence[float], parameter_range: ParameterRange) -> list[float]:
     """Estimated fractions of the total computing time of all branches that have passed before each branch,
     and after the last branch, (branches + 1,). starts: parameter coordinates of the Hopf points where the
-    branches start. ends: range of the parameter coordinate."""
+    branches start. parameter_range: range of the parameter coordinate."""
     work_of_branches = [
-        max(abs(end - start) for end in ends) ** COMPUTING_TIME_SETTINGS.length_exponent for start in starts
+        max(abs(end - start) for end in parameter_range) ** COMPUTING_TIME_SETTINGS.length_exponent
+        for start in starts
     ]
     work_before = [sum(work_of_branches[:number]) for number in range(len(work_of_branches) + 1)]
     return [work / work_before[-1] if work_before[-1] else 1.0 for work in work_before]

@@ -59,12 +59,13 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
     return follow_in_both_directions(_first_cycle(start.orbit, name, limits), limits)
 
 
-def follow_in_both_directions(first: BranchCycle, limits: BranchLimits) -> BranchCurve:
-    """The branch through the cycle `first`, which has measured errors, to its ends in both directions."""
-    curve = follow_from_cycle(BranchCurve(start_hopf=-1), first, limits)
+def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) -> BranchCurve:
+    """The branch through the cycle `first_cycle`, which has measured errors, to its ends in both
+    directions."""
+    curve = follow_from_cycle(BranchCurve(start_hopf=-1), first_cycle, limits)
     if not curve.closed:
         left = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
-        behind = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), left)
+        behind = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first_cycle), left)
         curve = behind.joined_with(curve)
     return curve
 

@@ -3,7 +3,7 @@
 from numpy.polynomial import Polynomial
 
 from ...model.parameters import PARAMETERS
-from ..continuation.follower import zero_along_step
+from ..continuation.curve import zero_along_step
 from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
@@ -44,9 +44,10 @@ def cycle_at_range_end(
 
 
 def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:
-    """The cycle at the coordinate 0 of a parameter that is never negative, if the range begins there and the
-    tangent at `start` reaches it within the next step: no step passes this end. Else None, also if no cycle
-    is found there, as behind a fold. low: smallest coordinate of the range. Raises WorkLimitReached."""
+    """The cycle at the coordinate 0, for a parameter that cannot be negative, so that no step can overshoot
+    this end. None unless the range begins at 0 and the tangent at `start` reaches 0 within the next step;
+    also None if no cycle is found there, as when the branch folds before 0. low: smallest coordinate of the
+    range. Raises WorkLimitReached."""
     rate = float(start.tangent[-1])
     may_be_negative = PARAMETERS[start.scale.parameter_name].allowed.contains(-1.0)
     if may_be_negative or low != 0 or rate >= 0 or -start.parameter_coordinate / rate > start.next_arc_length:
@@ -64,24 +65,24 @@ def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) ->
 
 
 def cycle_within_range(
-    start: BranchCycle, end: BranchCycle, ends: tuple[float, float], accuracy: float
+    start: BranchCycle, end: BranchCycle, range_ends: tuple[float, float], accuracy: float
 ) -> tuple[BranchCycle, int]:
     """Returns (cycle, index): the next cycle after `start`, which is `end`, or the cycle where the branch
-    first leaves the parameter range before `end`; and the index in `ends` of the range end at this cycle, -1
-    if the cycle is within the range. Raises Unsolvable.
+    first leaves the parameter range before `end`; and the index in `range_ends` of the range end at this
+    cycle, -1 if the cycle is within the range. Raises Unsolvable.
 
-    ends: smallest and largest coordinate of the range. Between two cycles within the range the branch may
-    leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
+    range_ends: smallest and largest coordinate of the range. Between two cycles within the range the branch
+    may leave the range and return, if a fold lies beyond an end. A step over such a fold would continue on
     another part of the branch.
     """
     coordinate = end.parameter_coordinate
-    for index, is_beyond in ((0, coordinate <= ends[0]), (1, coordinate >= ends[1])):
+    for index, is_beyond in ((0, coordinate <= range_ends[0]), (1, coordinate >= range_ends[1])):
         if is_beyond:
-            range_end = range_end_condition(start, ends[index])
+            range_end = range_end_condition(start, range_ends[index])
             return cycle_at_range_end(start, end, range_end, accuracy), index
-    index, length = _range_end_passed_before_fold(start, end, ends)
+    index, length = _range_end_passed_before_fold(start, end, range_ends)
     if index >= 0:
-        range_end = range_end_condition(start, ends[index])
+        range_end = range_end_condition(start, range_ends[index])
         try:
             orbit = cycle_at_length(start, length, accuracy).orbit
             return _solved_at_range_end(start, orbit, length, range_end, accuracy), index
@@ -93,11 +94,11 @@ def cycle_within_range(
 
 
 def _range_end_passed_before_fold(
-    start: BranchCycle, end: BranchCycle, ends: tuple[float, float]
+    start: BranchCycle, end: BranchCycle, range_ends: tuple[float, float]
 ) -> tuple[int, float]:
-    """Returns (index, length): index in `ends` of the range end that the branch is expected to pass between
-    `start` and `end` by the cubic through both cycles, and the arc length from `start` at which it passes;
-    (-1, 0.0) if the cubic passes no range end or if no fold lies between the two cycles."""
+    """Returns (index, length): index in `range_ends` of the range end that the branch is expected to pass
+    between `start` and `end` by the cubic through both cycles, and the arc length from `start` at which it
+    passes; (-1, 0.0) if the cubic passes no range end or if no fold lies between the two cycles."""
     if start.parameter_rate * end.parameter_rate >= 0:
         return -1, 0.0
     index = 1 if start.parameter_rate > 0 else 0
@@ -108,7 +109,7 @@ def _range_end_passed_before_fold(
     # The cubic minus the range end, by powers of the fraction of the arc length.
     excess = Polynomial(
         (
-            start.parameter_coordinate - ends[index],
+            start.parameter_coordinate - range_ends[index],
             slopes[0],
             3 * increment - 2 * slopes[0] - slopes[1],
             slopes[0] + slopes[1] - 2 * increment,

@@ -155,10 +155,10 @@ class RegionBeyond:
             return None
         return replace(passage, cycle=turned_back(passage.cycle))
 
-    def _entry(self, curve: BranchCurve, first: BranchCycle, accuracy: float) -> RangePassage | None:
-        """Follows the branch `curve` from its first cycle `first` in the region; returns the place where it
-        enters the range, or None."""
-        curve = follow_from_cycle(curve, first, replace(self.limits, accuracy=accuracy))
+    def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
+        """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
+        where it enters the range, or None."""
+        curve = follow_from_cycle(curve, first_cycle, replace(self.limits, accuracy=accuracy))
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)

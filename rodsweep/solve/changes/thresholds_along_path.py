@@ -184,14 +184,14 @@ def _with_interval(
 
 
 def _crossings(
-    problem: PathProblem, ends: tuple[float, float], certify: bool, max_crossings: float
+    problem: PathProblem, p_ends: tuple[float, float], certify: bool, max_crossings: float
 ) -> PathCrossings:
-    """Crossings for path variables between `ends`: by boxes, or for nonuniform arms by counts of unstable
+    """Crossings for path variables in `p_ends`: by boxes, or for nonuniform arms by counts of unstable
     modes (argument principle), proved if `certify`. max_crossings: number at which the search ends."""
     if not isinstance(problem, ArmPath):
-        return _crossings_by_covering(problem.path, *ends)
+        return _crossings_by_covering(problem.path, *p_ends)
     search = CrossingSearch(problem, certify)
-    crossings, search_end = search.crossings(problem.interval_edges(*ends), max_crossings)
+    crossings, search_end = search.crossings(problem.interval_edges(*p_ends), max_crossings)
     value = problem.path.parameter.value
     gaps = [(min(gap), max(gap)) for gap in ((value(a), value(b)) for a, b in search.gaps)]
     return PathCrossings(problem.path, crossings, gaps, search_end)

@@ -69,16 +69,16 @@ class ModeCounter:
         return number if number >= 0 else self.count_between(start, first_position)
 
     def crossings_with_counts(
-        self, ordered: list[Threshold], ends: tuple[float, float], unstable_count: int
+        self, ordered: list[Threshold], parameter_ends: tuple[float, float], unstable_count: int
     ) -> tuple[tuple[Threshold, ...], int]:
         """Returns (thresholds, at_end). thresholds: as `ordered`, with `unstable_after` set, and with the
         kind restabilization where the last unstable pair becomes stable. at_end: number of unstable modes at
-        the end. ordered: thresholds by increasing parameter. ends: smallest and largest parameter value.
-        unstable_count: number of unstable modes at the start. Unknown numbers are -1. `doubts` afterwards
-        holds the doubts of this call only."""
+        the end. ordered: thresholds by increasing parameter. parameter_ends: smallest and largest parameter
+        value. unstable_count: number of unstable modes at the start. Unknown numbers are -1. `doubts`
+        afterwards holds the doubts of this call only."""
         self.doubts = []
         out: list[Threshold] = []
-        start = ends[0]
+        start = parameter_ends[0]
         for crossing in ordered:
             kind = crossing.kind
             if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
@@ -89,7 +89,7 @@ class ModeCounter:
                 if kind == ChangeKind.hopf_reverse and unstable_count == 0:
                     kind = ChangeKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable_count))
-        return tuple(out), self._count_before(start, ends[1], unstable_count)
+        return tuple(out), self._count_before(start, parameter_ends[1], unstable_count)
 
     def _count_before(self, a: float, b: float, unstable_count: int) -> int:
         """Number of unstable modes just before b: `unstable_count`, the number just after a, compared with a

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
-from ..continuation.follower import StepControl, StepResult, advance
+from ..continuation.curve import StepControl, StepResult, advance
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, newton, relative_change, with_matrix_within_distance
 from ..orbit.normalised_orbit import (

@@ -99,10 +99,10 @@ def _hopf_point_between(rod: Rod, low: tuple[float, complex], high: tuple[float,
 
 
 def _newton_hopf_point(
-    problem: PathProblem, F: float, guess: complex, ends: tuple[float, float]
+    problem: PathProblem, F: float, guess: complex, end_forces: tuple[float, float]
 ) -> HopfPointBelow | None:
-    """The Hopf point with a force between `ends`, by Newton's method from the force `F` and the eigenvalue
-    `guess`; None if not found."""
+    """The Hopf point with a force between `end_forces`, by Newton's method from the force `F` and the
+    eigenvalue `guess`; None if not found."""
     for _ in range(HOPF_START_SETTINGS.max_newton_steps):
         w, slope, error = problem.eigenvalue(guess, F)
         if not (slope.real and isfinite(slope.real)):
@@ -114,7 +114,7 @@ def _newton_hopf_point(
             return HopfPointBelow(F, w.imag) if w.imag > 0 else None
         F += step
         guess = w + step * slope
-        if not ends[0] <= F <= ends[1]:
+        if not end_forces[0] <= F <= end_forces[1]:
             return None
     return None
 

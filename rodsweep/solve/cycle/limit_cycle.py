@@ -1,12 +1,12 @@
 """The limit cycle of one rod (paper, Sec. VII): task `limit_cycle` with `method: collocation`.
 
 The search starts from the leading eigenmode or from the cycle of a neighbour, the previous rod of a chain.
-From the eigenmode the motion is integrated until the motion approaches a cycle (`transient`); near a Hopf
-point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour predicts the cycle
-of this rod by continuation (`neighbour`). Newton's method then solves for the periodic orbit on meshes chosen
-for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by its Floquet
-multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may agree
-although no cycle exists.
+From the eigenmode the motion is integrated until the motion approaches a cycle (`transient_integration`);
+near a Hopf point the normal form predicts the cycle instead (`small_motion`). The cycle of a neighbour
+predicts the cycle of this rod by continuation (`neighbour`). Newton's method then solves for the periodic
+orbit on meshes chosen for the requested accuracy (`accuracy`). An orbit is accepted as a stable cycle only by
+its Floquet multipliers: near a Hopf point, where motions decay slowly, two successive peaks of the motion may
+agree although no cycle exists.
 """
 
 from contextlib import suppress
@@ -35,7 +35,7 @@ from .transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh, motion_mes
 from .transient.shape_trace import ShapeTrace
 from .transient.tip_trace import TipTrace
 from .transient.torus import classify_quasiperiodic
-from .transient.transient import Transient
+from .transient.transient_integration import TransientIntegration
 from .transient.transient_outcome import TransientOutcome
 
 __all__ = ["Cycle", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
@@ -112,9 +112,9 @@ def _solve_cycle_or_raise(
     if decay_reason and not request.is_recorded:
         return replace(straight, message=decay_reason)
     unstable_cycle = refined if refined is not None and refined.stable is False else None
-    for mesh in motion_meshes(rod, request.transient > 0):
+    for form in (StressForm(rod, mesh) for mesh in motion_meshes(rod, request.transient > 0)):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
-        transient = Transient(StressForm(rod, mesh), stability, request, parameter, unstable_cycle, workspace)
+        transient = TransientIntegration(form, stability, request, parameter, unstable_cycle, workspace)
         end = _outcome_of_motion(transient, request, neighbour)
         if not transient.unsolved_message:
             break
@@ -134,7 +134,7 @@ def _form_on_motion_mesh(rod: Rod) -> StressForm:
 
 
 def _with_motion_data(
-    outcome: Cycle, transient: Transient, end: TransientOutcome, request: CycleRequest
+    outcome: Cycle, transient: TransientIntegration, end: TransientOutcome, request: CycleRequest
 ) -> Cycle:
     """The outcome `outcome` with the mesh, the number of returns and the requested path or shapes of the
     integrated motion `transient`. end: outcome of this motion."""
@@ -145,11 +145,11 @@ def _with_motion_data(
         elements=transient.form.mesh.element_count,
         order=transient.form.mesh.order,
         transient=trace.at_equal_times(request.transient) if isinstance(trace, TipTrace) else None,
-        motion_shapes=_recorded_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
+        motion_shapes=_motion_shapes(transient, trace, request) if isinstance(trace, ShapeTrace) else None,
     )
 
 
-def _recorded_shapes(transient: Transient, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
+def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: CycleRequest) -> MotionShapes:
     """The recorded shapes of an integrated motion, at the requested numbers of times and nodes."""
     returns = [time for time, _ in transient.past_returns]
     return trace.motion_shapes(returns, transient.leading_mode.period, request.frames, request.nodes)
@@ -214,7 +214,7 @@ def _cycle_from_hopf(
 
 
 def _outcome_of_motion(
-    transient: Transient, request: CycleRequest, neighbour: CycleStart | None
+    transient: TransientIntegration, request: CycleRequest, neighbour: CycleStart | None
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
     of the neighbour's cycle; a quasiperiodic motion is recognised."""

@@ -86,16 +86,20 @@ class StraightRodStability:
 
 
 def straight_rod_stability(
-    rod: Rod, near: Complex | None = None, certify: bool = True
+    rod: Rod, near_eigenvalues: Complex | None = None, certify: bool = True
 ) -> StraightRodStability:
     """The leading eigenvalue of a rod with its error estimate; NaN, with a message, after a failure.
 
-    near: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to this rod if
-    possible. certify: whether to prove that no other eigenvalue has a larger growth rate.
+    near_eigenvalues: eigenvalues of a similar rod, (n,), the leading eigenvalue first, which are followed to
+    this rod if possible. certify: whether to prove that no other eigenvalue has a larger growth rate.
     """
     forget_arm_determinants()  # made for the Hopf points of a line, on some ranks
     request = SpectrumRequest(1, STRAIGHT_ROD_SETTINGS.accuracy, certify)
-    leading_w = None if near is None else follow_leading_eigenvalue(rod, near, request.accuracy)
+    leading_w = (
+        None
+        if near_eigenvalues is None
+        else follow_leading_eigenvalue(rod, near_eigenvalues, request.accuracy)
+    )
     if leading_w is not None:
         return StraightRodStability(leading_w.w, leading_w.error, followed_eigenvalues=leading_w.eigenvalues)
     spectrum = solve_spectrum(rod, request)

@@ -17,7 +17,7 @@ from ...determinant.parameter_plane import Plane, PlaneAxis
 from ...determinant.stability_boundary import Boundary
 from ...model.rod import Rod
 from ...solve_progress import SolvePosition, report
-from ..continuation.follower import StepResult, StopReason, follow_curve
+from ..continuation.curve import StepResult, StopReason, follow_curve
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 from .bautin_points import BAUTIN_POINT_SETTINGS, BautinPoint, HopfCurve

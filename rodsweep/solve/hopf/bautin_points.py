@@ -157,14 +157,14 @@ class HopfCurve:
         hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag)
         return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
 
-    def bautin_point_between(self, first: int, last: int) -> BautinPoint | None:
-        """The generalised Hopf point between the stored points with the indices `first` and `last`, at which
-        Re c has opposite signs. None if a normal form fails, if Brent's method finds no zero, or if Re c
-        jumps there."""
+    def bautin_point_between(self, first_index: int, last_index: int) -> BautinPoint | None:
+        """The generalised Hopf point between the stored points with the indices `first_index` and
+        `last_index`, at which Re c has opposite signs. None if a normal form fails, if Brent's method finds
+        no zero, or if Re c jumps there."""
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
-        start = self.scaled[first]
-        chord = self.scaled[last] - self.scaled[first]
+        start = self.scaled[first_index]
+        chord = self.scaled[last_index] - self.scaled[first_index]
         normal = chord / np.linalg.norm(chord)
 
         def on_chord(s: float) -> _HopfNormalForm:
@@ -187,9 +187,9 @@ class HopfCurve:
         if abs(hopf_point.relative_real_part) > BAUTIN_POINT_SETTINGS.max_relative_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
-        is_passed = (self.scaled[first + 1 : last] - start) @ chord <= s * (chord @ chord)
+        is_passed = (self.scaled[first_index + 1 : last_index] - start) @ chord <= s * (chord @ chord)
         error_along = hopf_point.coefficients.landau_error / abs(slope) + BAUTIN_POINT_SETTINGS.tolerance
-        return self.as_bautin_point(hopf_point, first + int(is_passed.sum()), chord * error_along)
+        return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * error_along)
 
     def as_bautin_point(
         self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array

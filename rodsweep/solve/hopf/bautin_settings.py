@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import inf
 
-from ..continuation.follower import StepControl
+from ..continuation.curve import StepControl
 
 BAUTIN_STEP_CONTROL = StepControl(
     first_length=0.01,

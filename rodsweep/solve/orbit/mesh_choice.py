@@ -5,9 +5,9 @@ from math import ceil, log
 
 from ...discretization.elements.elements import halve_elements
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
+from .element_order_ratios import element_order_ratios
 from .orbit import Orbit
 from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of, ratios_of_halves
-from .order_ratios import order_ratios
 from .tails import tails_of
 
 
@@ -36,7 +36,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         log(max(tails.space, ORBIT_MESH_SETTINGS.min_tail) / max_space_tail) / tails.space_decay
     )
     edges = current_mesh.edges
-    ratios = order_ratios(orbit, order, max_space_tail)
+    ratios = element_order_ratios(orbit, order, max_space_tail)
     while order > RESOLUTION_SETTINGS.max_order:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
         edges = halve_elements(edges)

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from ...arrays import Array
-from ...discretization.elements.collocation import CollocationMethod, radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh
+from ...discretization.elements.time_collocation import CollocationMethod, radau_method
 from ...discretization.stress.form import StressForm
 from .compiled_measures import OrbitMeans, power_means_and_least_stretch
 from .equations import OrbitEquations

@@ -13,9 +13,9 @@ from numpy.polynomial import legendre
 
 from ...arrays import Array
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ...discretization.elements.collocation import radau_method
 from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import uniform_mesh
+from ...discretization.elements.time_collocation import radau_method
 from ...discretization.state_layout import PLANE_COMPONENT_COUNT, stress_index
 from ...discretization.stresses_at_jumps import stresses_by_element
 from ...model.compiled.compilation import compiled_for_vectors

@@ -32,16 +32,16 @@ def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
     return result
 
 
-def indices_along(shape: tuple[int, ...], axis: int, line: Any, along: Any) -> Any:
-    """Flat indices of the grid points at position `along` on axis number `axis`, on the grid line number
+def indices_along(shape: tuple[int, ...], axis: int, line: Any, position: Any) -> Any:
+    """Flat indices of the grid points at position `position` on axis number `axis`, on the grid line number
     `line`.
 
-    Lines along the axis are numbered in row-major order of the remaining axes. line, along: integers or
+    Lines along the axis are numbered in row-major order of the remaining axes. line, position: integers or
     arrays, which broadcast to the shape of the result, (...,).
     """
     stride = math.prod(shape[axis + 1 :])
     block, offset = np.divmod(line, stride)
-    return (block * shape[axis] + along) * stride + offset
+    return (block * shape[axis] + position) * stride + offset
 
 
 class IndexSet:

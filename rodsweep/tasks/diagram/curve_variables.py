@@ -61,7 +61,7 @@ def boundary_curve_values(
         declared, "fold", "fold_", folds
     )
     values |= {"curve_agreement": traced.largest_seed_distance, "curves_untraced": traced.untraced_count}
-    return _filled_variables(declared, values | limit_values)
+    return _variables_with_values(declared, values | limit_values)
 
 
 def criticality_record(
@@ -85,7 +85,7 @@ def criticality_record(
         "bautin_unlocated": sum(curve.unlocated_count for curve in criticalities),
         "curve_gamma1": gamma1,
     }
-    return _filled_variables(variables, values)
+    return _variables_with_values(variables, values)
 
 
 def bautin_curve_values(
@@ -102,7 +102,7 @@ def bautin_curve_values(
         )
     ]
     variables = bautin_curve_variables(*plane, third_parameter)
-    return _filled_variables(
+    return _variables_with_values(
         variables, _values_along_dimension(variables, "bautin_step", "bautin_along_", rows)
     )
 
@@ -128,7 +128,7 @@ def cycle_curve_values(
         "cycle_curve_agreement": traced.largest_seed_distance,
         "cycle_curves_untraced": traced.untraced_count,
     }
-    return _filled_variables(variables, values)
+    return _variables_with_values(variables, values)
 
 
 def _object_and_point(point: Any, names: Sequence[str], **extra_values: Any) -> tuple[Any, ...]:
@@ -150,18 +150,20 @@ def _values_along_dimension(
     return value_lists(chosen, [outcome_values(chosen, *row, prefix=prefix) for row in rows])
 
 
-def _filled_variables(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> list[FilledVariable]:
+def _variables_with_values(
+    variables: Mapping[str, Variable], values: Mapping[str, Any]
+) -> list[FilledVariable]:
     return [(variables[name], np.asarray(value)) for name, value in values.items()]
 
 
-def _end_reasons(ends: Sequence[int], count: int) -> list[dict[str, int]]:
+def _end_reasons(end_reasons: Sequence[int], count: int) -> list[dict[str, int]]:
     """For each of the `count` points of a curve, the reasons why the curve starts or ends there; 0 if the
     curve goes on.
 
-    ends: (reason at the first point, reason at the last point).
+    end_reasons: (reason at the first point, reason at the last point).
     """
     reasons = [{"start": 0, "end": 0} for _ in range(count)]
-    reasons[0]["start"], reasons[-1]["end"] = ends
+    reasons[0]["start"], reasons[-1]["end"] = end_reasons
     return reasons
 
 

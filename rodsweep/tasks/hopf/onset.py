@@ -29,18 +29,18 @@ MESH_ACCURACY = 1e-6
 def locate_onset(
     rods: CoefficientsAlongForce,
     rod: Rod,
-    ends: tuple[float, float],
+    end_forces: tuple[float, float],
     lower_eigenvalues: Complex,
     upper_eigenvalues: Complex,
 ) -> StabilityChange | None:
-    """The force between the forces `ends` at which the two leading real eigenvalues merge into a pair; None
-    if no such force is found.
+    """The force between the forces `end_forces` at which the two leading real eigenvalues merge into a pair;
+    None if no such force is found.
 
     rods: coefficients of `rod` at F = 0, and their derivative by F. lower_eigenvalues, upper_eigenvalues:
     leading eigenvalues at the first and second force, (modes,); the leading eigenvalue is real at the first
     force and complex at the second.
     """
-    low, high = ends
+    low, high = end_forces
     for _ in range(1 + MAX_HALVINGS):
         if not lower_eigenvalues[:2].imag.any():
             change = onset_between(rods, (low, high), lower_eigenvalues, upper_eigenvalues)

@@ -249,7 +249,10 @@ def test_check_says_that_cycles_are_nonlinear(command):
     told = " ".join(command("check", "c.yaml").stdout.split())
     assert "nonlinear motion yes of the cycles" in told
     assert "gravity, inertia no" in told
-    assert "the Hopf points of each row, and on branches that curves of folds and torus points cross" in told
+    assert (
+        "the Hopf points of each row, and on the detached branches that the fold and torus curves cross"
+        in told
+    )
 
 
 @pytest.mark.long

@@ -1,4 +1,4 @@
-"""The follower of curves, on curves that are known."""
+"""Following of curves, on curves that are known."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rodsweep.solve.continuation.follower import (
+from rodsweep.solve.continuation.curve import (
     StepControl,
     StepResult,
     StopReason,

@@ -104,7 +104,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.propagators_for(abs(_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
+        determinant.propagators_for(abs(_upper_right_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
     except FloatingPointError:
         return False
     return True
@@ -112,11 +112,11 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
-    corner = _corner(line, hull)
+    corner = _upper_right_corner(line, hull)
     return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.w_scale(corner)
 
 
-def _corner(line: float, hull: EigenvalueHull) -> complex:
+def _upper_right_corner(line: float, hull: EigenvalueHull) -> complex:
     """Upper right corner of the contour about all eigenvalues right of the line."""
     return upper_contour_corner(line, hull.box(max(-line, 0.0)))
 
@@ -128,7 +128,7 @@ def _phase_change(
 
     Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed.
     """
-    corner = _corner(line, hull)
+    corner = _upper_right_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest_w = largest_w_of_count(line, determinant, hull)

@@ -36,8 +36,8 @@ THRESHOLD_DIGITS = 6
 
 
 def draw_class_bars(view: ResultView) -> Figure:
-    """Figure with a horizontal bar for a single rod, or with vertical bars for a list of rods. Raises
-    InputError if nothing can be drawn."""
+    """Figure of the stability classes over F: one bar for each rod, coloured by class; horizontal for a
+    single rod. Raises InputError if nothing can be drawn."""
     count = view.variables["status"].size
     v = {name: view.variables[name] for name in ("F_end", "crossing_kind")}
     style.require_content(view, np.isfinite(v["F_end"]).any(), "computed rod")
@@ -86,8 +86,8 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
-    """Draws the bar of the rod with the index `rod`; returns the classes of the bar. is_vertical: whether the
-    bar is vertical.
+    """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
+    of the bar. is_vertical: whether the bar is vertical.
     """
     intervals = list(classes_over_force(view, rod))
     undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))

@@ -37,9 +37,9 @@ def lowest_parts(paths: list[Array], force: int) -> list[Array]:
     return parts
 
 
-def label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float) -> None:
-    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction `share` of
-    this length. paths: curves, (points, 2) each."""
+def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fraction: float) -> None:
+    """Writes the symbol `name` next to the path with the greatest visible length, at the fraction
+    `length_fraction` of this length. paths: curves, (points, 2) each."""
     lengths = []
     seen = []
     for path in paths:
@@ -52,7 +52,7 @@ def label_longest_curve(axes: Axes, paths: list[Array], name: str, share: float)
     if not lengths[longest][-1] > 0:
         return
     others = [child for child in axes.get_children() if isinstance(child, Annotation)]
-    for fraction in (share, *OTHER_LABEL_POSITIONS):
+    for fraction in (length_fraction, *OTHER_LABEL_POSITIONS):
         at = int(np.searchsorted(lengths[longest], fraction * lengths[longest][-1]))
         place: dict[str, Any] = {"xytext": (4, -2), "textcoords": "offset points"}
         label = axes.annotate(name, seen[longest][at], size=LABEL_FONTSIZE, va="top", **place)

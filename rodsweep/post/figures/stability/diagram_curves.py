@@ -68,9 +68,8 @@ def draw_boundary_curves(axes: Axes, view: ResultView, line: str, row: str, hopf
 
 
 def boundaries_to_name(view: ResultView, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
-    """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol.
-
-    F** bounds the region of stable straight rods; curves of Hopf points of further modes have no symbol.
+    """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of
+    kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**).
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])

@@ -23,7 +23,7 @@ from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from .scale import ArcLengthScale, deflection_row
+from .scale import ArcLengthScale, deflection_functional
 
 
 class BorderedMatrix:
@@ -120,7 +120,7 @@ class BorderedMatrix:
 
     def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the start
-        state, (v, n). columns: eliminated right-hand sides of the stages, (K, s, v, n)."""
+        state, (v, n). columns: reduced right-hand sides, without the stages, (K, s, v, n)."""
         out = np.empty_like(columns)
         substitute_stages(starts, columns, self.orbit.orbit_equations, self._memory.factors, out)
         stages = out.transpose(2, 0, 1, 3).reshape(len(starts), -1)
@@ -156,27 +156,32 @@ class BorderedMatrix:
         matrix[-1, -1] = 1.0
         return self._back_substitute(np.linalg.svd(matrix)[2][-1], self._stage_columns[:, :, 1], 0.0)
 
-    def matching_right_sides(self, jump: Array, columns: Array, ends: Array) -> Array:
+    def matching_right_sides(self, jump: Array, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides, (m n,), of the m matching conditions of multiple shooting: each shooting interval
         must end where the next interval starts, the last interval at the symmetric image of the first start.
 
         jump: distance S x(0) - x(end) from the end of the last interval to this image, (n,), S: symmetry. The
         other intervals have no jump, because the orbit has one state for the end of an interval and the start
-        of the next. columns: eliminated right-hand sides of the stages, (K, s, 1, n). ends: increment of the
-        state at the end of the last interval caused by `columns` for a fixed start, (1, n).
+        of the next. columns: reduced right-hand sides, without the stages, (K, s, 1, n). end_increments:
+        increment of the state at the end of the last time interval that `columns` cause if the first state is
+        fixed, (1, n).
         """
         p = self.orbit.orbit_equations
-        sides = -self._shooting_intervals.increments_of_ends(self._memory.factors, columns, ends, p)[:, 0]
+        sides = -self._shooting_intervals.increments_of_ends(
+            self._memory.factors, columns, end_increments, p
+        )[:, 0]
         sides[-1] += jump
         return sides.ravel()
 
-    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, ends: Array) -> Array:
+    def _matching_and_phase_sides(self, orbit: Orbit, columns: Array, end_increments: Array) -> Array:
         """Right-hand sides of the m matching conditions of an orbit, one for each of its m shooting
-        intervals, and of the phase condition, (m n + 1,). columns: eliminated right-hand sides of the stages,
-        (K, s, 1, n). ends: increment of the state at the end of the last shooting interval caused by
-        `columns` for a fixed start, (1, n)."""
+        intervals, and of the phase condition, (m n + 1,). columns: reduced right-hand sides, (K, s, 1, n).
+        end_increments: increment of the state at the end of the last time interval that `columns` cause if
+        the first state is fixed, (1, n)."""
         p = orbit.orbit_equations
-        matching_sides = self.matching_right_sides(closing_residual(orbit.all_states, p), columns, ends)
+        matching_sides = self.matching_right_sides(
+            closing_residual(orbit.all_states, p), columns, end_increments
+        )
         return np.append(matching_sides, -phase_residual(orbit.start_state, p.rod, p.node_matrices))
 
     def solve(self, border: Array, right_side: Array, sides: Array, fraction: float) -> Array:
@@ -188,7 +193,7 @@ class BorderedMatrix:
         """
         n = len(self.orbit.start_state)
         matrix = self._matrix.copy()
-        matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_row(self.orbit)
+        matrix[-1, :n] = border[0] / self.scale.deflection_unit * deflection_functional(self.orbit)
         # The border acts on log T, whose derivative is 1/T.
         matrix[-1, -2:] = border[1] / self.orbit.period, border[2] / self.scale.coordinate_unit
         return self._back_substitute(np.linalg.solve(matrix, right_side), sides, fraction)

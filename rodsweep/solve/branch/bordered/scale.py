@@ -52,7 +52,7 @@ class ArcLengthScale:
         the orbit, and the modulus of the parameter coordinate. name: continuation parameter.
         min_deflection_unit: smallest unit of the deflection, in L. min_coordinate_unit: smallest unit of the
         parameter coordinate."""
-        max_deflection = float(np.abs(orbit.all_states @ deflection_row(orbit)).max())
+        max_deflection = float(np.abs(orbit.all_states @ deflection_functional(orbit)).max())
         # `min_deflection_unit` keeps the unit positive near a Hopf point, where the deflection vanishes.
         return cls(
             name,
@@ -72,24 +72,26 @@ class ArcLengthScale:
     def directional_derivative(self, orbit: Orbit, change: Array) -> Array:
         """Derivative of `components` at an orbit, (3,), along a variation of orbit values and parameter
         coordinate, (N + 1,)."""
-        deflection = float(deflection_row(orbit) @ change[: orbit.form.unknown_count]) / self.deflection_unit
+        deflection = (
+            float(deflection_functional(orbit) @ change[: orbit.form.unknown_count]) / self.deflection_unit
+        )
         return np.array([deflection, change[-2] / orbit.period, change[-1] / self.coordinate_unit])
 
 
 def deflection_of(orbit: Orbit) -> float:
     """Deflection of an orbit in L at t = 0, when the tip's y is largest; linear in the state."""
-    return float(deflection_row(orbit) @ orbit.start_state)
+    return float(deflection_functional(orbit) @ orbit.start_state)
 
 
-def deflection_row(orbit: Orbit) -> Array:
-    """Row vector, (n,), whose product with a state of the orbit is the deflection of this state in L."""
+def deflection_functional(orbit: Orbit) -> Array:
+    """The linear functional, (n,), whose product with a state of the orbit is the state's deflection in L."""
     form = orbit.form
-    return _deflection_row(form.layout, form.mesh, form.rod.build)
+    return _cached_deflection_functional(form.layout, form.mesh, form.rod.build)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _deflection_row(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
-    """Cached `deflection_row`, (n,); callers share the array and must not change it."""
+def _cached_deflection_functional(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
+    """Cached `deflection_functional`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
     # 0.
     weights = mesh.quadrature * relative_bending_compliance_at_nodes(build, mesh)

@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
-from ...continuation.follower import Curve, StepControl, StepResult, StopReason, follow_curve, zero_along_step
+from ...continuation.curve import Curve, StepControl, StepResult, StopReason, follow_curve, zero_along_step
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import least_stretch_of_orbit
 from ...orbit.newton import relative_change
@@ -205,10 +205,10 @@ class SpecialCurveProblem:
         return replace(point, measured_error=outer.measured_error and outer.measured_error.for_next_point)
 
     def _zero_of_margin(
-        self, inner: SolvedPoint, outer: SolvedPoint, margin: int, ends: tuple[float, float]
+        self, inner: SolvedPoint, outer: SolvedPoint, margin: int, margins: tuple[float, float]
     ) -> SolvedPoint:
         """The point between `inner` and `outer` at which the margin with index `margin` is 0; raises
-        Unsolvable. ends: values of this margin at `inner` and `outer`."""
+        Unsolvable. margins: values of this margin at `inner` and `outer`."""
         points: dict[float, SolvedPoint] = {1.0: outer}
 
         def value(fraction: float) -> float:
@@ -216,7 +216,7 @@ class SpecialCurveProblem:
             return float(self.margins(points[fraction])[margin])
 
         return points[
-            zero_along_step(value, ends, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
+            zero_along_step(value, margins, 1.0, END_SETTINGS.margin_tolerance, END_SETTINGS.margin_tolerance)
         ]
 
     def is_closed_by(self, previous: Sequence[SolvedPoint], point: SolvedPoint) -> bool:

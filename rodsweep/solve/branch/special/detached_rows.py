@@ -59,7 +59,7 @@ class DetachedRows:
 
     def item_label(self, item: int) -> str:
         """Text for a row in the progress display."""
-        return f"branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g} that only curves meet"
+        return f"detached branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
 
 
 Stage = SpecialCurveTracer | DetachedRows
@@ -110,19 +110,19 @@ class DiagramStages:
         ]
 
     def _new_special_points(
-        self, stages: Sequence[Stage], last: DetachedRows, results: Results
+        self, stages: Sequence[Stage], detached_rows: DetachedRows, results: Results
     ) -> list[RowSpecialPoint]:
-        """Special points of the rows of `last` that lie on no curve traced so far."""
+        """Special points of the rows of `detached_rows` that lie on no curve traced so far."""
         points_by_row: dict[int, list[RowSpecialPoint | SpecialPoint]] = {}
         for stage in stages:
             if isinstance(stage, SpecialCurveTracer):
                 for point in stage.special_points:
                     points_by_row.setdefault(point.row_index, []).append(point)
-        for row, crossings in last.crossings.items():
+        for row, crossings in detached_rows.crossings.items():
             points_by_row.setdefault(row, []).extend(crossing.special_point for crossing in crossings)
         return [
             point
-            for point in self._special_points_of_rows([last], results)
+            for point in self._special_points_of_rows([detached_rows], results)
             if not any(point.is_same_as(other) for other in points_by_row.get(point.row_index, ()))
         ]
 
@@ -155,17 +155,17 @@ def _changed_rows(stages: Sequence[Stage], results: Results) -> dict[int, dict[s
     return dict(sorted(variables_by_row.items()))
 
 
-def _rows_after(last: SpecialCurveTracer, stages: Sequence[Stage], results: Results) -> DetachedRows | None:
-    """The rows that the curves of `last` cross without a special point there; None if there are none."""
+def _rows_after(tracer: SpecialCurveTracer, stages: Sequence[Stage], results: Results) -> DetachedRows | None:
+    """The rows that the curves of `tracer` cross without a special point there; None if there are none."""
     known_crossings: dict[int, tuple[RowCrossing, ...]] = {}
     for stage in stages:
         known_crossings |= stage.crossings if isinstance(stage, DetachedRows) else {}
     new_crossings: dict[int, tuple[RowCrossing, ...]] = {}
-    for crossing in last.crossings(results):
+    for crossing in tracer.crossings(results):
         row = crossing.row_index
         row_crossings = new_crossings.get(row) or known_crossings.get(row, ())
         if not any(crossing.special_point.is_same_as(other.special_point) for other in row_crossings):
             new_crossings[row] = (*row_crossings, crossing)
     if not new_crossings:
         return None
-    return DetachedRows(last.end_item, last.row_axis.name, last.complete_rows, new_crossings)
+    return DetachedRows(tracer.end_item, tracer.row_axis.name, tracer.complete_rows, new_crossings)

@@ -38,13 +38,13 @@ def trace_half_curve(
         points, end = problem.follow_from(matches[0], special_point.row_value)
     except (*FAILURES, ValueError):  # a logarithmic axis refuses a value that is not positive
         return TracedHalfCurve(None)
-    distances, crossings = _crossings_with_rows(problem, points, special_points, complete_rows)
+    distances, crossings = _special_points_and_row_crossings(problem, points, special_points, complete_rows)
     return TracedHalfCurve(
         HalfCurve(tuple(map(CurvePoint.from_solved_point, points)), end), distances, crossings
     )
 
 
-def _crossings_with_rows(
+def _special_points_and_row_crossings(
     problem: SpecialCurveProblem,
     points: Sequence[SolvedPoint],
     special_points: Sequence[RowSpecialPoint],

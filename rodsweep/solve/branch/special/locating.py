@@ -12,7 +12,7 @@ from math import nan
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...continuation.follower import zero_along_step
+from ...continuation.curve import zero_along_step
 from ...orbit.least_stretch import least_stretch
 from ...orbit.measures import CyclePath
 from ...orbit.newton import ConvergedOrbit
@@ -119,14 +119,14 @@ def special_point_between(
 
 
 def _with_mesh_errors(
-    point: SpecialPoint, last: SpecialPoint, start: BranchCycle, end: BranchCycle
+    point: SpecialPoint, coarser_point: SpecialPoint, start: BranchCycle, end: BranchCycle
 ) -> SpecialPoint:
-    """The special point with errors: its differences from `last`, the same point on a coarser mesh, times a
-    safety factor. The errors of period and largest tip y include a fraction of their difference between
-    `start` and `end`, the cycles before and after the point: for the error of the last secant step, and,
-    except at a fold, for the error of the parameter."""
+    """The special point with errors: its differences from `coarser_point`, the same point on a coarser mesh,
+    times a safety factor. The errors of period and largest tip y include a fraction of their difference
+    between `start` and `end`, the cycles before and after the point: for the error of the last secant step,
+    and, except at a fold, for the error of the parameter."""
     error = SPECIAL_POINT_SETTINGS.error_factor * abs(
-        point.parameter_value - last.parameter_value
+        point.parameter_value - coarser_point.parameter_value
     ) + SPECIAL_POINT_SETTINGS.rounding_error * abs(point.parameter_value)
     fraction = SPECIAL_POINT_SETTINGS.secant_error_at_fold
     if point.kind is not SpecialKind.fold:
@@ -138,10 +138,10 @@ def _with_mesh_errors(
     start_measures = start.cycle.measures
     end_measures = end.cycle.measures
     factor = SPECIAL_POINT_SETTINGS.error_factor
-    period = factor * abs(point.period - last.period) + fraction * abs(
+    period = factor * abs(point.period - coarser_point.period) + fraction * abs(
         start_measures.period - end_measures.period
     )
-    size = factor * abs(point.tip_y_max - last.tip_y_max) + fraction * abs(
+    size = factor * abs(point.tip_y_max - coarser_point.tip_y_max) + fraction * abs(
         start_measures.tip_y_max - end_measures.tip_y_max
     )
     return replace(

@@ -125,8 +125,8 @@ class _AsymmetricCycles:
         return moved_orbit(self.symmetric, self.matrix.scale.parameter_name, distance * self.null_vector)
 
     def distance_before_fold(self, distance: float) -> float:
-        """The relative distance, or a smaller one if the branch has a fold between the symmetric cycle and
-        the cycle at `distance`; raises Unsolvable."""
+        """`distance`, or a smaller relative distance from the symmetric cycle if the branch has a fold
+        between the symmetric cycle and the cycle at `distance`; raises Unsolvable."""
         # The parameter is p0 + A t^2 + B t^4 with t = 1 at `distance`; its derivatives give A and B.
         parameter_rate = self._parameter_rate(distance)
         half = self._parameter_rate(distance / 2)

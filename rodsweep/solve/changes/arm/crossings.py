@@ -199,11 +199,11 @@ class CrossingSearch:
         return []
 
     def _newton_crossing(
-        self, start: CriticalModes, i: int, ends: tuple[float, float], grows: bool
+        self, start: CriticalModes, i: int, p_ends: tuple[float, float], grows: bool
     ) -> Threshold | None:
         """The crossing of the imaginary axis by the eigenvalue with index i in `start.w`, by Newton's method
-        for p; None if Newton's method does not converge within `ends`, or converges to another crossing.
-        ends: allowed interval of p. grows: whether the growth rate of the pair increases with p."""
+        for p; None if Newton's method does not converge within `p_ends`, or converges to another crossing.
+        p_ends: allowed interval of p. grows: whether the growth rate of the pair increases with p."""
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
@@ -213,7 +213,7 @@ class CrossingSearch:
             step = -w.real / slope.real
             p = p + step
             guess = w + slope * step
-            if not ends[0] <= p <= ends[1]:
+            if not p_ends[0] <= p <= p_ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
             p_error = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
@@ -221,7 +221,7 @@ class CrossingSearch:
                 # With such an error no root of D is resolved.
                 has_many_modes = self.axis_modes.has_many_modes(
                     p
-                ) and not p_error <= ARM_CROSSING_SETTINGS.count_distance * (ends[1] - ends[0])
+                ) and not p_error <= ARM_CROSSING_SETTINGS.count_distance * (p_ends[1] - p_ends[0])
                 return None if has_many_modes else self._crossing_at(p, w, slope, p_error, grows)
         return None
 

@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import Plane
 from ....determinant.stability_boundary import Boundary, BoundarySolution
 from ....solve_progress import report
-from ...continuation.follower import StopReason, follow_curve, zero_along_step
+from ...continuation.curve import StopReason, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
 from .boundary_problem import (
     BOUNDARY_CURVE_SETTINGS,
@@ -96,10 +96,10 @@ def trace_boundary(
 
 
 def _curve_with_folds(
-    curve: BoundaryCurveProblem, points: Array, ends: tuple[BoundaryEndReason, BoundaryEndReason]
+    curve: BoundaryCurveProblem, points: Array, end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
 ) -> BoundaryCurve:
-    """The curve through points, (points, 3), with the folds between the points. ends: reasons for its two
-    ends."""
+    """The curve through points, (points, 3), with the folds between the points. end_reasons: reasons for its
+    two ends."""
     boundary = curve.boundary
     folds = []
     if len(points) > 1:
@@ -116,7 +116,9 @@ def _curve_with_folds(
     growth_rate, frequency = np.array([boundary.eigenvalue(h) for h in points[:, 2]]).T
     axes = boundary.plane.axes
     values = np.array([[axis.value(x) for axis, x in zip(axes, v[:2], strict=True)] for v in points])
-    return BoundaryCurve(boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), ends, points)
+    return BoundaryCurve(
+        boundary.eigenvalue_sign, values, frequency, growth_rate, tuple(folds), end_reasons, points
+    )
 
 
 def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:

@@ -1,4 +1,5 @@
-"""A boundary of the spectrum in a plane of rods, as a problem for `continuation.follower.follow_curve`.
+"""A boundary of the spectrum in a plane of rods, as a problem for
+`continuation.curve.follow_curve`.
 
 Each point of the curve has a unit tangent. A curve ends at an edge of the plane, at a crushed rod, where it
 closes, or where it cannot be followed.
@@ -13,7 +14,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....determinant.stability_boundary import Boundary, BoundarySolution
-from ...continuation.follower import Curve, StepControl, StepResult, StopReason
+from ...continuation.curve import Curve, StepControl, StepResult, StopReason
 from ...unsolvable import Unsolvable
 
 BOUNDARY_STEP_CONTROL = StepControl(

@@ -23,17 +23,17 @@ class Attempt(NamedTuple):
 
 
 def thresholds_of_solvable_part(
-    rod: Rod, name: str, inner_values: Array, ends: tuple[float, float], certify: bool
+    rod: Rod, name: str, inner_values: Array, row_ends: tuple[float, float], certify: bool
 ) -> ThresholdSearchResult:
-    """Thresholds along a row between the values `ends` of the parameter `name`.
+    """Thresholds along a row between the values `row_ends` of the parameter `name`.
 
     If a row along F cannot be searched from its first pull on, the search begins at the first value of the
     row from which it can, or at F = 0. inner_values: increasing values of the row between its ends, (n,).
     certify: whether a proof is requested. Raises Unsolvable if the row cannot be searched from F = 0 on
     either.
     """
-    start, stop = ends
-    first = _attempt(rod, name, ends, certify)
+    start, stop = row_ends
+    first = _attempt(rod, name, row_ends, certify)
     if not first.failure and first.found is not None:
         return first.found
     later_starts = (
@@ -63,13 +63,15 @@ def thresholds_of_solvable_part(
     return _with_late_start(last.found or first.found, (starts[failed_index], starts[solved_index]), failure)
 
 
-def _attempt(rod: Rod, name: str, ends: tuple[float, float], certify: bool) -> Attempt:
-    """Search along a row between `ends`; a row along F must be searched beyond its pulls."""
+def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:
+    """Search along a row between `row_ends`; a row along F must be searched beyond its pulls."""
     try:
-        result = find_thresholds(ParameterPath(rod.with_values(**{name: ends[0]}), name), *ends, certify)
+        result = find_thresholds(
+            ParameterPath(rod.with_values(**{name: row_ends[0]}), name), *row_ends, certify
+        )
     except Unsolvable as failure:
         return Attempt(None, str(failure))
-    ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(ends[1], 0)
+    ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(row_ends[1], 0)
     return Attempt(result, result.doubt_text if ends_early else "")
 
 

@@ -160,10 +160,11 @@ def calibration_of(
     return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
 
 
-def _measured_space_decay(before: Array, after: Array, orders: int) -> Array:
-    """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). before, after: errors
-    on two meshes, (5,) each. orders: increase of the order from the first mesh to the second."""
-    return _limited_space_decay(_log_ratio(before, after) / orders)
+def _measured_space_decay(first_errors: Array, second_errors: Array, orders: int) -> Array:
+    """Decrease of ln(error) in space if the order of the elements increases by 1, (5,). first_errors,
+    second_errors: errors on two meshes, (5,) each. orders: increase of the order from the first mesh to the
+    second."""
+    return _limited_space_decay(_log_ratio(first_errors, second_errors) / orders)
 
 
 def _limited_space_decay(decay: Array) -> Array:
@@ -173,19 +174,21 @@ def _limited_space_decay(decay: Array) -> Array:
     return limited_decay
 
 
-def _measured_time_order(before: Array, after: Array, previous: OrbitMesh, mesh: OrbitMesh) -> Array:
-    """Order of convergence of the errors in time, (5,). before, after: errors in time, (5,) each, on the
-    meshes `previous` and `mesh` with different numbers of time intervals."""
+def _measured_time_order(
+    first_errors: Array, second_errors: Array, previous: OrbitMesh, mesh: OrbitMesh
+) -> Array:
+    """Order of convergence of the errors in time, (5,). first_errors, second_errors: errors in time, (5,)
+    each, on the meshes `previous` and `mesh` with different numbers of time intervals."""
     # Radau IIA has the order 2 stages - 1, which stiff problems may reduce to stages + 1.
     min_order = mesh.stage_count + 1
     steps = np.log(mesh.full_intervals / previous.full_intervals)
     max_order = CALIBRATION_SETTINGS.max_time_order_ratio * min_order
-    order: Array = np.clip(_log_ratio(before, after) / steps, min_order, max_order)
+    order: Array = np.clip(_log_ratio(first_errors, second_errors) / steps, min_order, max_order)
     return order
 
 
-def _log_ratio(before: Array, after: Array) -> Array:
+def _log_ratio(first_errors: Array, second_errors: Array) -> Array:
     """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
     min_error = EXPONENT_SETTINGS.least_divisor
-    quotient: Array = np.log(np.maximum(before, min_error) / np.maximum(after, min_error))
+    quotient: Array = np.log(np.maximum(first_errors, min_error) / np.maximum(second_errors, min_error))
     return quotient

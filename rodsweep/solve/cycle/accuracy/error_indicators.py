@@ -62,36 +62,37 @@ def tails_and_size(orbit: Orbit) -> Array:
     return np.append(np.maximum(smooth_tails(orbit), CALIBRATION_SETTINGS.min_tail), orbit.max_energy_norm)
 
 
-def error_growth_factors(earlier: Array, later: Array) -> Array:
+def error_growth_factors(earlier_tails: Array, later_tails: Array) -> Array:
     """Estimated growth factors of the errors in space and in time between two orbits, (2,), at least 1.
 
-    earlier, later: tails in space and in time, and size, of the earlier and of the later orbit, (3,) each.
+    earlier_tails, later_tails: tails in space and in time, and size, of the earlier and of the later orbit,
+    (3,) each.
 
     Absolute errors grow as the squares of the tails. Near the Hopf point where the cycles end, the error of
     the size also grows as the reciprocal of the squared size, because the mesh displaces the Hopf point.
     `indicator_growth` includes this factor for the errors in time. A predicted decrease is ignored.
     """
     # Errors are of second order in the tails.
-    growth = np.maximum(squared_tail_growth(earlier, later), 1.0)
-    growth[0] *= max((earlier[2] / later[2]) ** 2, 1.0)
+    growth = np.maximum(squared_tail_growth(earlier_tails, later_tails), 1.0)
+    growth[0] *= max((earlier_tails[2] / later_tails[2]) ** 2, 1.0)
     return growth
 
 
-def squared_tail_growth(earlier: Array, later: Array) -> Array:
+def squared_tail_growth(earlier_tails: Array, later_tails: Array) -> Array:
     """Growth factors of the squared absolute tails in space and in time between two orbits, (2,). before,
-    later: relative tails and size, (3,) each."""
-    change: Array = ((later * later[2] / (earlier * earlier[2])) ** 2)[:2]
+    later_tails: relative tails and size, (3,) each."""
+    change: Array = ((later_tails * later_tails[2] / (earlier_tails * earlier_tails[2])) ** 2)[:2]
     return change
 
 
-def indicator_growth(earlier: Array, later: Array) -> tuple[float, float]:
+def indicator_growth(earlier_indicators: Array, later_indicators: Array) -> tuple[float, float]:
     """Returns (growth of errors in time, growth of errors of extrema), between two orbits of a chain.
 
-    earlier, later: `error_indicators` of both orbits, (3,) each. Errors in time grow with the lost energy or
-    with the amplitude error due to this loss, whichever grows more; errors of extrema between the time nodes
-    grow with the last harmonics of the path. The lost energy is the sum over all fields and intervals. The
-    tail in time is not used, because the largest tail may belong to a field on which the cycle hardly
-    depends.
+    earlier_indicators, later_indicators: `error_indicators` of both orbits, (3,) each. Errors in time grow
+    with the lost energy or with the amplitude error due to this loss, whichever grows more; errors of extrema
+    between the time nodes grow with the last harmonics of the path. The lost energy is the sum over all
+    fields and intervals. The tail in time is not used, because the largest tail may belong to a field on
+    which the cycle hardly depends.
     """
-    growth = later / earlier
+    growth = later_indicators / earlier_indicators
     return float(growth[:LAST_HARMONICS_INDEX].max()), float(growth[LAST_HARMONICS_INDEX])

@@ -59,7 +59,7 @@ class AmplitudeEquation:
         self.cubic_coefficient = nan
         """Coefficient c; NaN until a contribution c |z|^2 to the growth exceeds the noise."""
 
-    def growth_and_linear_growth(self, times: Array, states: Array) -> tuple[float, float]:
+    def measured_and_linear_growth(self, times: Array, states: Array) -> tuple[float, float]:
         """Returns (growth, linear). growth: increase of ln |z| over the last return, corrected from the
         integrated beam to the rod. linear: increase by the linear growth rate over the same time.
 
@@ -72,10 +72,11 @@ class AmplitudeEquation:
         return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:
-        """Whether a motion has the period of the leading mode, and its growth and linear growth per return
-        are at most `max_slow_growth` in modulus. times: (k,); states: (k, unknowns)."""
+        """Whether a motion has the period of the leading mode, and both its growth of ln |z| over the last
+        return and the growth predicted by the linear rate are at most `max_slow_growth` in modulus. times:
+        (k,); states: (k, unknowns)."""
         return max(
-            map(abs, self.growth_and_linear_growth(times, states))
+            map(abs, self.measured_and_linear_growth(times, states))
         ) <= AMPLITUDE_EQUATION_SETTINGS.max_slow_growth and self._has_period_of_mode(times)
 
     def decays_at_linear_rate(self, times: Array, states: Array) -> bool:
@@ -84,7 +85,7 @@ class AmplitudeEquation:
         shrink at every return, and the last growth equals the linear growth within `linear_tolerance`.
         Second: c |z|^2 is within this tolerance by the measured c, and the last growth is not larger than the
         linear growth, within tolerance and noise. times: (k,); states: (k, unknowns)."""
-        growth, linear = self.growth_and_linear_growth(times, states)
+        growth, linear = self.measured_and_linear_growth(times, states)
         sizes = np.linalg.norm(states, axis=1)
         tolerance = AMPLITUDE_EQUATION_SETTINGS.linear_tolerance * abs(linear)
         decreases = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times) < 0
@@ -103,7 +104,7 @@ class AmplitudeEquation:
         """Whether a motion decays at least 1 - max_slow_growth times as fast as the leading mode, so that no
         cycle is near. The decay of a slow mode with c > 0 may be smaller by `growth_error`. times: (k,);
         states: (k, unknowns)."""
-        growth, linear = self.growth_and_linear_growth(times, states)
+        growth, linear = self.measured_and_linear_growth(times, states)
         is_known = self.cubic_coefficient > 0 and self.is_slow_mode(times, states)
         return linear < 0 and growth < linear * (1 - AMPLITUDE_EQUATION_SETTINGS.max_slow_growth) + (
             self.growth_error if is_known else 0
@@ -116,7 +117,7 @@ class AmplitudeEquation:
         None if the motion is not slow, if the factor is close to 1, or if the growth is within the noise.
         times: (k,); states: (k, unknowns).
         """
-        growth, linear = self.growth_and_linear_growth(times, states)
+        growth, linear = self.measured_and_linear_growth(times, states)
         if not self.is_slow_mode(times, states):
             return None
         size = float(np.linalg.norm(states[-1]))

@@ -154,17 +154,17 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     return next((m, distance) for distance, m in distances if distance <= tolerance)
 
 
-def not_settled_text(waited: int, returns: int, last: float) -> str:
+def not_settled_text(waited: int, returns: int, return_distance: float) -> str:
     """Message that explains why a motion has not settled after the time of `waited` returns.
 
-    returns: number of returns with a known state. last: relative distance of the last return from an earlier
-    return; NaN for too few returns, inf for a decayed motion.
+    returns: number of returns with a known state. return_distance: relative distance of the last return from
+    an earlier return; NaN for too few returns, inf for a decayed motion.
     """
-    if isfinite(last):
+    if isfinite(return_distance):
         return (
             f"the motion does not repeat: after {waited} returns of the tip the state still differs by a "
-            f"relative {last:.1e} from that at an earlier return"
+            f"relative {return_distance:.1e} from that at an earlier return"
         )
-    if isnan(last):
+    if isnan(return_distance):
         return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"
     return "the deflection has decayed to rounding error, but the straight rod is not stable"

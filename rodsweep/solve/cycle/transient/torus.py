@@ -20,7 +20,7 @@ from ..accuracy.cycle_verdict import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
-from .transient import Transient
+from .transient_integration import TransientIntegration
 from .transient_outcome import TransientOutcome
 
 
@@ -66,7 +66,7 @@ class TorusFrequency:
     prediction_error: float
 
 
-def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> TransientOutcome:
+def classify_quasiperiodic(end: TransientOutcome, transient: TransientIntegration) -> TransientOutcome:
     """An outcome with the status `torus` if the motion of `transient` is on a torus; otherwise the outcome
     `end` of this motion, unchanged."""
     if end.status != CycleStatus.not_settled or end.cycle is not None:
@@ -106,7 +106,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: Transient) -> Trans
     return end
 
 
-def _unstable_cycles(transient: Transient) -> Iterator[RefinedCycle]:
+def _unstable_cycles(transient: TransientIntegration) -> Iterator[RefinedCycle]:
     """Candidates for the unstable cycle inside a torus: a cycle found during the motion, then the cycle on
     the branch from the Hopf point below the force."""
     if transient.unstable_cycle is not None:

@@ -1,4 +1,4 @@
-"""Outcome of integrating a motion until its cycle is found (`transient`)."""
+"""Outcome of integrating a motion until its cycle is found (`transient_integration`)."""
 
 from dataclasses import dataclass
 from math import nan

@@ -1,4 +1,5 @@
-"""Settings for integrating a motion until its cycle is found (`transient`, and in part `by_integration`)."""
+"""Settings for integrating a motion until its cycle is found (`transient_integration`, and in part
+`by_integration`)."""
 
 from dataclasses import dataclass
 

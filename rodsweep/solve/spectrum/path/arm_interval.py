@@ -181,12 +181,12 @@ def _follow_with_further_modes(
 
 
 def family_and_hulls(
-    path: ParameterPath, p: Array, first: Complex, modes: int
+    path: ParameterPath, p: Array, first_eigenvalues: Complex, modes: int
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
     equal, if the arms are not smooth in p, or if no elements resolve an arm.
 
-    first: eigenvalues at the first point, (m,), in descending order. modes: number of requested modes.
+    first_eigenvalues: eigenvalues at the first point, (m,), in descending order. modes: requested number.
     """
     low = float(p.min())
     high = float(p.max())
@@ -197,8 +197,8 @@ def family_and_hulls(
             return None
         hull_positions = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         hulls = hulls_along([path.rod_at(x) for x in hull_positions.tolist()], hull_positions)
-        W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first).max())
-        line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first[modes - 1].real), 0.0)
+        W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first_eigenvalues).max())
+        line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first_eigenvalues[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]

@@ -82,11 +82,15 @@ def carry_counts(path: ParameterPath, interval: ArmInterval, modes: int) -> None
 
 
 def _longest_chain(
-    path: ParameterPath, interval: ArmInterval, followed: SortedEigenvalues, ends: tuple[int, int], modes: int
+    path: ParameterPath,
+    interval: ArmInterval,
+    followed: SortedEigenvalues,
+    end_indices: tuple[int, int],
+    modes: int,
 ) -> CarriedCountChain:
-    """The longest chain of points found from the first to the last index in `ends`; without lines if no count
-    can be carried from the first point."""
-    index, last = ends
+    """The longest chain of points found from the first to the last index in `end_indices`; without lines if
+    no count can be carried from the first point."""
+    index, last = end_indices
     shortest = NO_CROSSING_SETTINGS.arm_count - 1
     chain = CarriedCountChain([index], [])
     confirmed = None
@@ -127,9 +131,11 @@ def _confirmed_line_at(
     return confirmed_line(path, interval, float(interval.p[i]), eigenvalues_and_errors, modes, line)
 
 
-def _is_line_free(path: ParameterPath, interval: ArmInterval, line: float, ends: tuple[int, int]) -> bool:
+def _is_line_free(
+    path: ParameterPath, interval: ArmInterval, line: float, end_indices: tuple[int, int]
+) -> bool:
     """Whether no unknown eigenvalue lies on a line, for any arm between two points of the interval."""
-    points = sampled_point_indices(*ends)
+    points = sampled_point_indices(*end_indices)
     known_w = interval.track.w[points], interval.track.error[points]
     p = interval.p[points]
     rods = [path.rod_at(value) for value in p.tolist()]

@@ -38,7 +38,7 @@ from .transient_outcome import TransientOutcome
 from .transient_settings import TRANSIENT_SETTINGS
 
 
-class Transient:
+class TransientIntegration:
     """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
     cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
     along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle, or None.

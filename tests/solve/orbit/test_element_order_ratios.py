@@ -13,11 +13,11 @@ from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
+from rodsweep.solve.orbit.element_order_ratios import ORDER_RATIO_SETTINGS, element_order_ratios
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.orbit.measures import CyclePath
 from rodsweep.solve.orbit.newton import newton
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
-from rodsweep.solve.orbit.order_ratios import ORDER_RATIO_SETTINGS, order_ratios
 from rodsweep.solve.orbit.tails import coefficients_of_elements
 
 ACCURACY = 1e-7
@@ -57,7 +57,7 @@ def test_coefficients_beyond_the_order_of_an_element_are_small():
     grid = orbit.form.mesh
     fine = orbit.on_mesh(mesh_with_edges(grid.edges, grid.order), orbit.interval_count, orbit.stage_count)
     aim = 1e-4
-    ratios = order_ratios(fine, grid.order, aim)
+    ratios = element_order_ratios(fine, grid.order, aim)
     assert ORDER_RATIO_SETTINGS.min_ratio <= min(ratios) <= 0.5
     assert max(ratios) == 1
     each = coefficients_of_elements(fine)

@@ -203,15 +203,17 @@ def follow_curve(
     return Curve(solutions, StopReason.max_solutions)
 
 
-def first_crossed_margin(before: Array, after: Array) -> int:
+def first_crossed_margin(margins_before: Array, margins_after: Array) -> int:
     """Index of the margin that becomes 0 first along a step, among the margins that decrease to a negative
     value; -1 if there is no such margin. A margin that is negative before the step counts if it decreases
-    further. before, after: margins at the two ends of the step, (margins,), between which each margin is
-    interpolated linearly."""
+    further. margins_before, margins_after: margins at the two ends of the step, (margins,), between which
+    each margin is interpolated linearly."""
     # A negative margin that grows does not end the curve, which enters from beyond this limit.
-    decreases = (after < 0) & (after < before)
+    decreases = (margins_after < 0) & (margins_after < margins_before)
     # Linear interpolation gives the fraction of the step at which each falling margin is 0.
-    fraction = np.where(decreases, before / np.where(decreases, before - after, 1.0), inf)
+    fraction = np.where(
+        decreases, margins_before / np.where(decreases, margins_before - margins_after, 1.0), inf
+    )
     first = int(np.argmin(fraction))
     return first if fraction[first] < inf else -1
 

@@ -33,7 +33,7 @@ class OrderRatioSettings:
 ORDER_RATIO_SETTINGS = OrderRatioSettings()
 
 
-def order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
+def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[float, ...]:
     """Ratio of the order that each element needs to the largest order, at least `min_ratio`; () if all are 1.
 
     order: largest order, with which the Legendre coefficients in space are expected to fall to `max_tail`
