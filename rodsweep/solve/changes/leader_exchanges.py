@@ -123,7 +123,7 @@ class LeaderExchangeSearch:
             try:
                 exchanges += self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.end_within((a, b), str(reason))
+                intervals.limit_search_below((a, b), str(reason))
         return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
