@@ -16,8 +16,8 @@ from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.number_texts import rounded_text
 from ..summary.thresholds import ENDED_EARLY
 from .arm_sentences import arm_sentences, cycle_caveat
+from .portrait_units import PortraitUnits
 from .results import RodResults
-from .units import PortraitUnits
 
 SAME_FORCE_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
