@@ -77,8 +77,8 @@ def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
     failed points.
     """
     first = indices[0] + 1
-    last = indices[-1] + 1
-    points = f"point {first}" if first == last else f"points {first} to {last}"
+    last_number = indices[-1] + 1
+    points = f"point {first}" if first == last_number else f"points {first} to {last_number}"
     trace = "".join(traceback.format_exception(error))
     warnings.warn(f"{points}: {describe_exception(error)}\n{trace}", RuntimeWarning, stacklevel=2)
 

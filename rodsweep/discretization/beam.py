@@ -110,8 +110,8 @@ class Beam(RodOnMesh):
         return velocities
 
     def _shape_and_velocities(self, z: Array, direction: Array) -> Complex:
-        """(x, y, theta) at z at all nodes, (3, ..., nodes + 1), plus i times the imaginary step times its
-        time derivative for dz/dt = direction."""
+        """Complex-step evaluation of (x, y, theta) at all nodes, (3, ..., nodes + 1): the shape at z in the
+        real part, the imaginary step times the velocity for dz/dt = direction in the imaginary part."""
         change = self.element_strain_rates(z, TIP_VELOCITY_SETTINGS.imaginary_step * direction)
         strains = self.element_strains(z) + 1j * change
         return shape_from_strains(self.mesh, strains, np.zeros(3)).astype(complex, copy=False)

@@ -80,22 +80,22 @@ class AnswersFromFile:
         cycles, fewer than two loads for the rod of `state`, or results of the other tab."""
         if state.tab != self.state.tab or not self.has_cycles:
             return load
-        stored = np.unique(
+        stored_loads = np.unique(
             self._control_values(state.tab, state.load)[self._matching_points(state, (state.load,))]
         )
-        if len(stored) < 2:
+        if len(stored_loads) < 2:
             return load
-        nearest = float(stored[np.argmin(np.abs(stored - load))])
-        spacing = float(np.min(np.diff(stored)))
-        return nearest if abs(nearest - load) < CLICK_TOLERANCE * spacing else load
+        nearest_load = float(stored_loads[np.argmin(np.abs(stored_loads - load))])
+        spacing = float(np.min(np.diff(stored_loads)))
+        return nearest_load if abs(nearest_load - load) < CLICK_TOLERANCE * spacing else load
 
     def _control_values(self, tab: str, name: str) -> Array:
         """Values of the parameter or quantity `name` at all points of the file, (points,), in the unit of the
         control on the tab `tab`. If the file lacks `name`: the default of the parameter, or nan."""
         default = PARAMETERS[name].default if name in PARAMETERS else None
-        missing = nan if default is None else default
-        stored = self.data[name] if name in self.data.variables else missing
-        at_points = (self.data["status"] * 0.0 + stored).transpose(*self.dims)
+        default_value = nan if default is None else default
+        stored_values = self.data[name] if name in self.data.variables else default_value
+        at_points = (self.data["status"] * 0.0 + stored_values).transpose(*self.dims)
         values: Array = at_points.values.ravel() * SCALES[tab][name].factor
         return values
 

@@ -222,8 +222,8 @@ def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]
     x = x.copy()
     for start, end in pairwise(np.flatnonzero(is_special)):
         interior = slice(start + 1, end)
-        new = np.clip(x[interior], *sorted((x[start], x[end])))
-        x[interior] = np.where(np.abs(new - x[interior]) <= 2 * error[interior], new, x[interior])
+        inner_x = np.clip(x[interior], *sorted((x[start], x[end])))
+        x[interior] = np.where(np.abs(inner_x - x[interior]) <= 2 * error[interior], inner_x, x[interior])
     return x
 
 

@@ -134,9 +134,9 @@ class StoredThresholds:
         """
         if not len(line.x):
             return []
-        stored = self._stored_between(line, line.x.min())
-        thresholds: list[LocatedThreshold | UnlocatedThreshold] = [*stored]
-        changes = [point for point in stored if point.changes_stability]
+        stored_thresholds = self._stored_between(line, line.x.min())
+        thresholds: list[LocatedThreshold | UnlocatedThreshold] = [*stored_thresholds]
+        changes = [point for point in stored_thresholds if point.changes_stability]
         finite_indices = np.flatnonzero(np.isfinite(self.growth_rates[line.indices]))
         sorted_indices = finite_indices[np.argsort(line.x[finite_indices], kind="stable")]
         x = line.x[sorted_indices]

@@ -39,8 +39,8 @@ def pulled_rows_seconds(rods: Sequence[Rod], values: Array, count: int) -> tuple
         return 0.0, ""
     starts = [_first_searchable_pull(rod, pulls) for rod in rods]
     each = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
-    beyond = any(_least_coupling(rod, start) < 0 for rod, start in zip(rods, starts, strict=True))
-    return count * float(np.mean(each)), DOUBTFUL_PULLS if beyond else ""
+    is_beyond_pulls = any(_least_coupling(rod, start) < 0 for rod, start in zip(rods, starts, strict=True))
+    return count * float(np.mean(each)), DOUBTFUL_PULLS if is_beyond_pulls else ""
 
 
 def _first_searchable_pull(rod: Rod, pulls: Array) -> float:

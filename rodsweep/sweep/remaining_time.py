@@ -76,8 +76,8 @@ class RemainingTimeEstimator:
         past = (record for record in reversed(self.records) if record[0] <= PACE_WINDOW_START * finished)
         points, start = next(past, self.records[0])
         latest_time = self.records[-1][1]
-        new = finished - points
-        return max((latest_time - start) / new, (now - start) / (new + (partial or 1.0)))
+        new_points = finished - points
+        return max((latest_time - start) / new_points, (now - start) / (new_points + (partial or 1.0)))
 
 
 def duration_text(seconds: float) -> str:

@@ -58,9 +58,11 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
             f"{view.path} has no shapes of cycles, and the cycles cannot be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"
         ) from None
-    stored, error = (float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error"))
-    allowed = MAX_PERIOD_DIFFERENCE * stored * (error + float(record["period_error"]))
-    if not abs(float(record["period"]) - stored) <= allowed:
+    stored_period, error = (
+        float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error")
+    )
+    allowed = MAX_PERIOD_DIFFERENCE * stored_period * (error + float(record["period_error"]))
+    if not abs(float(record["period"]) - stored_period) <= allowed:
         raise InputError(
             f"{view.path} has no shapes of cycles, and point {number}, solved without its neighbour, ends "
             "in a state that differs from the stored state; run with limit_cycle.shapes > 0 to store shapes"
@@ -75,15 +77,19 @@ def _job_of_point(view: ResultView, number: int) -> Job:
     amplitude and most_periods; a start from a neighbour becomes a start from the leading mode. number: number
     of the point, from 1.
     """
-    stored = view.config["limit_cycle"]
+    stored_options = view.config["limit_cycle"]
     options = {
         "shapes": SHAPE_COUNT,
         "samples": SAMPLE_COUNT,
-        "harmonics": stored["harmonics"],
+        "harmonics": stored_options["harmonics"],
         "start": "hopf",
     }
-    if stored["start"] != "hopf":
-        options |= {"start": "mode", "amplitude": stored["amplitude"], "most_periods": stored["most_periods"]}
+    if stored_options["start"] != "hopf":
+        options |= {
+            "start": "mode",
+            "amplitude": stored_options["amplitude"],
+            "most_periods": stored_options["most_periods"],
+        }
     document = {
         "task": "limit_cycle",
         "parameters": _parameters_of_point(view.as_list, number),

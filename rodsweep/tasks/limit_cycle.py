@@ -131,20 +131,20 @@ class LimitCycleTask(Task):
         """Rows of the table of modelled and neglected effects, and of stored variables."""
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.rod_values["gamma1"])[:5]
-        marched = options.method == "integration"
+        is_integrated = options.method == "integration"
         return [
             *rod_check_rows(self.points.rod_values),
             *material_check_rows(self.config, self.points.rod_values),
             ("axial drag", True, f"gamma1 = {', '.join(f'{value:g}' for value in gamma1)}"),
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
-            ("Floquet multipliers", not marched, f"limit_cycle.method: {options.method}"),
+            ("Floquet multipliers", not is_integrated, f"limit_cycle.method: {options.method}"),
             self._stored_values_row(
                 "tip and energy over a cycle", "samples", TIP_VARIABLES + ENERGY_VARIABLES
             ),
             self._stored_values_row("shapes over a cycle", "shapes", SHAPE_VARIABLES),
             ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
-            if marched
+            if is_integrated
             else self._stored_values_row("tip from the start to the cycle", "transient", TRANSIENT_VARIABLES),
             ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
@@ -218,10 +218,12 @@ class LimitCycleTask(Task):
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
         multipliers = cycle.multipliers
-        unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
-        stored = SimpleNamespace(multipliers=unknown if multipliers is None else multipliers)
+        unknown_multipliers = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
+        stored_multipliers = SimpleNamespace(
+            multipliers=unknown_multipliers if multipliers is None else multipliers
+        )
         values = outcome_values(
-            CYCLE_VARIABLES, stored, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
+            CYCLE_VARIABLES, stored_multipliers, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
         )
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]

@@ -69,8 +69,10 @@ class PortraitRequest:
         the task.
         """
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
-        given = self.rod.parameters
-        values: dict[str, Any] = {name: given[name] for name in names if name in given and name != "F"}
+        given_parameters = self.rod.parameters
+        values: dict[str, Any] = {
+            name: given_parameters[name] for name in names if name in given_parameters and name != "F"
+        }
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
         document: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}

@@ -87,19 +87,21 @@ def crossing_values(
 
     max_crossings: length of the list of crossings. position_name: name of the variable with the parameter
     value at a crossing."""
-    found = result.search_result
+    search_result = result.search_result
     variables = crossing_variables(line, position_name)
     rows = [
         outcome_values(variables, threshold, prefix="crossing_", names={position_name: "value"})
-        for threshold in found.thresholds
+        for threshold in search_result.thresholds
     ]
     return value_lists(variables, rows, max_crossings) | {
-        "crossing_count": -1 if result.status == type(result.status).failed else len(found.thresholds),
-        "open_from": found.open_range[0],
-        "open_to": found.open_range[1],
-        "certified": found.proved,
-        "boxes": found.evaluation_count,
-        "solves": found.solve_count,
+        "crossing_count": -1
+        if result.status == type(result.status).failed
+        else len(search_result.thresholds),
+        "open_from": search_result.open_range[0],
+        "open_to": search_result.open_range[1],
+        "certified": search_result.proved,
+        "boxes": search_result.evaluation_count,
+        "solves": search_result.solve_count,
         "seconds": result.seconds,
         "status": int(result.status),
     }

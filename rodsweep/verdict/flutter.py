@@ -163,8 +163,12 @@ class ThresholdsOverDrags:
 
 def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
     """Smallest and largest number in `values`, which may contain None; None if there is no number."""
-    known = [value for value in values if value is not None]
-    return RangeOverDrags(min(known), max(known), len(known) == len(values)) if known else None
+    known_values = [value for value in values if value is not None]
+    return (
+        RangeOverDrags(min(known_values), max(known_values), len(known_values) == len(values))
+        if known_values
+        else None
+    )
 
 
 def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> ThresholdsWithDrag:

@@ -4,7 +4,7 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import split_quantity, unit_of, value_in_unit, with_si_prefix
 from .flutter import RangeOverDrags
-from .rounding import range_text, three_digits_rounded_down
+from .rounded_numbers import range_text, three_digits_rounded_down
 
 TYPICAL_FLUTTER_FORCE = 36.0
 """Typical flutter force, in k3/L^2. If the user gave no load, the SI prefix of the load (Pa, kPa) is chosen

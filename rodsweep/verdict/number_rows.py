@@ -9,7 +9,7 @@ from ..model.arm.shape import Station
 from ..model.material.laws import LINEAR
 from ..model.units import with_si_prefix
 from .planes import PlaneOfMotion
-from .rounding import range_text
+from .rounded_numbers import range_text
 
 LAW_FORMULA = "stress E (h - 1/h^2)/3 at the stretch h, incompressible"
 """Formula of the stress in neo-Hookean rubber, for the table."""

@@ -11,7 +11,7 @@ from .flutter import RangeOverDrags, ThresholdsOverDrags
 from .load import LoadFormatter
 from .planes import PlaneOfMotion, Planes
 from .remedies import effect_kinds_text, not_applicable_sentences
-from .rounding import percent_range_text, range_text
+from .rounded_numbers import percent_range_text, range_text
 
 
 def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:

@@ -51,26 +51,31 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
     following_contenders = every_nth_setting(
         [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)], stride
     )
-    measured = measure_following(reference, following_contenders, rounds)
-    blocks = [introduction(rounds), *peers.notes, work_table(measured), time_at_error_table(measured)]
+    measurements = measure_following(reference, following_contenders, rounds)
+    blocks = [introduction(rounds), *peers.notes, work_table(measurements), time_at_error_table(measurements)]
     blocks.append(
         compare_settling(
             reference, [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)], rounds
         )
     )
-    of_rods = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
-    blocks += [sweep_introduction(), sweep_table(of_rods)]
+    sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
+    blocks += [sweep_introduction(), sweep_table(sweep_measurements)]
     for section in peers.sections:
         text, more_text = section(rounds)
         blocks += text
-        of_rods += more_text
+        sweep_measurements += more_text
     of_panels = [
         replace(m, case=case, error=m.extra.get(error, m.error))
         for case, error in ERROR_NAMES_BY_PANEL.items()
-        for m in measured
+        for m in measurements
     ]
     return BenchmarkReport(
-        "limit_cycle", "\n\n".join([*blocks, *peers.skipped]), of_panels, "period", TARGET_ERROR, of_rods
+        "limit_cycle",
+        "\n\n".join([*blocks, *peers.skipped]),
+        of_panels,
+        "period",
+        TARGET_ERROR,
+        sweep_measurements,
     )
 
 
@@ -110,12 +115,19 @@ def time_at_error_table(measurements: Sequence[Measurement]) -> str:
     for (method,), runs in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in runs]
         median = [m.seconds for m in runs]
-        least = [m.least_seconds for m in runs]
-        times[method] = tuple(time_at_error(TARGET_ERROR, errors, seconds) for seconds in (median, least))
+        least_seconds = [m.least_seconds for m in runs]
+        times[method] = tuple(
+            time_at_error(TARGET_ERROR, errors, seconds) for seconds in (median, least_seconds)
+        )
     default, default_least = times[DEFAULT_INTEGRATOR.name]
     rows = [
-        {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / default_least}
-        for method, (median, least) in times.items()
+        {
+            "method": method,
+            "ms": 1e3 * median,
+            "ratio": median / default,
+            "by_least": least_seconds / default_least,
+        }
+        for method, (median, least_seconds) in times.items()
     ]
     return (
         f"Time at which the larger of the two errors is {TARGET_ERROR:.0e}, interpolated. The last column "

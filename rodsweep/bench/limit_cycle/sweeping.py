@@ -123,8 +123,8 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     ArithmeticError if a point has no stable cycle. accuracy: relative."""
     start = rod.neighbours[axis]
     for k in range(TIMED_POINT_COUNT - 1, -1, -1):
-        earlier = earlier_rod(rod.rod, axis, k)
-        cycle = require_cycle(solve_cycle(earlier, cycle_request(accuracy), start, axis, rod.workspace))
+        neighbour_rod = earlier_rod(rod.rod, axis, k)
+        cycle = require_cycle(solve_cycle(neighbour_rod, cycle_request(accuracy), start, axis, rod.workspace))
         start = cycle.neighbour
     return cycle
 

@@ -50,13 +50,13 @@ def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
     Raises ArithmeticError if the list of eigenvalues is not certified, or if no root of D is found near an
     eigenvalue.
     """
-    solved = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
-    if solved.status != SpectrumStatus.ok or not solved.certified:
-        raise ArithmeticError(f"{rod}: {solved.status.name} {solved.message}")
+    spectrum = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
+    if spectrum.status != SpectrumStatus.ok or not spectrum.certified:
+        raise ArithmeticError(f"{rod}: {spectrum.status.name} {spectrum.message}")
     roots = []
     with mp.workdps(DIGIT_COUNT + GUARD_DIGIT_COUNT):
         D = multiprecision_determinant(rod)
-        for w, error in zip(solved.eigenvalues, solved.error_estimate, strict=True):
+        for w, error in zip(spectrum.eigenvalues, spectrum.error_estimate, strict=True):
             start = mp.mpc(complex(w))
             root = mp.findroot(D, (start, start * (1 + SECANT_STEP)), tol=SECANT_STEP**5, verify=False)
             # Near a simple root |D| is proportional to the distance: `small` is |D| at the relative distance

@@ -143,7 +143,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
 
     command: first arguments of the measured command. fresh: whether to replace an existing result file.
     """
-    others = _other_process_seconds()
+    seconds_of_others = _other_process_seconds()
     start = time.monotonic()
     full_command = [*launcher_words(ranks), *command]
     processes = [
@@ -151,7 +151,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     ]
     stated_seconds = [_printed_seconds(process, case.solver_kind) for process in processes]
     seconds = time.monotonic() - start
-    other_load = np.maximum(0.0, (_other_process_seconds() - others) / seconds)
+    other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
     solve_times = [
         _solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files

@@ -202,13 +202,16 @@ def growth_table(measurements: Sequence[Measurement]) -> str:
     for (case, method), sizes in grouped_by_fields(measurements, "case", "method").items():
         if case == KILLED:
             continue
-        for small, large in pairwise(sizes):
-            few = small.extra["points"]
-            many = large.extra["points"]
-            start = sweep_totals(small)
-            row: dict[str, object] = {"case": case, "method": method, "less": few, "more": many}
-            row |= {name: (end - start[name]) / (many - few) for name, end in sweep_totals(large).items()}
-            rows.append(row | {"power": growth_power(sizes[0], small, large)})
+        for small_sweep, large_sweep in pairwise(sizes):
+            few_points = small_sweep.extra["points"]
+            many_points = large_sweep.extra["points"]
+            start = sweep_totals(small_sweep)
+            row: dict[str, object] = {"case": case, "method": method, "less": few_points, "more": many_points}
+            row |= {
+                name: (end - start[name]) / (many_points - few_points)
+                for name, end in sweep_totals(large_sweep).items()
+            }
+            rows.append(row | {"power": growth_power(sizes[0], small_sweep, large_sweep)})
     return (
         'Cost of an additional point, summed over ranks. "Power" is the exponent with which the time, minus '
         "the time of the smallest sweep, grows with the number of points:\n\n"

@@ -218,17 +218,17 @@ class _RankRun:
         exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
         sweep_wide = self.sweep_wide
-        missing = self.store.missing()
+        missing_points = self.store.missing()
         self._print_store_notes()
         counts = self.store.status_counts()
         self.store.close()
-        unsolved = self.shard_solver.items_to_solve(missing)[1]
-        text = f"shard {self.shard} of {self.output}" if missing else f"{self.output}"
+        unsolved_count = self.shard_solver.items_to_solve(missing_points)[1]
+        text = f"shard {self.shard} of {self.output}" if missing_points else f"{self.output}"
         run_end = RunStatistics(
             ranks=self.ranks.size,
             requested_points=count,
-            unsolved_points=unsolved,
-            stored_points=self.job.points.count - index_count(missing),
+            unsolved_points=unsolved_count,
+            stored_points=self.job.points.count - index_count(missing_points),
             seconds=self.seconds,
             curve_seconds=time.monotonic() - self.clock_at_start - self.seconds,
             interrupted_points=sum(contribution.statistics.was_interrupted for contribution in contributions),
@@ -239,9 +239,9 @@ class _RankRun:
             self._print_message(sentence)
         expected = {status.name for status in self.solver.statuses if status.succeeded} | {"missing"}
         is_problem = not set(counts) <= expected
-        self._print_message(f"{self.output}: {self._status_counts_text(counts, unsolved)}", is_problem)
+        self._print_message(f"{self.output}: {self._status_counts_text(counts, unsolved_count)}", is_problem)
         self._print_failures(contributions, exceptions)
-        if unsolved or lacks_sweep_wide_variables:
+        if unsolved_count or lacks_sweep_wide_variables:
             end_text = f"stopped by {self.stop.name}" if self.stop else "not complete"
             click.echo(f"{end_text}; {run_end.stored_points_clause()}, the same command continues the run")
             return STOPPED_STATUS

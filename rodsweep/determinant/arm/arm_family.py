@@ -124,9 +124,9 @@ def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
     i]|.
     """
     other_dimensions = tuple(range(2, values.ndim))
-    last = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
+    last_coefficients = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
     size = np.abs(values).max(axis=(0, *other_dimensions))
-    return bool((np.abs(last).max(axis=(0, *other_dimensions)) <= tolerance * size).all())
+    return bool((np.abs(last_coefficients).max(axis=(0, *other_dimensions)) <= tolerance * size).all())
 
 
 @cache

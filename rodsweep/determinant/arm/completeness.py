@@ -118,8 +118,8 @@ def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> f
     """
     largest_w = float(np.abs(known_w).max())
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
-        if (last := _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))) <= ratio * largest_w:
-            return last
+        if (last_w := _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))) <= ratio * largest_w:
+            return last_w
     return math.inf
 
 
@@ -133,11 +133,11 @@ def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, modes: i
     sizes = np.maximum.accumulate(np.abs(known_w)).tolist()
     ends_whole = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
-        last = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
+        last_w = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
         for count in range(modes, len(sizes) + 1):
             largest_w = sizes[count - 1]
-            if last <= ratio * largest_w and max(last, largest_w) < cheapest[1] and ends_whole[count - 1]:
-                cheapest = count, max(last, largest_w)
+            if last_w <= ratio * largest_w and max(last_w, largest_w) < cheapest[1] and ends_whole[count - 1]:
+                cheapest = count, max(last_w, largest_w)
     return cheapest
 
 

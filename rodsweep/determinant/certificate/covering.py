@@ -49,10 +49,10 @@ class BoxProofSettings(KernelConstants):
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
     same_zero_distance: float = 1.5
-    """A known zero within this distance of the centre of a regular box, in half-widths of the box, is the
+    """Distance from the centre of a regular box, in half-widths of the box, up to which a known zero is the
     only zero in the doubled box."""
     outside_distance: float = 0.01
-    """A zero outside a regular box, farther from its edge than this number of half-widths, is left to the
+    """Distance beyond the edge of a regular box, in half-widths of the box, from which a zero is left to the
     neighbouring box that contains it."""
     ranges: ClassVar = {
         "first_radius_ratio": (0.0, 1.0),

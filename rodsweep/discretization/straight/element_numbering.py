@@ -38,11 +38,11 @@ def element_numbering(elements: int, order: int, components: tuple[int, ...]) ->
     """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
     stresses and velocities that are unknowns.
     """
-    last = elements * order
+    last_node = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
-    unknown = PLANE_COMPONENT_COUNT * (2 * last + 1)
-    stresses = [np.where(nodes == last, unknown, c * last + nodes) for c in components]
-    velocities = [PLANE_COMPONENT_COUNT * last + c * (last + 1) + nodes for c in components]
+    unknown_count = PLANE_COMPONENT_COUNT * (2 * last_node + 1)
+    stresses = [np.where(nodes == last_node, unknown_count, c * last_node + nodes) for c in components]
+    velocities = [PLANE_COMPONENT_COUNT * last_node + c * (last_node + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
     interior_nodes = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
@@ -51,5 +51,5 @@ def element_numbering(elements: int, order: int, components: tuple[int, ...]) ->
     interface_indices = np.arange(elements)[:, None] * width + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)
     exists = np.ones(interface_indices[-1, -1] + 1, bool)
-    exists[interface_indices[-1]] = unknowns[-1, ends] < unknown
+    exists[interface_indices[-1]] = unknowns[-1, ends] < unknown_count
     return ElementNumbering(unknowns, interior_nodes, ends, interface_indices, exists)

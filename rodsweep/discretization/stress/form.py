@@ -119,9 +119,9 @@ class StressForm(RodOnMesh):
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def energy_norm(self, x: Array) -> Array:
-        """Amplitude sqrt(x M x), (...), of states x, (..., unknowns), with the mass matrix M; 0 for the
-        straight rod.
+        """Energy norm sqrt(x M x), (...), of states x, (..., unknowns); 0 for the straight rod. The mass
+        matrix M of the stress form holds the compliances, so that x M x is twice the elastic energy of a
+        linear rod.
         """
-        # x M x is twice the elastic energy of a linear rod; Omega has mass 0.
         amplitude: Array = np.sqrt(x**2 @ self.mass_diagonal)
         return amplitude

@@ -201,9 +201,9 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     """
     flutter = data["pressure_hopf"].values
     known_loads = flutter[np.isfinite(flutter)]
-    largest = 2 * max(pressure or 0.0, known_loads.min() if len(known_loads) else 0.0)
+    largest_load = 2 * max(pressure or 0.0, known_loads.min() if len(known_loads) else 0.0)
     return diagram_from_row_result(
-        data, values, "crossing_pressure", largest or float(data["pressure_end"].max())
+        data, values, "crossing_pressure", largest_load or float(data["pressure_end"].max())
     )
 
 
@@ -215,13 +215,13 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
     largest load of the diagram.
     """
     loads = data[name].values
-    after = data["unstable_after"].values
+    counts_after = data["unstable_after"].values
     kind = flag_words(data["crossing_kind"])
     x = np.linspace(0, largest, LOAD_COUNT)
     counts = np.zeros((len(values), LOAD_COUNT), dtype=int)
     ends = data[name.replace("crossing_", "") + "_end"].values
     for row in range(len(values)):
-        for load, count in zip(loads[row], after[row], strict=True):
+        for load, count in zip(loads[row], counts_after[row], strict=True):
             if np.isfinite(load):
                 counts[row, x > load] = count
         counts[row, ~(x <= ends[row])] = UNKNOWN_COUNT

@@ -96,8 +96,8 @@ def _values_text(values: np.ndarray, requested: float) -> str:
     if len(values) <= MAX_LISTED_VALUES:
         return ", ".join(f"{value:.15g}" for value in values)
     next_index = int(np.clip(np.searchsorted(values, requested), 1, len(values) - 1))
-    nearest = " and ".join(f"{value:.15g}" for value in values[next_index - 1 : next_index + 1])
-    return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest}"
+    nearest_text = " and ".join(f"{value:.15g}" for value in values[next_index - 1 : next_index + 1])
+    return f"{values[0]:.15g} to {values[-1]:.15g}; the nearest values are {nearest_text}"
 
 
 def _grid_at(view: ResultView, name: str, is_chosen: np.ndarray) -> ResultView:

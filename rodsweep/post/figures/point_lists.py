@@ -72,8 +72,12 @@ def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
     varies.
     """
-    own = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
-    return [_name_and_value_texts(name, values) for name, values in own.items() if len(np.unique(values)) > 1]
+    own_quantities = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
+    return [
+        _name_and_value_texts(name, values)
+        for name, values in own_quantities.items()
+        if len(np.unique(values)) > 1
+    ]
 
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:

@@ -11,7 +11,7 @@ from ...errors import InputError
 from ...model.units import quantity_in_si
 from ...results.file.view import ResultView
 from ..output_files import save_figure
-from .arm.axes import add_arm_scales
+from .arm.second_scales import add_arm_scales
 from .arm.validity_hatches import hatch_invalid_points
 from .layout.dark_background import adapt_to_dark_background
 from .layout.fitting import MIN_ASPECT, fit_layout

@@ -82,11 +82,11 @@ def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
     therefore give the curve a square-root shape.
     """
-    before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
-    after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
-    first = len(before) if cycles[0, 1] == 0 else 0
-    last = len(after) if cycles[-1, 1] == 0 else 0
-    extended = np.concatenate([before[:first], cycles, after[:last]])
+    cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
+    cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
+    first = len(cycles_before) if cycles[0, 1] == 0 else 0
+    last_count = len(cycles_after) if cycles[-1, 1] == 0 else 0
+    extended = np.concatenate([cycles_before[:first], cycles, cycles_after[:last_count]])
     variables = [
         _cumulative_chord_lengths(extended, extent, weights, power) for weights, power in CHORD_VARIABLES
     ]

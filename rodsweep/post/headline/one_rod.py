@@ -76,7 +76,7 @@ class ColumnTexts:
         """Rounding errors, (rows,), of the printed values to which the error variable `error` belongs;
         relative if `error` is relative. If `error` belongs to several variables, the largest rounding error.
         """
-        largest = np.zeros_like(self._values[error])
+        largest_rounding = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
             for name in (
                 name for name, table_errors in table.items() if table_errors == error and name in self.columns
@@ -85,8 +85,8 @@ class ColumnTexts:
                 printed_values = np.array([float(text) if text else np.nan for text in self.texts(name)])
                 with np.errstate(divide="ignore", invalid="ignore"):
                     rounding = np.abs(printed_values - values) / (np.abs(values) if relative else 1.0)
-                largest = np.fmax(largest, np.where(np.isfinite(rounding), rounding, 0.0))
-        return largest
+                largest_rounding = np.fmax(largest_rounding, np.where(np.isfinite(rounding), rounding, 0.0))
+        return largest_rounding
 
     def texts(self, name: str) -> list[str]:
         """Values of the variable `name` as text, one per row."""

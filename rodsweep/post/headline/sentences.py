@@ -109,8 +109,8 @@ def branch_sentence(rod: OneRod) -> str:
     y = rod.preferred_name(cycles, "tip_y_max")
     if not len(cycles.columns[y].values):
         return f"{text}, no cycle is stored"
-    largest = cycles.short_text(y, int(np.nanargmax(cycles.columns[y].values)))
-    return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest}"
+    largest_y_text = cycles.short_text(y, int(np.nanargmax(cycles.columns[y].values)))
+    return f"{text}: {counted(rod.count('point_count') or 0, 'cycle')}, largest tip y {largest_y_text}"
 
 
 def cycle_sentence(rod: OneRod) -> str:

@@ -77,7 +77,7 @@ def _table_for_page(table: Table) -> PageTable:
 
 
 def _is_constant(column: Column) -> bool:
-    """Whether all rows of a column have the same value; False for the column "status"."""
+    """Whether all rows of a column have the same value; False for "status" and for absent values."""
     if column.name == "status" or column.absent.any():
         return False
     return len(np.unique(column.values)) == 1

@@ -16,8 +16,8 @@ from ..summary.criticality import CRITICALITY_WORDS
 from ..summary.number_texts import rounded_text
 from ..summary.thresholds import ENDED_EARLY
 from .arm_sentences import arm_sentences, cycle_caveat
+from .portrait_units import PortraitUnits
 from .results import RodResults
-from .units import PortraitUnits
 
 SAME_FORCE_TOLERANCE = 1e-6
 """Hopf points of two tasks are the same Hopf point if their forces differ by at most this relative amount."""
@@ -158,27 +158,27 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
 def _beginnings_phrase(curves: Sequence[StoredBranch]) -> str:
     """Phrase for the places where branches begin, such as "begin at its Hopf points"."""
     kinds = [curve.special[0].kind for curve in curves]
-    one = len(curves) == 1
+    is_single_curve = len(curves) == 1
     places = []
     if "hopf" in kinds:
-        places.append("at a Hopf point" if one else "at its Hopf points")
+        places.append("at a Hopf point" if is_single_curve else "at its Hopf points")
     if breakings := kinds.count("symmetry_breaking"):
         places.append(f"at {counted(breakings, 'symmetry breaking')}")
     if any(curve.enters_range for curve in curves):
         places.append("beyond the range")
-    begin = "begins" if one else "begin"
+    begin = "begins" if is_single_curve else "begin"
     return f"{begin} {' and '.join(places)}".replace(" and at ", " and ")
 
 
 def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -> Iterator[str]:
     """Yields a sentence on the branches that are not drawn to their ends, because the portrait's limit of the
     work, or of the number of cycles, is reached."""
-    limited = [curve for curve in curves if curve.special[-1].reason == "list_full"]
-    if not limited:
+    limited_curves = [curve for curve in curves if curve.special[-1].reason == "list_full"]
+    if not limited_curves:
         return
-    ends = [units.load_text(curve.special[-1].at) for curve in limited if curve.cycles.any()]
+    ends = [units.load_text(curve.special[-1].at) for curve in limited_curves if curve.cycles.any()]
     clauses = [f"{len(ends)} of them {is_or_are(len(ends))} drawn only to {', '.join(ends)}"] if ends else []
-    if missing_count := len(limited) - len(ends):
+    if missing_count := len(limited_curves) - len(ends):
         clauses.append(f"{missing_count} {is_or_are(missing_count)} not drawn")
     yield (
         f"{' and '.join(clauses)}, because the work or the number of cycles of a portrait is used up; "

@@ -20,8 +20,8 @@ from ..figures.cycle.portrait import ARROW_LENGTH, UNUSED_COLOUR_FRACTION, draw_
 from ..figures.stability.class_bars import draw_class_bar, mark_thresholds_on_bars
 from ..figures.stability.class_colours import class_legend_entries
 from .paragraph import paragraph
+from .portrait_units import rescale_panel
 from .results import RodResults
-from .units import rescale_panel
 
 PORTRAIT_SIZE = (10.0, 10.4)
 """Width and height of the figure, in inches."""

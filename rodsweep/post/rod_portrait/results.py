@@ -6,7 +6,7 @@ from typing import Any
 
 from ...results.file.view import ResultView
 from ..branch_curves import RodBranches
-from .units import PortraitUnits, portrait_units
+from .portrait_units import PortraitUnits, portrait_units
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -112,14 +112,14 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     side_of_hopf = "larger F" if v["amplitude_coefficient"][i] > 0 else "smaller F"
     count = int(v["unstable_after"][i])
     is_hopf = CROSSING_KINDS[int(v["crossing_kind"][i])] == "hopf"
-    others = count - 2 if is_hopf else count
+    other_count = count - 2 if is_hopf else count
     if sign > 0:
         return f"unstable cycles at {side_of_hopf}"
     if count < 0:
         return f"cycles at {side_of_hopf}"
     return (
-        f"cycles at {side_of_hopf}, unstable by {others} other modes"
-        if others
+        f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
+        if other_count
         else f"stable cycles at {side_of_hopf}"
     )
 

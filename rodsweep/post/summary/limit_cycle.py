@@ -161,10 +161,12 @@ def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     straight, cycle = (
         computed & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible")
     )
-    both = straight & view.has_status("cycle", "torus")
-    if both.any():
-        lines.append(f"two stable states{_at_count(both, computed)}: the straight rod is stable as well")
-    if (straight_only := straight & ~both).any():
+    are_bistable = straight & view.has_status("cycle", "torus")
+    if are_bistable.any():
+        lines.append(
+            f"two stable states{_at_count(are_bistable, computed)}: the straight rod is stable as well"
+        )
+    if (straight_only := straight & ~are_bistable).any():
         lines.append(
             f"the straight rod is stable{_at_count(straight_only, computed)} where the motion reached no "
             "stable state"

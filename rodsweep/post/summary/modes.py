@@ -34,8 +34,10 @@ def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         details = [*leading_lines(view, computed), *unknowns]
     errors = view.variables["mode_error"][computed]
     if np.isfinite(errors).any():
-        unknown = int((~np.isfinite(errors)).any(axis=-1).sum())
-        unknown_clause = f"; not known at {count_of_total(unknown, len(errors), 'point')}" if unknown else ""
+        unknown_count = int((~np.isfinite(errors)).any(axis=-1).sum())
+        unknown_clause = (
+            f"; not known at {count_of_total(unknown_count, len(errors), 'point')}" if unknown_count else ""
+        )
         reliability.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{unknown_clause}")
     numbers = eigenvalue_table(view) if computed.size == 1 else None
     return SummaryLines(

@@ -142,5 +142,5 @@ def stability_line(view: ResultView, computed: np.ndarray) -> str:
     certainty = "confirmed by an estimate" if estimates_counts(view.config) else "proved"
     text = f"largest number of unstable modes: {int(unstable.max())}; the number is {certainty} at "
     text += count_of_total(certified, points, "point")
-    unknown = int((unstable < 0).sum())
-    return text + (f", not known at {unknown}" if unknown else "")
+    unknown_count = int((unstable < 0).sum())
+    return text + (f", not known at {unknown_count}" if unknown_count else "")

@@ -192,17 +192,17 @@ def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]
     v = view.variables
     searches = int(computed.sum())
     is_crossing = v["crossing_kind"][computed] > 0
-    stored = is_crossing.sum(axis=-1)
+    stored_counts = is_crossing.sum(axis=-1)
     errors = v["crossing_error"][computed][is_crossing]
     known_errors = errors[np.isfinite(errors)]
     bound = f"; absolute error at most {error_text(float(known_errors.max()))}" if known_errors.size else ""
     undecided = int(np.isfinite(v["open_from"][computed]).sum())
     proved = count_of_total(int(v["certified"][computed].sum()), searches, noun)
     window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
-    unlisted = int((v["crossing_count"][computed] - stored).clip(min=0).sum())
+    unlisted = int((v["crossing_count"][computed] - stored_counts).clip(min=0).sum())
     return [
         f"the list of crossings {proof_clause(view)} for {proved}{window}",
-        f"crossings stored: {int(stored.sum())}, at most {int(stored.max())} on a {noun}{bound}"
+        f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a {noun}{bound}"
         f"{unstored_clause(unlisted)}",
     ]
 

@@ -45,14 +45,14 @@ def point_columns(
         yield coordinate_column(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
         yield quantity_column(name, values[points])
-    missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
+    is_missing = view.variables[STATUS.name].reshape(-1)[points] == MISSING_STATUS
     for variable in variables:
         values = view.variables[variable.name].reshape(-1)[points]
         if variable.name == STATUS.name:
             yield replace(column_of(variable, values, view.flags), absent=np.zeros(len(points), bool))
         else:
             column = column_of(variable, values)
-            yield replace(column, absent=column.absent | missing)
+            yield replace(column, absent=column.absent | is_missing)
 
 
 def list_columns(

@@ -154,9 +154,9 @@ def merged_columns(
         values = column.rows(cycle_rows)
         counterpart = by_name.get(_special_point_variable(column.name, parameter))
         if counterpart is not None:
-            others = counterpart.rows(special_rows)
-            joined = np.where(values.absent, others.values, values.values)
-            values = replace(values, values=joined, absent=values.absent & others.absent)
+            special_values = counterpart.rows(special_rows)
+            joined_values = np.where(values.absent, special_values.values, values.values)
+            values = replace(values, values=joined_values, absent=values.absent & special_values.absent)
         result.append(values)
     return [*result, by_name["special_kind"].rows(special_rows)]
 

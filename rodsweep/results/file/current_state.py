@@ -54,9 +54,9 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
     directory = journal_directory(header.path)
     if not directory.is_dir():
         return records
-    missing = status == MISSING_STATUS
+    is_missing = status == MISSING_STATUS
     blocks = read_journals(directory, header.layout, header.fingerprint, len(status))
-    records = np.concatenate([records, *(block[missing[block["index"]]] for block in blocks)])
+    records = np.concatenate([records, *(block[is_missing[block["index"]]] for block in blocks)])
     _, last_indices = np.unique(records["index"][::-1], return_index=True)  # the last record of a point wins
     return records[::-1][last_indices]
 
@@ -108,8 +108,8 @@ def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, 
         write_records(copy, blocks, header.layout)
         with h5py.File(copy, "r+") as file:
             file.attrs.update(journalled_reasons(header) | {SNAPSHOT_ATTRIBUTE: utc_time()})
-        missing = index_count(missing_ranges(copy))
-    return header.points - missing, header.points
+        missing_count = index_count(missing_ranges(copy))
+    return header.points - missing_count, header.points
 
 
 def _is_snapshot(path: Path) -> bool:

@@ -73,9 +73,9 @@ def has_valid_structure_checksum(path: Path) -> bool:
         if not data.startswith(CHECKSUM_HEAD) or not data.endswith(b"\n"):
             raise ChecksumMismatch("its checksum cannot be read")
         try:
-            stored = json.loads(data[len(CHECKSUM_HEAD) :])
-            ranges = [(int(start), int(length)) for start, length in stored["pieces"]]
-            is_valid = stored["end"] == end and stored["frame"] == _checksum(
+            stored_checksums = json.loads(data[len(CHECKSUM_HEAD) :])
+            ranges = [(int(start), int(length)) for start, length in stored_checksums["pieces"]]
+            is_valid = stored_checksums["end"] == end and stored_checksums["frame"] == _checksum(
                 stream, _left_out_pieces(ranges, end)
             )
         except (LookupError, TypeError, ValueError, OverflowError, RecursionError, OSError):

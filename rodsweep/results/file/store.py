@@ -139,8 +139,8 @@ class ResultFileWriter:
     def _changed_text_attributes(self) -> dict[str, Any]:
         """Attributes to change if config and file differ in title or config text; empty otherwise."""
         texts = {name: self.plan.attributes.get(name, "") for name in ("title", "config")}
-        stored = self.attributes()
-        is_equal = all(text == stored.get(name, "") for name, text in texts.items())
+        stored_attributes = self.attributes()
+        is_equal = all(text == stored_attributes.get(name, "") for name, text in texts.items())
         return {} if is_equal else texts | {"config_resolved": json.dumps(self.plan.config)}
 
     def attributes(self) -> dict[str, Any]:

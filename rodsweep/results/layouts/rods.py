@@ -22,8 +22,8 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
     taper = parameters.get("taper")
     tapered = "tip_radius" in arm if taper is None else taper.get("values") != [1.0]
     tapered = tapered or "taper" in parameters.get("columns", ())
-    followed = config.get("branch", {}).get("along") == "taper"
-    return tapered or followed or "segments" in arm or "profile" in config.get("material", {})
+    is_taper_followed = config.get("branch", {}).get("along") == "taper"
+    return tapered or is_taper_followed or "segments" in arm or "profile" in config.get("material", {})
 
 
 def has_standard_rods(config: Mapping[str, Any]) -> bool:

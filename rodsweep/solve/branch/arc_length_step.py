@@ -153,8 +153,8 @@ class BranchCycle:
 
 def branch_derivatives(solved: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
     """Scale and unit tangent of a branch at the cycle `solved`. scale: scale at another cycle of the branch.
-    tangent: tangent of any length, (N + 1,). In the result `parameter_curvature` and `multiplier_rate` are 0,
-    to be set by the caller."""
+    tangent: tangent of any length, (N + 1,). In the result `parameter_second_derivative` and
+    `multiplier_rate` are 0, to be set by the caller."""
     own_scale = ArcLengthScale.at_orbit(
         solved.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
     )
@@ -238,10 +238,10 @@ def branch_cycle_with_calibrated_errors(
     cycle = cycle_with_calibrated_errors(start.calibration.at_equal_parameter, solved, accuracy)
     derivatives = branch_derivatives(solved, start.scale, tangent)
     curvature = (derivatives.parameter_rate - start.parameter_rate) / length
-    multiplier_rate = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
+    rate = largest_multiplier_difference(cycle.multipliers, start.cycle.multipliers) / length
     return BranchCycle(
         cycle=cycle,
-        derivatives=replace(derivatives, parameter_curvature=curvature, multiplier_rate=multiplier_rate),
+        derivatives=replace(derivatives, parameter_second_derivative=curvature, multiplier_rate=rate),
         next_arc_length=next_arc_length,
         calibration=start.calibration,
         steps_since_measured=start.steps_since_measured + 1,

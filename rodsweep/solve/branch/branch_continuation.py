@@ -86,11 +86,11 @@ def follow_from_cycle(curve: BranchCurve, first_cycle: BranchCycle, limits: Bran
     """The branch `curve`, followed to its end from its first cycle `first_cycle`, which has measured
     errors."""
     record = BranchRecord(curve, limits.accuracy, first_cycle)
-    last: BranchCycle | BranchEnd = first_cycle
-    while isinstance(last, BranchCycle):
-        report(partial(_branch_progress, curve, last, limits))
-        last = _append_next_cycle(record, last, limits)
-    record.end(last)
+    last_cycle: BranchCycle | BranchEnd = first_cycle
+    while isinstance(last_cycle, BranchCycle):
+        report(partial(_branch_progress, curve, last_cycle, limits))
+        last_cycle = _append_next_cycle(record, last_cycle, limits)
+    record.end(last_cycle)
     return curve
 
 

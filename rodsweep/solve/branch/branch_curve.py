@@ -38,14 +38,14 @@ class BranchPoint:
         """The stored quantities of the cycle `point`. accuracy: relative accuracy to which the cycle was
         solved."""
         cycle = point.cycle
-        least, most = unstable_count_bounds(point)
+        least_count, largest_count = unstable_count_bounds(point)
         return cls(
             parameter_value=getattr(point.orbit.form.rod, point.scale.parameter_name),
             parameter_value_error=point.calibration.parameter_error(accuracy),
             measures=cycle.measures,
             errors=cycle.errors,
             multiplier=cycle.largest_multiplier,
-            unstable_count=least if least == most else -1,
+            unstable_count=least_count if least_count == largest_count else -1,
         )
 
     @property
@@ -58,9 +58,9 @@ class BranchPoint:
 def unstable_count_bounds(point: BranchCycle) -> tuple[int, int]:
     """Smallest and largest possible number of nontrivial multipliers outside the unit circle, within their
     errors."""
-    beyond = np.abs(point.cycle.multipliers) - 1
+    modulus_excess = np.abs(point.cycle.multipliers) - 1
     error = _multiplier_modulus_error(point)
-    return int((beyond > error).sum()), int((beyond >= -error).sum())
+    return int((modulus_excess > error).sum()), int((modulus_excess >= -error).sum())
 
 
 def _multiplier_modulus_error(point: BranchCycle) -> float:

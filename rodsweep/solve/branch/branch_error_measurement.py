@@ -33,24 +33,24 @@ def measured_branch_calibration(
     cycle."""
     mesh = mesh_of(solved.orbit)
     orbit = solved.orbit
-    finer, fraction = finer_meshes(mesh)
+    target_meshes, fraction = finer_meshes(mesh)
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
     rough = CyclePath(orbit)
     multipliers = multipliers_and_trivial_error(solved)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
-    for part, target in zip(parts, finer, strict=True):
-        fine = condition.solve_on_mesh(
+    for part, target in zip(parts, target_meshes, strict=True):
+        fine_orbit = condition.solve_on_mesh(
             target,
             solved,
             BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,
             FINER_MESH_SETTINGS.max_matrix_distance,
         )
-        part[:] = _differences_between_meshes(rough, multipliers, fine, derivatives)
+        part[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= fraction
-    known = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, previous_calibration)
-    return BranchCalibration(known, parts[:, -1], tip_y_sensitivity(rough, derivatives))
+    calibration = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, previous_calibration)
+    return BranchCalibration(calibration, parts[:, -1], tip_y_sensitivity(rough, derivatives))
 
 
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
@@ -59,8 +59,8 @@ def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array
     Close to the parameter coordinate 0, the direction of the parameter: at an equal arc length the finer mesh
     might have a negative coordinate, which no rod has."""
     scale = derivatives.scale
-    at = orbit.form.rod.coordinate(scale.parameter_name)
-    is_near_zero = abs(at) < scale.min_coordinate_unit
+    coordinate = orbit.form.rod.coordinate(scale.parameter_name)
+    is_near_zero = abs(coordinate) < scale.min_coordinate_unit
     is_steep = abs(derivatives.parameter_rate) > BRANCH_ERROR_SETTINGS.min_parameter_rate_near_zero
     return ALONG_PARAMETER if is_near_zero and is_steep else derivatives.unit_tangent
 
@@ -74,8 +74,8 @@ def _differences_between_meshes(
     multipliers, (rank - 1,), of the rough cycle. derivatives: derivatives of the branch at this cycle."""
     orbit = rough.orbit
     scale = derivatives.scale
-    deflection, _, off = scale.components(orbit) - scale.components(fine.orbit)
-    length = derivatives.arc_length_for_parameter_change(off)
+    deflection, _, parameter_change = scale.components(orbit) - scale.components(fine.orbit)
+    length = derivatives.arc_length_for_parameter_change(parameter_change)
     target = mesh_of(fine.orbit)
     parameter_name = np.append(
         interpolated_change(orbit, derivatives.tangent[:-1], target), derivatives.tangent[-1]
@@ -88,9 +88,11 @@ def _differences_between_meshes(
     by_deflection = abs(derivatives.unit_tangent[0])
     by_parameter = abs(derivatives.parameter_rate)
     # Distance of the two branches across their common tangent, in (deflection, parameter).
-    apart = abs(off * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate)
-    own = apart / max(by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter)
-    return np.array([*path_differences(rough, CyclePath(slid)), change, own])
+    apart = abs(parameter_change * derivatives.unit_tangent[0] - deflection * derivatives.parameter_rate)
+    own_difference = apart / max(
+        by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter
+    )
+    return np.array([*path_differences(rough, CyclePath(slid)), change, own_difference])
 
 
 def tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
@@ -101,9 +103,9 @@ def tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
     step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step
-    ahead = CyclePath(moved_orbit(orbit, name, step))
+    moved_path = CyclePath(moved_orbit(orbit, name, step))
     y = path.extrema["tip_y_max"]
-    other = ahead.extrema["tip_y_max"]
+    other = moved_path.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
         abs(derivatives.parameter_rate), EXPONENT_SETTINGS.least_divisor
     )

@@ -66,7 +66,7 @@ class BranchDerivatives:
     coordinate."""
     unit_tangent: Array
     """The tangent in components (deflection, log period, parameter), (3,), a unit vector."""
-    parameter_curvature: float
+    parameter_second_derivative: float
     """Second derivative of the scaled parameter coordinate with respect to arc length."""
     multiplier_rate: float
     """Modulus of the derivative of the largest multiplier with respect to arc length."""
@@ -79,13 +79,13 @@ class BranchDerivatives:
     def arc_length_for_parameter_change(self, change: float) -> float:
         """Signed arc length over which the scaled parameter coordinate changes by `change`: change /
         `parameter_rate`. Near a fold, where the parameter may never change by `change`: an upper bound of
-        this length with the same sign, of modulus 2 sqrt(|change / `parameter_curvature`|)."""
+        this length with the same sign, of modulus 2 sqrt(|change / `parameter_second_derivative`|)."""
         # Away from a fold the quadratic term changes the linear solution by an eighth at most.
-        if self.parameter_rate**2 >= 4 * abs(self.parameter_curvature * change):
+        if self.parameter_rate**2 >= 4 * abs(self.parameter_second_derivative * change):
             return change / self.parameter_rate
         direction = np.copysign(1.0, change * self.parameter_rate)
         # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = change.
-        curvature = max(abs(self.parameter_curvature), EXPONENT_SETTINGS.least_divisor)
+        curvature = max(abs(self.parameter_second_derivative), EXPONENT_SETTINGS.least_divisor)
         return float(direction * 2 * (abs(change) / curvature) ** 0.5)
 
 
@@ -122,7 +122,8 @@ class BranchCalibration:
         return self._limiting_errors.errors(accuracy).largest_weighted_error
 
     def cheapest_mesh(self, accuracy: float) -> OrbitMesh:
-        """The cheapest mesh for a `largest_weighted_error` within the accuracy, else the next finer mesh."""
+        """The cheapest mesh on which `largest_weighted_error` is predicted within the accuracy; if there is
+        none among the allowed meshes, a mesh one step finer than these."""
         return cheapest_mesh(self._limiting_errors, accuracy)
 
     def cheapest_mesh_for_parameter(self, accuracy: float) -> OrbitMesh:
@@ -181,7 +182,7 @@ def _log_interpolated_errors(first_errors: Array, second_errors: Array, fraction
     # Errors of a mesh change by factors along a branch, so their logarithms are interpolated.
     logarithms = np.log(np.maximum([first_errors, second_errors], BRANCH_ERROR_SETTINGS.min_error))
     means = np.exp(logarithms[0] + fraction * (logarithms[1] - logarithms[0]))
-    bounded: Array = np.minimum(
+    bounded_errors: Array = np.minimum(
         BRANCH_ERROR_SETTINGS.interpolation_factor * means, np.maximum(first_errors, second_errors)
     )
-    return bounded
+    return bounded_errors

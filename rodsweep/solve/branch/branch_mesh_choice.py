@@ -72,7 +72,7 @@ def first_measured_cycle(
     # this derivative is linear, and the multiplier is quadratic, in the deflection.
     derivatives = replace(
         derivatives,
-        parameter_curvature=derivatives.parameter_rate / arc_from_start,
+        parameter_second_derivative=derivatives.parameter_rate / arc_from_start,
         multiplier_rate=2 * trivial_error / arc_from_start,
     )
     calibration = measured_branch_calibration(solved, derivatives, accuracy, None)
@@ -165,7 +165,7 @@ def solved_on_mesh(
     old_derivatives = point.derivatives
     derivatives = replace(
         branch_derivatives(solved, point.scale, tangent),
-        parameter_curvature=old_derivatives.parameter_curvature,
+        parameter_second_derivative=old_derivatives.parameter_second_derivative,
         multiplier_rate=old_derivatives.multiplier_rate,
     )
     return replace(

@@ -78,11 +78,11 @@ class BranchRecord:
             special = branch_end_point(self._last_measured, reason_of_failure(reason), message)
             end = replace(end, special_point=special, complete=False)
         special = end.special_point
-        last = curve.points[-1]
+        last_point = curve.points[-1]
         if np.isnan(special.error):
-            special = replace(special, error=last.parameter_value_error * abs(special.parameter_value))
+            special = replace(special, error=last_point.parameter_value_error * abs(special.parameter_value))
         if np.isnan(special.period_error):  # the end is the last cycle
-            errors = last.errors
+            errors = last_point.errors
             special = replace(
                 special, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error
             )

@@ -129,10 +129,10 @@ class BranchSearch:
     ) -> None:
         """Appends the branch that enters the range at `entry`, unless a branch so far leaves the range there.
         left_at: place at which the branch left the range before."""
-        known = [p for p in self._passages() if p is not left_at and p.is_same_as(entry)]
-        self.followed_passages += known
+        known_passages = [p for p in self._passages() if p is not left_at and p.is_same_as(entry)]
+        self.followed_passages += known_passages
         limits = self._limits_left()
-        if known:
+        if known_passages:
             return
         if limits.max_cycles < 1:
             region.stop_at(region.range_end)
@@ -152,8 +152,8 @@ class BranchSearch:
             raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
         curve = follow_detached_branch(start, self.name, limits)
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
-        inner = (point for point in curve.special_points if point.kind != SpecialKind.end)
-        if any(lies_on_any(point, self.curves) for point in inner):
+        inner_points = (point for point in curve.special_points if point.kind != SpecialKind.end)
+        if any(lies_on_any(point, self.curves) for point in inner_points):
             return
         if not lies_on_any(start, [curve]):
             raise Unsolvable("the branch found does not pass this point")

@@ -1,5 +1,5 @@
 """The task `branch` for one rod: all branches of cycles from Hopf points along a parameter, to their ends.
-The Hopf points come from the covering of `task: thresholds`. A branch between two Hopf points is followed
+The Hopf points come from the search of `task: thresholds`. A branch between two Hopf points is followed
 only once, from the first Hopf point. At a symmetry breaking on such a branch, the branch of asymmetric cycles
 is followed too. Cycles on other branches are found only if a special point on the branch is known."""
 

@@ -65,8 +65,8 @@ def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) ->
     curve = follow_from_cycle(BranchCurve(start_hopf=-1), first_cycle, limits)
     if not curve.closed:
         left = replace(limits, max_cycles=limits.max_cycles - len(curve.points) + 1)
-        behind = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first_cycle), left)
-        curve = behind.joined_with(curve)
+        backward_curve = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first_cycle), left)
+        curve = backward_curve.joined_with(curve)
     return curve
 
 
@@ -122,21 +122,21 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     accuracy = limits.accuracy
     condition = BorderCondition.at_arc_length(tangent.scale, tangent.side, tangent.orbit, -distance)
     predicted = moved_orbit(tangent.orbit, tangent.scale.parameter_name, -distance * tangent.change)
-    solved = condition.solve_cycle(
+    solved_orbit = condition.solve_cycle(
         predicted, newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
     )
     step = relative_change(tangent.orbit, distance * tangent.change[:-1])
-    prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
+    prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)
     if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error * step:
         raise Unsolvable("the cycle found is far from the prediction")
     low, high = limits.coordinate_range
-    if not low < solved.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
+    if not low < solved_orbit.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:
         raise Unsolvable("the cycle found lies outside the range")
-    return first_measured_cycle(solved, tangent.scale, tangent.side, distance, accuracy)
+    return first_measured_cycle(solved_orbit, tangent.scale, tangent.side, distance, accuracy)
 
 
 def turned_back(cycle: BranchCycle) -> BranchCycle:
     """The cycle of a branch, for the continuation in the opposite direction."""
-    known = cycle.derivatives
-    turned = replace(known, tangent=-known.tangent, unit_tangent=-known.unit_tangent)
+    derivatives = cycle.derivatives
+    turned = replace(derivatives, tangent=-derivatives.tangent, unit_tangent=-derivatives.unit_tangent)
     return replace(cycle, derivatives=turned)

@@ -31,8 +31,8 @@ def passes_hopf_point(start: BranchCycle, end: BranchCycle) -> bool:
     The sign of the tip's y is no criterion: on a large cycle an extremum of y may pass through 0."""
     mesh = mesh_of(end.orbit)
     layout = end.orbit.form.layout
-    one = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
-    return float(one @ layout.stress_field(end.orbit.start_state, "m3")) < 0
+    start_moment = layout.stress_field(mesh.interpolated_orbit(start.orbit).start_state, "m3")
+    return float(start_moment @ layout.stress_field(end.orbit.start_state, "m3")) < 0
 
 
 def end_at_mirror_image(

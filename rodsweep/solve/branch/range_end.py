@@ -124,8 +124,10 @@ def _solved_at_range_end(
 ) -> BranchCycle:
     """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
     condition `range_end`; raises Unsolvable."""
-    solved = range_end.solve_cycle(
+    solved_orbit = range_end.solve_cycle(
         predicted, newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
     )
-    tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved))
-    return branch_cycle_with_calibrated_errors(start, solved, tangent, length, length, accuracy)
+    tangent = tangent_at(
+        solved_orbit.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved_orbit)
+    )
+    return branch_cycle_with_calibrated_errors(start, solved_orbit, tangent, length, length, accuracy)

@@ -229,20 +229,20 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
     factor = 1 + BEYOND_RANGE_SETTINGS.relative_extent
-    far = end * factor if index == 1 else end / factor * (path.name != "F")
-    low, high = sorted(map(path.parameter.value, (end, far)))
+    far_end = end * factor if index == 1 else end / factor * (path.name != "F")
+    low, high = sorted(map(path.parameter.value, (end, far_end)))
     rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
     low, high = uncrushed_interval(path.rod.build, rod, (path.name, low, high), margin)
     ends = [path.coordinate(low), path.coordinate(high)]
-    far = max(ends) if index == 1 else min(ends)
+    far_end = max(ends) if index == 1 else min(ends)
     # The unknowns of a branch cannot change within the branch.
-    is_small = has_small_rotational_drag(path.rod_at(far))
+    is_small = has_small_rotational_drag(path.rod_at(far_end))
     if not low < high or is_small and not limits.keeps_omega:
         return None
     region_limits = replace(
         limits,
         hopfs=(),
-        coordinate_range=(end, far) if index == 1 else (far, end),
+        coordinate_range=(end, far_end) if index == 1 else (far_end, end),
         end_reasons=(BranchEndReason.range_end, BranchEndReason.range_end),
         max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
         locates_special_points=False,

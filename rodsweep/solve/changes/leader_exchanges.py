@@ -123,7 +123,7 @@ class LeaderExchangeSearch:
             try:
                 exchanges += self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.end_within((a, b), str(reason))
+                intervals.limit_search_below((a, b), str(reason))
         return exchanges, intervals.end
 
     def _search_interval(self, a: float, b: float, intervals: IntervalQueue) -> list[Threshold]:
@@ -136,16 +136,16 @@ class LeaderExchangeSearch:
         if left_sample.oscillates == right_sample.oscillates:
             fraction, may_hold_two = next_sample_position(left_sample, right_sample)
             settings = LEADING_EIGENVALUE_SETTINGS
-            smallest = (
+            smallest_interval = (
                 settings.smallest_interval_with_two_exchanges if may_hold_two else settings.smallest_interval
             )
             if len(self.samples) > settings.max_samples:
-                smallest = settings.close_sample_distance
+                smallest_interval = settings.close_sample_distance
             is_close = b - a <= settings.close_sample_distance * intervals.length
             if fraction == 0.0 or (is_close and excludes_exchange(left_sample, right_sample, may_hold_two)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
-            if b - a <= smallest * intervals.length:
+            if b - a <= smallest_interval * intervals.length:
                 self.leading_eigenvalues_proved = False
                 return []
         else:

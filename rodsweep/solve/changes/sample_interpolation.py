@@ -49,15 +49,15 @@ def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[f
             if abs(value) < 2 * abs(slope) * h:
                 return 0.5, False
             continue
-        smallest = min(abs(a[0]), abs(b[0]))
+        smallest_value = min(abs(a[0]), abs(b[0]))
         # By the trapezoidal rule smooth slopes explain the change between the samples.
         unexplained_change = _unexplained_change(a, b, h)
         sign = math.copysign(h, a[0])
         minimum, fraction = minimum_of_cubic(abs(a[0]), abs(b[0]), sign * a[1], sign * b[1])
-        if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest:
+        if a[0] * b[0] <= 0 or minimum < SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value:
             return fraction, True
         if unexplained_change > SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(
-            smallest, abs(b[0] - a[0])
+            smallest_value, abs(b[0] - a[0])
         ):
             return 0.5, False
     return 0.0, False
@@ -133,12 +133,13 @@ def _stays_positive(left: tuple[float, float], right: tuple[float, float], h: fl
     """Whether the slopes of a quantity explain its values at two samples and exclude a zero between them.
     left, right: (value, slope) at the samples. h: distance of the samples."""
     (a, slope_a), (b, slope_b) = left, right
-    smallest = min(a, b)
+    smallest_value = min(a, b)
     minimum, _ = minimum_of_cubic(a, b, h * slope_a, h * slope_b)
     unexplained_change = _unexplained_change(left, right, h)
     return (
-        minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest > 0
-        and unexplained_change <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest, abs(b - a))
+        minimum >= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * smallest_value > 0
+        and unexplained_change
+        <= SPECTRUM_SAMPLE_SETTINGS.interpolation_tolerance * max(smallest_value, abs(b - a))
     )
 
 

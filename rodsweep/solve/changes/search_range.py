@@ -97,9 +97,9 @@ class IntervalQueue:
         self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)
 
-    def end_within(self, interval: tuple[float, float], reason: str) -> None:
-        """Ends the search at the start of the present `interval`, whose search failed; `__iter__` may still
-        yield its left half. reason: why the search failed."""
+    def limit_search_below(self, interval: tuple[float, float], reason: str) -> None:
+        """Limits the search to parameters below the current `interval`, whose search failed; its left half is
+        still searched. reason: why the search failed."""
         self._queue.clear()
         self._unsearched_end = interval[1]
         self.end = SearchEnd(interval[0], reason)

@@ -1,8 +1,8 @@
 """Search for all thresholds along a path of rods (`kinds`): pairs that cross the imaginary axis, and
 exchanges of the leading eigenvalue.
 
-The crossings come from `determinant.certificate.covering`, or for nonuniform arms from `arm.crossings`; the
-exchanges come from `leader_exchanges`. Winding numbers confirm the numbers of unstable modes.
+The crossings come from a cover of the (eigenvalue, parameter) region with boxes (`covering`), or for
+nonuniform arms from `arm.crossings`; exchanges from `leader_exchanges`. Winding numbers confirm the counts.
 """
 
 import math
@@ -30,7 +30,7 @@ class ThresholdSettings:
     """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
     merge_distance: float = 1e-5
-    """Undecided boxes of the covering are merged if gap/(parameter at its start) is at most this number."""
+    """Undecided boxes are merged if the gap between them is at most this number times the parameter."""
 
 
 THRESHOLD_SETTINGS = ThresholdSettings()
@@ -53,9 +53,9 @@ class ThresholdSearchResult:
     oscillates_at_start: bool = False
     """Whether a complex pair leads at the start of the path."""
     proved: bool
-    """Whether covering and list are complete, all counts agree, and each leading eigenvalue leads."""
+    """Whether the crossings are complete, all counts agree, and each leading eigenvalue leads."""
     evaluation_count: int = 0
-    """Number of evaluations of the determinant D in the covering."""
+    """Number of evaluations of the determinant D for the boxes."""
     solve_count: int = 0
     """Number of solved eigenvalue problems."""
     doubt_text: str = ""
@@ -136,9 +136,9 @@ def find_axis_crossings(
     path: ParameterPath, start: float, stop: float, certify: bool = True, max_crossings: float = math.inf
 ) -> ThresholdSearchResult:
     """Crossings of the imaginary axis by pairs between the parameter values `start` and `stop`, without
-    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`. `proved`: the covering is
-    complete and every count agrees. certify, max_crossings, early end and Unsolvable: as in
-    `find_thresholds`."""
+    exchanges of the leading eigenvalue; takes half the time of `find_thresholds`. `proved`: boxes without
+    a further crossing cover the region, and every count agrees. certify requests a proof. The search ends
+    early, or raises Unsolvable, for the reasons of `find_thresholds`."""
     low, high = sorted((path.coordinate(start), path.coordinate(stop)))
     problem = path_problem(path)
     found = _crossings(problem, (low, high), certify, max_crossings)
@@ -186,8 +186,8 @@ def _with_interval(
 def _crossings(
     problem: PathProblem, p_ends: tuple[float, float], certify: bool, max_crossings: float
 ) -> PathCrossings:
-    """Crossings for path variables between `p_ends`: by the covering, or for nonuniform arms by counts,
-    proved if `certify`. max_crossings: crossings after which a nonuniform arm's search ends."""
+    """Crossings for path variables in `p_ends`: by boxes, or for nonuniform arms by counts of unstable
+    modes (argument principle), proved if `certify`. max_crossings: number at which the search ends."""
     if not isinstance(problem, ArmPath):
         return _crossings_by_covering(problem.path, *p_ends)
     search = CrossingSearch(problem, certify)
@@ -198,7 +198,7 @@ def _crossings(
 
 
 def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> PathCrossings:
-    """Crossings between the path variables `low` and `high`, by the covering; Unsolvable without a bound."""
+    """Crossings for path variables from `low` to `high`, by boxes; Unsolvable without a bound."""
     boxes = first_boxes(path, low, high)
     if boxes is None:
         ends = f"from {path.text_at(low)} to {path.text_at(high)}"

@@ -183,14 +183,14 @@ def follow_curve(
         crossed_margin = first_crossed_margin(margins, new_margins)
         if crossed_margin >= 0:
             try:
-                last = problem.located_zero(solutions, result.solution, crossed_margin)
+                last_solution = problem.located_zero(solutions, result.solution, crossed_margin)
             except FAILURES:
                 if length / 2 < control.min_length:
                     return Curve(solutions, StopReason.no_further_solution)
                 length /= 2
                 continue
             return Curve(
-                solutions if last is None else [*solutions, last],
+                solutions if last_solution is None else [*solutions, last_solution],
                 StopReason.zero_margin,
                 crossed_margin,
             )

@@ -178,18 +178,18 @@ def _orbit_along_force(normal: NormalForm, F: float, form: StressForm, workspace
     raises Unsolvable if the first orbit is far from the normal form or the branch cannot be followed."""
     start = orbit_by_normal_form(normal, replace(form, rod=replace(form.rod, F=F)))
     tolerance = HOPF_START_SETTINGS.intermediate_orbit_tolerance
-    solved = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
+    solved_orbit = with_matrix_within_distance(newton(start, tolerance, workspace, "F"), tolerance, "F")
     squared = normal.squared_y_and_frequency(F)[0]
     min_ratio, max_ratio = HOPF_START_SETTINGS.squared_amplitude_ratios
     if (
         not min_ratio
-        < solved.orbit.form.tip_coordinates(solved.orbit.start_state)[1] ** 2 / squared
+        < solved_orbit.orbit.form.tip_coordinates(solved_orbit.orbit.start_state)[1] ** 2 / squared
         < max_ratio
     ):
         raise Unsolvable(f"the orbit is not near the prediction from the Hopf point at F = {normal.F:g}")
     if form.rod.F == F:
-        return solved.orbit
-    return orbit_in_steps(predictor_from(solved, None, "F"), form, "F", tolerance, workspace).orbit
+        return solved_orbit.orbit
+    return orbit_in_steps(predictor_from(solved_orbit, None, "F"), form, "F", tolerance, workspace).orbit
 
 
 def orbit_by_normal_form(normal: NormalForm, form: StressForm) -> Orbit:

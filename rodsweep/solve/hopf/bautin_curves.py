@@ -191,9 +191,9 @@ def bautin_curve(problem: BautinProblem, start: BautinCurvePoint) -> BautinCurve
     backward, first = _half_curve(replace(problem, direction=-1.0), start_point)
     if first is BautinEndReason.closed:
         return BautinCurve(tuple(point.point for point in backward), (first, first))
-    forward, last = _half_curve(problem, start_point)
+    forward, end_reason = _half_curve(problem, start_point)
     # Both lists begin with the start, which is taken once.
-    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, last))
+    return BautinCurve(tuple(point.point for point in [*backward[:0:-1], *forward]), (first, end_reason))
 
 
 def as_curve_point(point: BautinPoint, value: float) -> BautinCurvePoint:
@@ -240,9 +240,9 @@ def _requested_points(problem: BautinProblem, first: _CurvePoint, second: _Curve
     """Points at requested third parameters between `first` and `second`; raises Unsolvable, ValueError."""
     a, b = first.v[2], second.v[2]
     requested = map(problem.axes[2].coordinate, problem.requested_values)
-    inner = [z for z in requested if min(a, b) < z < max(a, b)]
+    inner_z = [z for z in requested if min(a, b) < z < max(a, b)]
     points = []
-    for z in sorted(inner, reverse=bool(a > b)):
+    for z in sorted(inner_z, reverse=bool(a > b)):
         if min(abs(z - a), abs(z - b)) > BAUTIN_SETTINGS.same_point_distance:
             guess = first.v + (z - a) / (b - a) * (second.v - first.v)
             guess[2] = z

@@ -176,12 +176,12 @@ class HopfCurve:
                     lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=BAUTIN_POINT_SETTINGS.tolerance
                 )
             )
-            hopf_point, start_values, beyond = (
+            hopf_point, start_values, beyond_values = (
                 on_chord(s + side * BAUTIN_POINT_SETTINGS.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
-        slope = (beyond.relative_real_part - start_values.relative_real_part) / (
+        slope = (beyond_values.relative_real_part - start_values.relative_real_part) / (
             2 * BAUTIN_POINT_SETTINGS.relative_difference_step
         )
         if abs(hopf_point.relative_real_part) > BAUTIN_POINT_SETTINGS.max_relative_real_part or slope == 0:

@@ -59,8 +59,8 @@ def subcritical_hopf_near(rod: Rod) -> SubcriticalHopf | None:
     crossings = find_axis_crossings(ParameterPath(rod, "F"), min_force, max_force, certify=False).thresholds
     crossings_above = [crossing for crossing in crossings if crossing.value > rod.F]
     crossings_below = [crossing for crossing in crossings if crossing.value <= rod.F]
-    nearest = crossings_above[:1] + crossings_below[-1:]
-    for hopf in sorted(nearest, key=lambda one: abs(one.value - rod.F)):
+    nearest_crossings = crossings_above[:1] + crossings_below[-1:]
+    for hopf in sorted(nearest_crossings, key=lambda one: abs(one.value - rod.F)):
         coefficients = hopf_coefficients(replace(rod, F=hopf.value), hopf, SUBCRITICAL_HOPF_SETTINGS.accuracy)
         y = abs(coefficients.amplitude_coefficient) * abs(rod.F / hopf.value - 1) ** 0.5
         # A positive criticality means subcritical.

@@ -149,13 +149,13 @@ def _null_vector(inverse: NDArray, B: NDArray) -> NDArray:
     the result with the larger growth is returned.
     """
     x: NDArray = np.ones(len(B))
-    previous = x
-    last = growth = 0.0
+    previous_vector = x
+    previous_growth = growth = 0.0
     for _ in range(MODE_ITERATION_SETTINGS.iterations):
-        previous = x
-        last = growth
+        previous_vector = x
+        previous_growth = growth
         x = inverse @ (B * x)
         growth = float(np.abs(x).max())
         x = x / growth
     # Growth falls once rounding errors of the iterate dominate.
-    return x if growth >= last else previous
+    return x if growth >= previous_growth else previous_vector

@@ -70,16 +70,16 @@ def largest_propagator_norm(
     for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
         bound = np.sqrt(_squared_norm_bound(h, left, right, bend, abscissa))
         sufficient_bound = max(maximum[0], floor) * (1 + tolerance)
-        open_ = bound > sufficient_bound
+        is_open = bound > sufficient_bound
         is_abandoned = (
             halving == NORM_MAXIMUM_SETTINGS.max_halvings
-            or int(open_.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals
+            or int(is_open.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals
         )
-        upper_bound = max(upper_bound, bound[~open_ | is_abandoned].max(initial=0.0))
-        if is_abandoned or not open_.any():
+        upper_bound = max(upper_bound, bound[~is_open | is_abandoned].max(initial=0.0))
+        if is_abandoned or not is_open.any():
             break
         # Only intervals in which a larger norm may hide are halved.
-        t, h, left, right, bend = (x[open_] for x in (t, h / 2, left, right, bend))
+        t, h, left, right, bend = (x[is_open] for x in (t, h / 2, left, right, bend))
         middle, middle_bends = _squared_norms_and_curvature_bounds(propagator, t + h)
         i = int(middle.argmax())
         if middle[i] > maximum[0] ** 2:

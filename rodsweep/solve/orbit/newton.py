@@ -80,7 +80,7 @@ def newton(
     """
     matrix = Linearisation(orbit, workspace, parameter)
     distance = 0.0
-    last = np.inf
+    previous_change = np.inf
     step = matrix.step
     for iteration in range(1, ORBIT_NEWTON_SETTINGS.max_iterations + 1):
         report()
@@ -88,7 +88,7 @@ def newton(
         if not np.isfinite(change):
             raise Unsolvable("Newton's method for the cycle diverges: its step is not finite")
         # A long first step may come from a poor start; a long later step that is not shorter is divergence.
-        if iteration > 1 and change > max(last, ORBIT_NEWTON_SETTINGS.max_relative_step):
+        if iteration > 1 and change > max(previous_change, ORBIT_NEWTON_SETTINGS.max_relative_step):
             raise Unsolvable("Newton's method for the cycle diverges: its steps grow")
         # A full step from a poor start may leave the neighbourhood of the orbit, so long steps are shortened.
         damping_factor = min(1.0, ORBIT_NEWTON_SETTINGS.max_relative_step / change) if change > 0 else 1.0
@@ -102,18 +102,18 @@ def newton(
         expected_error = (
             ORBIT_NEWTON_SETTINGS.quadratic_error_factor * change**2
             if is_matrix_new
-            else change * min(1.0, change / last)
+            else change * min(1.0, change / previous_change)
         )
         if expected_error <= tolerance:
             return ConvergedOrbit(orbit, matrix, distance)
         # A correction with the old factors is far cheaper than a new elimination.
-        if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(last, 1.0):
+        if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(previous_change, 1.0):
             matrix = Linearisation(orbit, workspace, parameter)
             distance = 0.0
             step = matrix.step
         else:
             step = matrix.correction(orbit)
-        last = change
+        previous_change = change
     raise Unsolvable(
         f"Newton's method for the cycle does not converge in {ORBIT_NEWTON_SETTINGS.max_iterations} "
         f"iterations; its last relative step is {change:.0e}"

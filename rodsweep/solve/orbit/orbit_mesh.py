@@ -148,11 +148,11 @@ class OrbitMesh:
         if order == self.order or not self.order_ratios:
             return replace(self, order=order)
         present = element_orders(self.element_count, self.order, self.order_ratios)
-        scaled = element_orders(self.element_count, order, self.order_ratios)
+        scaled_orders = element_orders(self.element_count, order, self.order_ratios)
         if order > self.order:
-            orders = [max(p + 1, q) for p, q in zip(present, scaled, strict=True)]
+            orders = [max(p + 1, q) for p, q in zip(present, scaled_orders, strict=True)]
         else:
-            orders = [min(p - 1, q) for p, q in zip(present, scaled, strict=True)]
+            orders = [min(p - 1, q) for p, q in zip(present, scaled_orders, strict=True)]
         # Half an order less, because `element_orders` rounds up: no rounding error can add an order.
         ratios = tuple(1.0 if p == order else (p - 1 / 2) / order for p in orders)
         return replace(self, order=order, order_ratios=ratios)

@@ -59,9 +59,9 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
     ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
-    last = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
+    last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
-    return CoefficientTails(float(last.max()), _tail_in_time(orbit), _coefficient_decay(finest))
+    return CoefficientTails(float(last_coefficients.max()), _tail_in_time(orbit), _coefficient_decay(finest))
 
 
 @compiled_for_vectors

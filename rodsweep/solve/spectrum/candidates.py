@@ -179,8 +179,8 @@ def lines_for_count(w: list[complex], modes: int) -> list[float]:
         if width > CANDIDATE_SETTINGS.min_gap:
             gaps.append((min(width, min_gap), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
-    last = real_parts[-1]
-    last_line = last - CANDIDATE_SETTINGS.last_line_distance * (
-        abs(w[-1]) if last < 0 else abs(w[0].real) + 1.0
+    last_real_part = real_parts[-1]
+    last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance * (
+        abs(w[-1]) if last_real_part < 0 else abs(w[0].real) + 1.0
     )
     return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]

@@ -74,20 +74,22 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
         mesh_accuracy(request.accuracy, vectors=True) if request.vector_node_count else request.accuracy
     )
     mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
-    coarser = _leading_eigenvalues(problem, mesh, modes)
+    coarser_eigenvalues = _leading_eigenvalues(problem, mesh, modes)
     best_spectrum: Spectrum | None = None
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
         if mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
             break
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
-        if len(eigenvalues.w) >= modes and len(coarser.w):
+        if len(eigenvalues.w) >= modes and len(coarser_eigenvalues.w):
             spectrum = _spectrum_of_mesh(
                 problem,
                 request,
                 mesh,
                 eigenvalues,
-                _errors_between_meshes(eigenvalues.w, coarser.w, _eigenvalue_rounding_scale(problem)),
+                _errors_between_meshes(
+                    eigenvalues.w, coarser_eigenvalues.w, _eigenvalue_rounding_scale(problem)
+                ),
             )
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
@@ -95,7 +97,7 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
             best_spectrum = (
                 spectrum if best_spectrum is None else min(best_spectrum, spectrum, key=_largest_error)
             )
-        coarser = eigenvalues
+        coarser_eigenvalues = eigenvalues
     if best_spectrum is None:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
         raise Unsolvable(f"{meshes} gives the requested number of eigenvalues")
@@ -144,20 +146,20 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) 
     requested = modes + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
-    previous = np.empty(0, complex)
+    previous_w = np.empty(0, complex)
     while True:
         mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding=True)
         order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
         leading = mesh_eigenvalues[order[:modes]]
-        is_complete = len(leading) == len(previous) == modes
+        is_complete = len(leading) == len(previous_w) == modes
         rounding_change = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
         if is_complete and np.allclose(
-            leading, previous, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
+            leading, previous_w, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
         ):
             return _MeshEigenvalues(mesh_eigenvalues[order], order)
         if 2 * requested > mesh.unknown_count // TWO_MESH_SETTINGS.min_unknowns_per_mode:
             return _MeshEigenvalues(mesh_eigenvalues[:0], order[:0])
-        previous = leading
+        previous_w = leading
         requested = 2 * requested
 
 

@@ -106,8 +106,8 @@ def _unit_load_forces(
     )
     forces = np.empty((len(arms), 1, len(given_tapers)), object)
     for i, arm in enumerate(arms):
-        found = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(given_tapers)}
-        forces[i, 0] = [found[taper] for taper in given_tapers]
+        by_taper = {taper: _unit_load_force(section, arm, taper, flutter) for taper in set(given_tapers)}
+        forces[i, 0] = [by_taper[taper] for taper in given_tapers]
     return forces
 
 

@@ -215,8 +215,8 @@ def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:
 
     finite: whether the parameter value of each row is finite, (rows,).
     """
-    stored = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
-    lacking = view.variables["cycle_special_count"].ravel() - stored
+    stored_counts = np.count_nonzero(view.by_point("cycle_special_kind"), axis=1)
+    lacking = view.variables["cycle_special_count"].ravel() - stored_counts
     return int(lacking[finite].clip(min=0).sum())
 
 

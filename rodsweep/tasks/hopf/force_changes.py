@@ -115,21 +115,25 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
     for number in sorted(onsets.keys() | changes.keys()):
         fixed = dict(zip(lines.names, lines.fixed_values[number].tolist(), strict=True))
         rod = Rod(F=0.0, **fixed)
-        here = eigenvalues[number]
+        eigenvalues_here = eigenvalues[number]
         rods = rod.coefficients, rod.coefficient_derivative("F")
         max_spacing = MAX_FORCE_SPACING * (F[-1] - F[0])
         candidates = (
-            locate_onset(rods, rod, (F[i], F[j]), here[i], here[j])
+            locate_onset(rods, rod, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j])
             if F[j] - F[i] > max_spacing
-            else onset_between(rods, (F[i], F[j]), here[i], here[j])
+            else onset_between(rods, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j])
             for i, j in onsets.get(number, ())
         )
         located = [next(filter(None, candidates), None)]
         for i, j in changes.get(number, ()):
             counts = lines.unstable_counts[number, [i, j]]
-            stored_counts = np.count_nonzero(here[[i, j]].real > 0, axis=-1)
+            stored_counts = np.count_nonzero(eigenvalues_here[[i, j]].real > 0, axis=-1)
             unstable = int(np.where(counts >= 0, counts, stored_counts).max())
-            located.append(stability_change_between(rods, (F[i], F[j]), here[i], here[j], unstable))
+            located.append(
+                stability_change_between(
+                    rods, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j], unstable
+                )
+            )
         for change in filter(None, located):
             values = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
             values |= {"error": change.error / abs(change.F) if change.F else change.error}

@@ -158,7 +158,7 @@ def test_a_crossing_beyond_the_end_of_a_search_is_found_again_but_once():
     intervals, seen = IntervalQueue([0.0, 1.0, 2.0, 3.0]), []
     for a, b in intervals:
         if b > 1.7:
-            intervals.end_within((a, b), "no")
+            intervals.limit_search_below((a, b), "no")
         else:
             seen.append((a, b))
     assert seen == [(0.0, 1.0), (1.0, 1.5), (1.5, 1.625), (1.625, 1.6875)]

@@ -32,8 +32,8 @@ class ContourSettings(KernelConstants):
     """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
     the line."""
     max_known_distance: float = 1.0
-    """A known eigenvalue is divided out of D only if its distance from the line is below this number times
-    max(|Im w|, |line|). D without farther eigenvalues would not follow the dominant wave."""
+    """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
+    eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
     min_valid_radius: float = 1e-12
     """The count fails if the valid radius of a node w, the distance within which the phase of D is known, is
     below this number times |w|: a zero of D is too close."""
@@ -99,14 +99,14 @@ class NoCrossingSettings(KernelConstants):
     arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0
-    """Known eigenvalues whose distance from a node is below this number times the radius of its disc are
-    divided out of D."""
+    """Distance of a known eigenvalue from a node, divided by the radius of the node's disc, below which the
+    eigenvalue is divided out of D."""
     min_known_distance: float = 1e-6
-    """A circle is not used if one of its points v has a known eigenvalue closer than this number times |v|:
-    D and the divisor are then both inaccurate."""
+    """Distance of a point v of a circle from a known eigenvalue, divided by |v|, below which the circle is
+    not used: D and the divisor are then both inaccurate."""
     min_distance_in_errors: float = 1e3
-    """A circle is not used if one of its points is closer to a known eigenvalue than this number times the
-    error of this eigenvalue."""
+    """Distance of a point of a circle from a known eigenvalue, divided by the error of this eigenvalue, below
+    which the circle is not used."""
     overlap: float = 0.98
     """Length of the line that a disc covers on each side of its node, divided by the radius."""
     min_fitting_fraction: float = 0.25

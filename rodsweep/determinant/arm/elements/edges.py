@@ -93,8 +93,10 @@ def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
 def _last_legendre_matrix(stages: int) -> Array:
     """Matrix from values at the Gauss points to the two highest Legendre coefficients, (2, stages)."""
     x, weights = np.polynomial.legendre.leggauss(stages)
-    last = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (np.arange(stages)[-2:] + 0.5)
-    return np.ascontiguousarray((weights[:, None] * last).T)
+    last_coefficients = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (
+        np.arange(stages)[-2:] + 0.5
+    )
+    return np.ascontiguousarray((weights[:, None] * last_coefficients).T)
 
 
 @compiled

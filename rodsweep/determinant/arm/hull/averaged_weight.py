@@ -28,7 +28,7 @@ class AveragedWeightSettings(KernelConstants):
     """Settings for the averaged weights alpha that are tried."""
 
     factors: tuple[float, ...] = (0.0, 0.5, 1.0)
-    """Values of the factor f of l in the weight t."""
+    """Values of f in l = f |F| sqrt(c2 c3 gamma3/gamma2), the term with the load in the trial weight t."""
     half_widths: tuple[float, ...] = (0.01, 0.02, 0.04, 0.08, 0.16, 0.32)
     """Values of the half-width h of the window, in L."""
     jump_distance: float = 1e-6

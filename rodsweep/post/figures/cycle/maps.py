@@ -203,10 +203,12 @@ def hopf_lines(points: PointMap, view: ResultView) -> list[Array]:
 def _hopf_points(points: PointMap, view: ResultView) -> Iterator[Array]:
     """Yields, for each row of a map, the positions of the located Hopf points, (n,)."""
     name, row_parameter = points.names
-    stored = StoredThresholds(view, name)
+    stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):
         row = ParameterLine(
             name, points.common_parameters | {row_parameter: float(value)}, points.x, row_indices
         )
-        located = (change for change in stored.thresholds_on(row) if isinstance(change, LocatedThreshold))
+        located = (
+            change for change in stored_thresholds.thresholds_on(row) if isinstance(change, LocatedThreshold)
+        )
         yield np.array([change.position for change in located if change.changes_stability])

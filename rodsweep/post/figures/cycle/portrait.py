@@ -197,9 +197,9 @@ def set_frame(panels: Sequence[Axes], cycles: Sequence[StoredCycle]) -> None:
 def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns ((left, right), (bottom, top)), the limits of all shapes and arrows, in the cycles' unit of
     length. ValueError if the shapes are too large for floating-point limits."""
-    longest = max(cycle.units.length for cycle in cycles)
-    wall_x = -WALL_DEPTH * longest
-    margin = SHAPE_MARGIN * longest
+    longest_length = max(cycle.units.length for cycle in cycles)
+    wall_x = -WALL_DEPTH * longest_length
+    margin = SHAPE_MARGIN * longest_length
     x_parts = [np.array([wall_x])]
     y_parts = []
     for cycle in cycles:

@@ -30,10 +30,14 @@ def lowest_parts(paths: list[Array], force: int) -> list[Array]:
     parts = []
     for path in paths:
         y = path[:, 1 - force, None]
-        share = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
+        edge_fraction = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
         crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        at = np.where(crosses, starts[:, force] + share * (ends[:, force] - starts[:, force]), np.inf)
-        parts.append(path[path[:, force] <= at.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)])
+        crossing_forces = np.where(
+            crosses, starts[:, force] + edge_fraction * (ends[:, force] - starts[:, force]), np.inf
+        )
+        parts.append(
+            path[path[:, force] <= crossing_forces.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)]
+        )
     return parts
 
 
@@ -44,22 +48,22 @@ def label_longest_curve(axes: Axes, paths: list[Array], name: str, length_fracti
     seen = []
     for path in paths:
         places = axes.transAxes.inverted().transform(axes.transData.transform(path))
-        inside = ((places >= 0) & (places <= 1)).all(axis=1)
-        steps = np.linalg.norm(np.diff(places[inside], axis=0), axis=1)
-        seen.append(path[inside])
-        lengths.append(np.append(0.0, np.cumsum(steps)) if inside.any() else np.zeros(1))
-    longest = max(range(len(paths)), key=lambda i: lengths[i][-1])
-    if not lengths[longest][-1] > 0:
+        is_inside = ((places >= 0) & (places <= 1)).all(axis=1)
+        steps = np.linalg.norm(np.diff(places[is_inside], axis=0), axis=1)
+        seen.append(path[is_inside])
+        lengths.append(np.append(0.0, np.cumsum(steps)) if is_inside.any() else np.zeros(1))
+    longest_index = max(range(len(paths)), key=lambda i: lengths[i][-1])
+    if not lengths[longest_index][-1] > 0:
         return
-    others = [child for child in axes.get_children() if isinstance(child, Annotation)]
+    other_labels = [child for child in axes.get_children() if isinstance(child, Annotation)]
     for fraction in (length_fraction, *OTHER_LABEL_POSITIONS):
-        at = int(np.searchsorted(lengths[longest], fraction * lengths[longest][-1]))
+        vertex_index = int(np.searchsorted(lengths[longest_index], fraction * lengths[longest_index][-1]))
         place: dict[str, Any] = {"xytext": (4, -2), "textcoords": "offset points"}
-        label = axes.annotate(name, seen[longest][at], size=LABEL_FONTSIZE, va="top", **place)
-        if not any(_overlap(label, other) for other in others):
+        label = axes.annotate(name, seen[longest_index][vertex_index], size=LABEL_FONTSIZE, va="top", **place)
+        if not any(_overlap(label, other) for other in other_labels):
             return
         label.remove()
-    axes.annotate(name, seen[longest][0], size=LABEL_FONTSIZE, va="top", **place)
+    axes.annotate(name, seen[longest_index][0], size=LABEL_FONTSIZE, va="top", **place)
 
 
 def _overlap(label: Annotation, other: Annotation) -> bool:

@@ -105,8 +105,10 @@ def pixel_classes(
                 )
                 break
     if walls.any() and not walls.all():
-        nearest = scipy.ndimage.distance_transform_edt(walls, return_distances=False, return_indices=True)
-        table = table[tuple(nearest)]
+        nearest_pixels = scipy.ndimage.distance_transform_edt(
+            walls, return_distances=False, return_indices=True
+        )
+        table = table[tuple(nearest_pixels)]
     return table
 
 

@@ -45,17 +45,19 @@ def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Ar
     build = build_of_rods(view)
     rows: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
-        stored = np.flatnonzero(kinds[index] > 0)
-        if not len(stored):
+        stored_indices = np.flatnonzero(kinds[index] > 0)
+        if not len(stored_indices):
             continue
         low, high = _uncrushed_row(view, build, line, int(index))
-        ends = [low, *positions[index, stored].tolist(), high]
-        is_monotone = kinds[index, stored[0]] == ONSET and unstable_counts[index, stored[0]] == 0
+        ends = [low, *positions[index, stored_indices].tolist(), high]
+        is_monotone = (
+            kinds[index, stored_indices[0]] == ONSET and unstable_counts[index, stored_indices[0]] == 0
+        )
         curve_words = ["monotone" if is_monotone else ""]
         curve_words += [
-            class_above_crossing(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored
+            class_above_crossing(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices
         ]
-        if len(stored) < counts[index] or np.isfinite(undecided_from[index]):
+        if len(stored_indices) < counts[index] or np.isfinite(undecided_from[index]):
             curve_words[-1] = ""
         for word, (start, end) in zip(curve_words, pairwise(ends), strict=True):
             if word and start < end:
@@ -108,8 +110,8 @@ def pixel_classes_of_row(
         own_pixels = piece_of_pixels == piece_number
         own_points = decided & (piece_of_points == piece_number)
         if own_points.any():
-            nearest = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
-            classified[own_pixels] = classes[own_points][nearest]
+            nearest_point = np.abs(x[own_points] - pixels[own_pixels][:, None]).argmin(axis=1)
+            classified[own_pixels] = classes[own_points][nearest_point]
     return classified
 
 

@@ -50,12 +50,12 @@ def _validity_lines(view: ResultView, computed: np.ndarray, rods: np.ndarray) ->
     validity = {variable.name: view.variables[variable.name][rods] for variable in VALIDITY_VARIABLES}
     noun = "row" if "crossing_at" in view.variables else "point"
     caveat = validity_sentence(validity, row_clause(view, rods), noun)
-    inside = rods & (view.variables["model_applies"] != Validity.does_not_apply)
+    is_in_model = rods & (view.variables["model_applies"] != Validity.does_not_apply)
     answer_lines = ANSWER_LINES_BY_TASK[view.task]
-    if not inside.any():
+    if not is_in_model.any():
         return [caveat, *(f"if the model applied: {line}" for line in answer_lines(view, rods))]
-    if (inside != rods).any():
-        return [caveat, *(f"where the model applies: {line}" for line in answer_lines(view, inside))]
+    if (is_in_model != rods).any():
+        return [caveat, *(f"where the model applies: {line}" for line in answer_lines(view, is_in_model))]
     answer = answer_lines(view, rods)
     return [caveat, *answer] if validity["model_applies"].any() else [*answer[:1], caveat, *answer[1:]]
 
@@ -193,16 +193,16 @@ def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
     """Lines about stability and leading frequency of the straight arms. rods: mask of the points."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
-    unknown = rods & (count < 0)
+    is_unknown = rods & (count < 0)
     lines = []
     if unstable.any():
         frequency = range_text(view, np.abs(view.variables["frequency_hz"][unstable][:, 0]), "Hz")
         count_clause = _count_clause(unstable, rods)
         lines = [f"the straight arm is unstable{count_clause}; its leading mode oscillates at {frequency}"]
-    elif not unknown.any():
+    elif not is_unknown.any():
         lines = ["the straight arm is stable"]
-    if unknown.any():
-        lines.append(f"whether the straight arm is stable is not known{_count_clause(unknown, rods)}")
+    if is_unknown.any():
+        lines.append(f"whether the straight arm is stable is not known{_count_clause(is_unknown, rods)}")
     return lines
 
 

@@ -48,15 +48,15 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     noun: "point", or "row" for rows of a phase diagram.
     """
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
-    unknown = validities == VALIDITY_NOT_KNOWN
+    is_unknown = validities == VALIDITY_NOT_KNOWN
     preposition = "on" if noun == "row" else "at"
     count = len(validities)
     everywhere = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
-    if unknown.all():
+    if is_unknown.all():
         return f"whether the model applies is not known{everywhere}{condition}: {MISSED_MOTION}"
     rest = (
-        f"; not known {preposition} {count_of_total(int(unknown.sum()), count, noun)}"
-        if unknown.any()
+        f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
+        if is_unknown.any()
         else ""
     )
     worst_validity = Validity(int(validities.max()))

@@ -153,31 +153,33 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
 def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
     point."""
-    new = plan.points
-    if tuple(old.axes) != tuple(new.axes) or old.names != new.names:
+    new_points = plan.points
+    if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
         kinds = [
             f"a grid of {enumeration(tuple(p.axes), 'and')}"
             if p.axes
             else f"a list of {enumeration(p.names, 'and')}"
-            for p in (old, new)
+            for p in (old, new_points)
         ]
         _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))
     if not old.axes:
-        return StoredPointMap(old.shape, new.shape, (_positions_in_list(header, old, new),))
-    positions = [_positions_on_axis(header, name, axis, new.axes[name]) for name, axis in old.axes.items()]
+        return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
+    positions = [
+        _positions_on_axis(header, name, axis, new_points.axes[name]) for name, axis in old.axes.items()
+    ]
     if plan.chains:
         axis = plan.chains.axis
         positions[axis] = _positions_before_first_change(
-            positions[axis], new.shape[axis], plan.chains.is_upward
+            positions[axis], new_points.shape[axis], plan.chains.is_upward
         )
     if plan.groups:
         axis = plan.groups.axis
         old_groups = groups_along_longest_axis(old.shape, old.varying_parameters)
-        is_unchanged = _is_stretch_unchanged(positions[axis], new.shape[axis])
+        is_unchanged = _is_stretch_unchanged(positions[axis], new_points.shape[axis])
         positions[axis] = np.where(
             is_unchanged & (old_groups is not None and old_groups.axis == axis), positions[axis], -1
         )
-    return StoredPointMap(old.shape, new.shape, tuple(positions))
+    return StoredPointMap(old.shape, new_points.shape, tuple(positions))
 
 
 def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
@@ -188,16 +190,16 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
     above = np.searchsorted(new, old).clip(max=len(new) - 1)
     below = (above - 1).clip(min=0)
     with np.errstate(invalid="ignore"):
-        nearest = np.where(np.abs(new[below] - old) < np.abs(new[above] - old), below, above)
-        distance = np.abs(new[nearest] - old)
-        is_equal = (new[nearest] == old) | (
+        nearest_indices = np.where(np.abs(new[below] - old) < np.abs(new[above] - old), below, above)
+        distance = np.abs(new[nearest_indices] - old)
+        is_equal = (new[nearest_indices] == old) | (
             np.isfinite(distance) & (distance <= ROUNDING_TOLERANCE * np.abs(old))
         )
     if not is_equal.all():
         _refuse_difference(
             header, f"parameters.{name} = {old[~is_equal][0]:.15g} is in the file and not in the config"
         )
-    return np.where(new[nearest] == old, nearest, -1).astype(np.int64)
+    return np.where(new[nearest_indices] == old, nearest_indices, -1).astype(np.int64)
 
 
 def _positions_before_first_change(positions: Indices, count: int, upward: bool) -> Indices:

@@ -72,16 +72,16 @@ class JoinedFile:
         """
         if not len(records):
             return
-        stored = records_at(path, records["index"], self.plan.layout)
+        stored_records = records_at(path, records["index"], self.plan.layout)
         for name in (v.name for v in self.plan.layout.variables if v.name != SECONDS.name):
-            old = stored[name]
-            new = records[name]
-            is_equal = (old == new) | (np.isnan(old) & np.isnan(new))
+            old_values = stored_records[name]
+            new_values = records[name]
+            is_equal = (old_values == new_values) | (np.isnan(old_values) & np.isnan(new_values))
             is_different = ~is_equal.reshape(len(is_equal), -1).all(axis=1)
             for i in np.flatnonzero(is_different):
                 index = int(records["index"][i])
                 pair = (self.sources[owner[index]], self.sources[number])
-                if not self._is_rounding_error(name, stored[i][name], records[i][name], pair):
+                if not self._is_rounding_error(name, stored_records[i][name], records[i][name], pair):
                     text = _point_text(self.plan.points, index)
                     paths = " and ".join(str(source.path) for source in pair)
                     raise InputError(f"{paths} disagree about the point {text}: the values of {name} differ")
@@ -155,20 +155,20 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
                 f"the files have {name} = {values}, which differ by rounding only; make these values equal"
             )
         axes.append(axis)
-    joined = Points(grids[0].names, tuple(axes), is_grid=True)
-    covered = np.zeros(joined.shape, bool)
+    union = Points(grids[0].names, tuple(axes), is_grid=True)
+    covered = np.zeros(union.shape, bool)
     maps = []
     for grid in grids:
         positions = [np.searchsorted(axis, column) for axis, column in zip(axes, grid.columns, strict=True)]
         covered[np.ix_(*positions)] = True
-        maps.append(StoredPointMap(grid.shape, joined.shape, tuple(positions)))
+        maps.append(StoredPointMap(grid.shape, union.shape, tuple(positions)))
     if not covered.all():
         raise InputError(
             f"together the files do not form a full grid: {np.count_nonzero(~covered)} of {covered.size} "
-            f"points are in no file, the first at {_point_text(joined, int(np.argmin(covered)))}; compute "
+            f"points are in no file, the first at {_point_text(union, int(np.argmin(covered)))}; compute "
             "these points into a separate file, or merge fewer files"
         )
-    return joined, maps
+    return union, maps
 
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
@@ -181,9 +181,9 @@ def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
     all_rows = np.empty((len(numbers), rows[0].shape[1]))
     for point_map, table in zip(maps, rows, strict=True):
         all_rows[point_map] = table
-    joined = Points(lists[0].names, tuple(np.ascontiguousarray(all_rows.T)), is_grid=False)
+    union = Points(lists[0].names, tuple(np.ascontiguousarray(all_rows.T)), is_grid=False)
     shapes = (points.shape for points in lists)
-    return joined, [StoredPointMap(shape, joined.shape, (p,)) for shape, p in zip(shapes, maps, strict=True)]
+    return union, [StoredPointMap(shape, union.shape, (p,)) for shape, p in zip(shapes, maps, strict=True)]
 
 
 def _joined_config(header: ResultHeader, settings: dict[str, Any], points: Points) -> Config:
@@ -242,5 +242,7 @@ def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> Fi
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
-    kept = {name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES}
-    return replace(plan, attributes=kept | {"config": text}, flags=flags)
+    kept_attributes = {
+        name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES
+    }
+    return replace(plan, attributes=kept_attributes | {"config": text}, flags=flags)

@@ -85,8 +85,8 @@ def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> M
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
     returns the outcome of the merge. copy: path of the merged file. used: sources of the stored points.
     """
-    missing = missing_ranges(copy)
-    finished = not missing and not plan.layout.needs_all_points
+    missing_indices = missing_ranges(copy)
+    finished = not missing_indices and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in used])
     with h5py.File(copy, "r+") as file:
         if finished and "finished" not in file.attrs:
@@ -94,7 +94,7 @@ def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> M
             file.attrs["finished"] = utc_time()
         file.attrs.update(history)
         points = file["status"].size
-    count = index_count(missing)
+    count = index_count(missing_indices)
     return MergeResult(points - count, count, finished, kernels_sentence(history[KERNELS_ATTRIBUTE]))
 
 

@@ -53,7 +53,7 @@ class BorderCondition:
         """
         matrix = BorderedMatrix(orbit, self.scale, workspace)
         distance = 0.0
-        last = np.inf
+        previous_change = np.inf
         step = matrix.step(self.border, self.residual(orbit))
         for _ in range(ORBIT_NEWTON_SETTINGS.max_iterations):
             report()
@@ -64,7 +64,8 @@ class BorderCondition:
                 )
             orbit = moved_orbit(orbit, self.scale.parameter_name, step)
             distance = distance + change
-            rate = change / last if distance > change else np.inf  # no rate at the first step with a matrix
+            # There is no rate at the first step with a matrix.
+            rate = change / previous_change if distance > change else np.inf
             # The next step would have the length change * rate; a negligible step is not made.
             is_converged = (
                 change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
@@ -79,10 +80,10 @@ class BorderCondition:
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 distance = 0.0
                 step = matrix.step(self.border, self.residual(orbit))
-                last = np.inf
+                previous_change = np.inf
             else:
                 step = matrix.correction(orbit, self.border, self.residual(orbit))
-                last = change
+                previous_change = change
         raise Unsolvable(
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )

@@ -42,8 +42,11 @@ class _SecantIterate(NamedTuple):
 
 class SecantSearch:
     """State of the secant method across a curve; all cycles are corrected with the matrix factors of one
-    cycle. Arguments as in `CycleFamily.corrected_point`. orbit: current cycle. distance: its distance from
-    the start of the search along `line`. start_arc_length: arc length of this start along the branch."""
+    cycle. family, start, row_coordinate: the family of cycles, the orbit at which the search starts, and its
+    row coordinate from 0 to 1. line: line of the search. derivatives: derivatives from an earlier search, or
+    None. is_other_mesh: whether these were computed at the same point on another mesh. orbit: current cycle.
+    distance: its distance from the start of the search along `line`. start_arc_length: arc length of this
+    start along the branch."""
 
     def __init__(
         self,
@@ -168,12 +171,12 @@ class SecantSearch:
         change = current_orbit.form.rod.coordinate(name) - previous_orbit.form.rod.coordinate(name)
         orbit = np.append(current_orbit.values - previous_orbit.values, change) / span
         slope = (current.test_value - previous.test_value) / span
-        self._measure_curvature((current.distance + previous.distance) / 2, slope)
+        self._update_relative_second_derivative((current.distance + previous.distance) / 2, slope)
         return NormalDerivatives(self.line.direction, slope, orbit, mesh_of(previous_orbit), abs(span))
 
-    def _measure_curvature(self, middle: float, slope: float) -> None:
-        """Updates the curvature from the last two measured derivatives. middle: distance at which the
-        derivative of the test function is `slope`."""
+    def _update_relative_second_derivative(self, middle: float, slope: float) -> None:
+        """Updates `curvature`, abs(f''/f') of the test function f along the search line, from the last two
+        measured derivatives. middle: distance at which the derivative f' is `slope`."""
         self.measured_slopes.append((middle, slope))
         if len(self.measured_slopes) > 1:
             (previous_middle, previous_slope), (last_middle, last_slope) = self.measured_slopes[-2:]

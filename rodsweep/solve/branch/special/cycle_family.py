@@ -112,31 +112,33 @@ class CycleFamily:
         row_coordinate: row coordinate of `start`, from 0 to 1. line: line of the search. derivatives:
         derivatives from an earlier search.
         """
-        last = self.corrected_point(start, row_coordinate, line, derivatives)
-        if previous and previous.measured_error and previous.measured_error.applies_at(last):
-            return replace(last, measured_error=previous.measured_error.for_next_point)
+        coarser_point = self.corrected_point(start, row_coordinate, line, derivatives)
+        if previous and previous.measured_error and previous.measured_error.applies_at(coarser_point):
+            return replace(coarser_point, measured_error=previous.measured_error.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
-            mesh = mesh_of(last.orbit)
+            mesh = mesh_of(coarser_point.orbit)
             longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
             larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
-            finer = replace(larger, interval_count=longer)
-            if not finer.is_allowed:
+            finer_mesh = replace(larger, interval_count=longer)
+            if not finer_mesh.is_allowed:
                 break
-            normal_derivatives = last.normal_derivatives
-            start = finer.interpolated_orbit(last.orbit)
+            normal_derivatives = coarser_point.normal_derivatives
+            start = finer_mesh.interpolated_orbit(coarser_point.orbit)
             fine_point = self.corrected_point(
-                start, last.row_coordinate, line, normal_derivatives, is_other_mesh=True
+                start, coarser_point.row_coordinate, line, normal_derivatives, is_other_mesh=True
             )
             # The solutions on both meshes may be displaced along the curve; the slope removes this
             # displacement from the error.
-            chord_change = line.chord_slope * (fine_point.row_coordinate - last.row_coordinate)
-            parameter_difference = abs(fine_point.parameter - last.parameter - chord_change)
+            chord_change = line.chord_slope * (fine_point.row_coordinate - coarser_point.row_coordinate)
+            parameter_difference = abs(fine_point.parameter - coarser_point.parameter - chord_change)
             error = (
                 CURVE_SECANT_SETTINGS.error_factor * parameter_difference
                 + CURVE_SECANT_SETTINGS.min_error * abs(fine_point.parameter)
             )
             if error <= CURVE_SECANT_SETTINGS.accuracy * abs(fine_point.parameter):
-                errors = MeasuredCurveError(error / abs(last.parameter), smooth_tails(last.orbit), mesh)
-                return replace(last, measured_error=errors)
-            last = fine_point
+                errors = MeasuredCurveError(
+                    error / abs(coarser_point.parameter), smooth_tails(coarser_point.orbit), mesh
+                )
+                return replace(coarser_point, measured_error=errors)
+            coarser_point = fine_point
         raise mesh_limit()

@@ -85,20 +85,20 @@ class DiagramStages:
 
     def _stage_after(self, stages: Sequence[Stage], results: Results) -> Stage | None:
         """The stage after complete `stages`; None if nothing is left to do."""
-        last = stages[-1]
-        if isinstance(last, SpecialCurveTracer):
-            return _rows_after(last, stages, results)
-        new_points = self._new_special_points(stages, last, results)
+        last_stage = stages[-1]
+        if isinstance(last_stage, SpecialCurveTracer):
+            return _rows_after(last_stage, stages, results)
+        new_points = self._new_special_points(stages, last_stage, results)
         if not new_points:
             return None
         known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
         known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
             self.first,
-            first_item=last.end_item,
+            first_item=last_stage.end_item,
             special_points=new_points,
             known_special_points=known_points,
-            starts_by_row={row: last.starts_of_row(row) for row in last.crossings},
+            starts_by_row={row: last_stage.starts_of_row(row) for row in last_stage.crossings},
         )
 
     def _special_points_of_rows(self, stages: Sequence[Stage], results: Results) -> list[RowSpecialPoint]:

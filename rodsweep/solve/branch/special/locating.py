@@ -100,10 +100,10 @@ def special_point_between(
                 if point is None or np.isnan(point.error):
                     raise
                 break  # the point on coarser meshes, with its measured error
-            last = point
+            coarser_point = point
             point = _special_point_at(kind, orbit, start.scale.parameter_name)
-            if last is not None:
-                point = _with_mesh_errors(point, last, start, end)
+            if coarser_point is not None:
+                point = _with_mesh_errors(point, coarser_point, start, end)
                 if point.error <= required_accuracy * abs(point.parameter_value):
                     break
             # Every second mesh is chosen from the measured error; the mesh after it is only slightly finer.
@@ -224,19 +224,19 @@ def _zero_by_secants(
     tolerance = segment.length * linear
     length = guess
     step = np.inf
-    previous = None
+    previous_point = None
     for _ in range(SPECIAL_POINT_SETTINGS.max_secant_steps):
         f = test_function_value(kind, segment, segment.cycle_at(length))
-        if previous is not None and f != previous[1]:
-            slope = (f - previous[1]) / (length - previous[0])
-        last = abs(step)
+        if previous_point is not None and f != previous_point[1]:
+            slope = (f - previous_point[1]) / (length - previous_point[0])
+        last_step_length = abs(step)
         step = -f / slope
         if not abs(step) < segment.length:
             raise Unsolvable("the secant method leaves the interval between the two cycles")
         # A short step that hardly decreased is rounding error.
         if (
             abs(step) <= tolerance
-            or SPECIAL_POINT_SETTINGS.converging_step_ratio * last
+            or SPECIAL_POINT_SETTINGS.converging_step_ratio * last_step_length
             < abs(step)
             <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
         ):
@@ -245,6 +245,6 @@ def _zero_by_secants(
             if kind == SpecialKind.fold:
                 change[-1] /= 2  # the derivative of the parameter decreases linearly to 0 along the step
             return length + step, moved_orbit(orbit, segment.start.scale.parameter_name, change), slope
-        previous = length, f
+        previous_point = length, f
         length += step
     raise Unsolvable("the secant method for the special point does not converge")

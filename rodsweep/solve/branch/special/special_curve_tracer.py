@@ -210,14 +210,16 @@ class _CurvesOfKind:
         """Whether the special point `special_point` lies on the extrapolation of a curve to a Hopf point."""
         if special_point.tip_y_max >= END_SETTINGS.min_amplitude:
             return False
-        for end, last in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
+        for end, last_point in zip(curve.hopf_ends, (curve.points[0], curve.points[-1]), strict=True):
             if end is None:
                 continue
             x = self.line_axis.coordinate(end.parameter_value)
             y = self.row_axis.coordinate(end.row_value)
             # On the straight chord from the Hopf point to the last cycle.
-            fraction = (self.row_axis.coordinate(special_point.row_value) - y) / (last.row_coordinate - y)
-            chord = x + fraction * (self.line_axis.coordinate(last.parameter_value) - x)
+            fraction = (self.row_axis.coordinate(special_point.row_value) - y) / (
+                last_point.row_coordinate - y
+            )
+            chord = x + fraction * (self.line_axis.coordinate(last_point.parameter_value) - x)
             distance = abs(chord - self.line_axis.coordinate(special_point.parameter_value))
             if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True

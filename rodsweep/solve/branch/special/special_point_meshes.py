@@ -23,8 +23,10 @@ def first_mesh(calibration: BranchCalibration, accuracy: float) -> OrbitMesh:
     stages = max(mesh.stage_count, cheapest_stage_count(accuracy))
     if stages == mesh.stage_count:
         return mesh
-    coarser = calibration.cheapest_mesh_for_parameter(target_accuracy ** (mesh.stage_count / stages))
-    return replace(mesh, stage_count=stages, interval_count=min(mesh.interval_count, coarser.interval_count))
+    coarser_mesh = calibration.cheapest_mesh_for_parameter(target_accuracy ** (mesh.stage_count / stages))
+    return replace(
+        mesh, stage_count=stages, interval_count=min(mesh.interval_count, coarser_mesh.interval_count)
+    )
 
 
 def next_mesh(mesh: OrbitMesh, excess: float) -> OrbitMesh:

@@ -114,8 +114,8 @@ class CriticalModesOfPath:
         leading modes; raises Unsolvable. guesses: approximate eigenvalues near the imaginary
         axis, (n,), one of each pair, if available."""
         # The neighbour's count gives the number of modes: the unstable modes and one more pair.
-        nearest = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
-        expected_count = 0 if nearest is None else nearest.unstable_count
+        nearest_modes = min(self.modes_by_p.values(), key=lambda place: abs(place.p - p), default=None)
+        expected_count = 0 if nearest_modes is None else nearest_modes.unstable_count
         modes = self._modes_near_axis(p, guesses) if self.has_many_modes(p) else None
         return modes or self._leading_modes(p, expected_count)
 

@@ -89,7 +89,7 @@ class CrossingSearch:
             try:
                 self._search_interval(a, b, intervals)
             except Unsolvable as reason:
-                intervals.end_within((a, b), str(reason))
+                intervals.limit_search_below((a, b), str(reason))
                 self.crossings_by_p = {p: crossing for p, crossing in self.crossings_by_p.items() if p <= a}
         ordered = [self.crossings_by_p[p] for p in sorted(self.crossings_by_p)]
         return [c for c in ordered if self._may_lie_within(c, edges[0], edges[-1])], intervals.end

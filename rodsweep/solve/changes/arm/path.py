@@ -147,19 +147,23 @@ class ArmPath(PathProblem):
         Near a crossing a request for many modes is followed by a request for one more pair; this pair is
         therefore included in the first solve.
         """
-        stored = self._solved_spectra.get(p)
+        stored_spectrum = self._solved_spectra.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
-        if stored is None or len(stored.eigenvalues) < request.modes or stored.status != SpectrumStatus.ok:
+        if (
+            stored_spectrum is None
+            or len(stored_spectrum.eigenvalues) < request.modes
+            or stored_spectrum.status != SpectrumStatus.ok
+        ):
             spare = ARM_PATH_SETTINGS.spare_modes if request.modes > ARM_PATH_SETTINGS.followed_modes else 0
-            stored = super().spectrum(p, replace(request, modes=request.modes + spare))
+            stored_spectrum = super().spectrum(p, replace(request, modes=request.modes + spare))
             # The additional modes may be harder to solve; they must not spoil the requested modes.
-            if spare and stored.status != SpectrumStatus.ok:
-                stored = super().spectrum(p, request)
-            self._solved_spectra[p] = stored
+            if spare and stored_spectrum.status != SpectrumStatus.ok:
+                stored_spectrum = super().spectrum(p, request)
+            self._solved_spectra[p] = stored_spectrum
         return replace(
-            stored,
-            eigenvalues=stored.eigenvalues[: request.modes],
-            error_estimate=stored.error_estimate[: request.modes],
+            stored_spectrum,
+            eigenvalues=stored_spectrum.eigenvalues[: request.modes],
+            error_estimate=stored_spectrum.error_estimate[: request.modes],
         )
 
     def known_count_near_middle(self, low: float, high: float) -> int | None:
@@ -168,8 +172,8 @@ class ArmPath(PathProblem):
             for p in self._unstable_counts
             if abs(p - (low + high) / 2) < ARM_PATH_SETTINGS.max_count_distance_from_middle * (high - low)
         ]
-        nearest = min(positions, key=lambda p: abs(p - (low + high) / 2), default=None)
-        return None if nearest is None else self._unstable_counts[nearest]
+        nearest_p = min(positions, key=lambda p: abs(p - (low + high) / 2), default=None)
+        return None if nearest_p is None else self._unstable_counts[nearest_p]
 
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
         slope_and_error = (

@@ -114,7 +114,7 @@ class BoundaryCurveProblem:
         1; (5,)."""
         x, y = map(float, point.v[:2])
         is_in_plane = 0 <= x <= 1 and 0 <= y <= 1
-        # Outside the plane the parameters may describe no rod.
+        # Outside the plane the parameters may be outside their allowed ranges.
         uncrushed_sign = 1.0 if not is_in_plane or self.boundary.plane.is_uncrushed_at(x, y) else -1.0
         return np.array([x, 1 - x, y, 1 - y, uncrushed_sign])
 

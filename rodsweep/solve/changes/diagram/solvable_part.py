@@ -33,22 +33,22 @@ def thresholds_of_solvable_part(
     either.
     """
     start, stop = row_ends
-    first = _attempt(rod, name, row_ends, certify)
-    if not first.failure and first.found is not None:
-        return first.found
+    first_attempt = _attempt(rod, name, row_ends, certify)
+    if not first_attempt.failure and first_attempt.found is not None:
+        return first_attempt.found
     later_starts = (
         [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
         if name == "F"
         else []
     )
-    last = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first
-    if last.found is None:
-        raise Unsolvable(last.failure)
+    last_attempt = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first_attempt
+    if last_attempt.found is None:
+        raise Unsolvable(last_attempt.failure)
     if not later_starts:
-        return last.found
+        return last_attempt.found
     # Bisection for the first value from which the row can be searched; a search from starts[high] succeeds.
     starts = [start, *later_starts]
-    failure = first.failure
+    failure = first_attempt.failure
     failed_index = 0
     solved_index = len(later_starts)
     while solved_index - failed_index > 1:
@@ -59,8 +59,10 @@ def thresholds_of_solvable_part(
             failure = attempt.failure
         else:
             solved_index = middle_index
-            last = attempt
-    return _with_late_start(last.found or first.found, (starts[failed_index], starts[solved_index]), failure)
+            last_attempt = attempt
+    return _with_late_start(
+        last_attempt.found or first_attempt.found, (starts[failed_index], starts[solved_index]), failure
+    )
 
 
 def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:

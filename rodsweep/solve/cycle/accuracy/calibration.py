@@ -92,8 +92,12 @@ class Calibration:
     def scaled_on_branch(self, orbit: Orbit) -> "Calibration":
         """This calibration with the errors scaled to a later orbit of a branch. The size of this orbit is
         ignored: a branch is followed by arc length, and errors do not grow as orbits shrink."""
-        after = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (0.0, 0.0, 1.0)
-        return replace(self, error_growth=error_growth_factors(self.tails_and_size, after))
+        present_tails = tails_and_size(orbit) * np.array([1.0, 1.0, 0.0]) + self.tails_and_size * (
+            0.0,
+            0.0,
+            1.0,
+        )
+        return replace(self, error_growth=error_growth_factors(self.tails_and_size, present_tails))
 
     @property
     def with_outdated_errors(self) -> "Calibration":
@@ -150,13 +154,13 @@ def calibration_of(
         space_decay = _limited_space_decay(np.full(ERROR_COUNT, decay))
         time_order = np.full(ERROR_COUNT, CALIBRATION_SETTINGS.time_order_per_stage * orbit.stage_count)
         return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
-    previous = nearby.mesh
+    previous_mesh = nearby.mesh
     space_decay = nearby.space_decay
     time_order = nearby.time_order
-    if previous.order != mesh.order and previous.has_elements_of(mesh):
-        space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous.order)
-    if previous.interval_count != mesh.interval_count:
-        time_order = _measured_time_order(nearby.time_errors, time, previous, mesh)
+    if previous_mesh.order != mesh.order and previous_mesh.has_elements_of(mesh):
+        space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous_mesh.order)
+    if previous_mesh.interval_count != mesh.interval_count:
+        time_order = _measured_time_order(nearby.time_errors, time, previous_mesh, mesh)
     return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
 
 

@@ -116,9 +116,9 @@ def _predicted_cycle(
     there is no cycle near `start` on a coarser or on the last mesh, if the errors do not decrease, or if the
     cycle is far from its prediction.
     """
-    coarser = CoarserMeshes(mesh, start, accuracy, workspace)
-    last = inf
-    orbit, calibration = best = coarser.predicted_orbit_and_errors(mesh)
+    coarser_meshes = CoarserMeshes(mesh, start, accuracy, workspace)
+    max_error = inf
+    orbit, calibration = best = coarser_meshes.predicted_orbit_and_errors(mesh)
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         error = calibration.errors(accuracy).largest_weighted_error
         if error < best[1].errors(accuracy).largest_weighted_error:
@@ -126,15 +126,15 @@ def _predicted_cycle(
         if error <= accuracy:
             break
         # A prediction that gets worse on a finer mesh has reached rounding errors, or another cycle.
-        if error > last:
+        if error > max_error:
             raise Unsolvable("the errors do not decrease on finer meshes")
         mesh = finer_mesh(mesh, cheapest_mesh(calibration, accuracy))
-        last = REFINEMENT_SETTINGS.max_error_increase * error
+        max_error = REFINEMENT_SETTINGS.max_error_increase * error
         if not mesh.is_allowed:
             break
-        if not coarser.can_predict(mesh):
-            coarser = CoarserMeshes(mesh, orbit, accuracy, workspace)
-        orbit, calibration = coarser.predicted_orbit_and_errors(mesh)
+        if not coarser_meshes.can_predict(mesh):
+            coarser_meshes = CoarserMeshes(mesh, orbit, accuracy, workspace)
+        orbit, calibration = coarser_meshes.predicted_orbit_and_errors(mesh)
     orbit, calibration = best
     solved = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), start.max_energy_norm)
     if solved.matrix_distance > max(
@@ -159,7 +159,7 @@ def cycle_with_measured_errors(
     cycle is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the accuracy.
     """
     best_cycle = None
-    last = inf
+    max_error = inf
     for _ in range(REFINEMENT_SETTINGS.max_meshes):
         calibration = measured_calibration(solved, accuracy, calibration)
         cycle = cycle_with_calibrated_errors(calibration, solved, accuracy)
@@ -168,9 +168,9 @@ def cycle_with_measured_errors(
             or cycle.errors.largest_weighted_error < best_cycle.errors.largest_weighted_error
         ):
             best_cycle = cycle
-        if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > last:
+        if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > max_error:
             break
-        last = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
+        max_error = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
         finer = finer_mesh(calibration.mesh, cheapest_mesh(calibration, accuracy))
         if not finer.is_allowed:
             break
@@ -187,8 +187,8 @@ def _solve_on_mesh(
     its multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
     parameter: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
-    last = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
-    solution = newton(mesh.interpolated_orbit(solved.orbit), last, solved.workspace)
+    first_change = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
+    solution = newton(mesh.interpolated_orbit(solved.orbit), first_change, solved.workspace)
     return newton_step(require_similar_size(solution, solved.orbit.max_energy_norm), parameter)
 
 

@@ -119,9 +119,9 @@ def integrable_rod(rod: Rod) -> Rod:
     everywhere; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
     gamma1 = max(rod.gamma1, MOTION_MESH_SETTINGS.min_axial_drag)
     build = rod.build
-    least = MOTION_MESH_SETTINGS.min_axial_drag / gamma1
-    if build.profile is not None and build.relative_least_axial_drag < least:
-        build = replace(build, profile=build.profile.with_factors_above("gamma1", least))
+    least_factor = MOTION_MESH_SETTINGS.min_axial_drag / gamma1
+    if build.profile is not None and build.relative_least_axial_drag < least_factor:
+        build = replace(build, profile=build.profile.with_factors_above("gamma1", least_factor))
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH_SETTINGS.max_stiffness),

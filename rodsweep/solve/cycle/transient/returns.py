@@ -53,13 +53,13 @@ def return_limit(row: Array, z: Array, returns: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
     RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
     count = 0
-    last = float(row @ z)
+    last_angle = float(row @ z)
 
     def enough(state: Array) -> bool:
-        nonlocal count, last
+        nonlocal count, last_angle
         angle = float(row @ state)
-        count += int(last < 0 <= angle)
-        last = angle
+        count += int(last_angle < 0 <= angle)
+        last_angle = angle
         return count >= returns
 
     return RunLimit(enough, RETURN_SETTINGS.max_steps_per_run)

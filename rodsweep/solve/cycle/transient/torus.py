@@ -123,10 +123,14 @@ def _unstable_cycles(transient: TransientIntegration) -> Iterator[RefinedCycle]:
 def unstable_pair_angle(cycle: RefinedCycle) -> float | None:
     """Argument, in (0, pi), of the complex pair of Floquet multipliers outside the unit circle; None unless
     this pair is the only instability of the cycle."""
-    outside = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
-    if cycle.stable is not False or len(outside) != 2 or abs(outside[0].imag) <= cycle.largest_modulus_error:
+    outer_multipliers = cycle.multipliers[np.abs(cycle.multipliers) > 1 - cycle.largest_modulus_error]
+    if (
+        cycle.stable is not False
+        or len(outer_multipliers) != 2
+        or abs(outer_multipliers[0].imag) <= cycle.largest_modulus_error
+    ):
         return None
-    return float(abs(np.angle(outside[0])))
+    return float(abs(np.angle(outer_multipliers[0])))
 
 
 def torus_frequency_of(returns: Array, angle: float) -> TorusFrequency | None:

@@ -178,11 +178,11 @@ class TransientIntegration:
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
-        after = relax_fast_components(self.beam, z, self.leading_mode.period)
+        relaxed_state = relax_fast_components(self.beam, z, self.leading_mode.period)
         if self.record:
             self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_duration_ratio * self.leading_mode.period
-            self.record.begin_with_relaxation(z, after, self.elapsed_time)
-        return after
+            self.record.begin_with_relaxation(z, relaxed_state, self.elapsed_time)
+        return relaxed_state
 
     def _result(self, status: CycleStatus, text: str, cycle: RefinedCycle | None = None) -> TransientOutcome:
         return TransientOutcome(status, text, self.returns, cycle)

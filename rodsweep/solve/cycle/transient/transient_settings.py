@@ -20,7 +20,7 @@ class TransientSettings:
     """Number of returns of the first run. A fast-growing motion may already have reached its cycle then; slow
     growth and decay are recognised only after later runs."""
     max_newton_distance: float = 0.1
-    """Newton's method starts if the relative distance between two returns is less than this number."""
+    """Relative distance between two returns, below which Newton's method starts."""
     newton_divisor: int = 10
     """After each attempt of Newton's method, `max_newton_distance` is divided by this number."""
     max_newton_distance_with_path: float = 1e-3
@@ -40,7 +40,7 @@ class TransientSettings:
     max_stored_returns: int = 400
     """Number of last returns that are stored for the recognition of a torus."""
     max_periodic_distance: float = 1e-4
-    """A motion is periodic if the relative distance between two returns is less than this number. Periodic
+    """Relative distance between two returns, below which a motion is periodic. Periodic
     motions, integrated with a tolerance of 1e-5, return to within 1e-6 to 1e-4."""
     max_successive_failures: int = 4
     """The integration of a periodic motion ends after this number of successive failures of Newton's method:

@@ -58,8 +58,10 @@ def carry_counts(path: ParameterPath, interval: ArmInterval, modes: int) -> None
     modes: number of requested modes.
     """
     w, error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
-    last = w[:, modes - 1]
-    lines = np.minimum(last.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(last)
+    last_requested_w = w[:, modes - 1]
+    lines = np.minimum(last_requested_w.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(
+        last_requested_w
+    )
     followed = SortedEigenvalues(w, error, lines)
     # Where even the last followed eigenvalue grows, not all growing eigenvalues are followed.
     unproved = np.flatnonzero((interval.proved_modes < modes) & (w[:, -1].real <= 0))
@@ -90,15 +92,15 @@ def _longest_chain(
 ) -> CarriedCountChain:
     """The longest chain of points found from the first to the last index in `end_indices`; without lines if
     no count can be carried from the first point."""
-    index, last = end_indices
+    index, last_index = end_indices
     shortest = NO_CROSSING_SETTINGS.arm_count - 1
     chain = CarriedCountChain([index], [])
     confirmed = None
-    stride = last - index
-    while last - index >= shortest:
-        next_index = min(index + stride, last)
-        if last - next_index < shortest:
-            next_index = last
+    stride = last_index - index
+    while last_index - index >= shortest:
+        next_index = min(index + stride, last_index)
+        if last_index - next_index < shortest:
+            next_index = last_index
         line = float(followed.lines[index : next_index + 1].min())
         if confirmed is None or confirmed > line:
             confirmed = _confirmed_line_at(path, interval, followed, (index, line), modes)

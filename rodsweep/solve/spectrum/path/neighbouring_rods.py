@@ -92,18 +92,20 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     start = 0
     stride = 1
     while start < n:
-        followed = _followed_eigenvalues(rods, start, request)
-        if followed is None:
+        followed_w = _followed_eigenvalues(rods, start, request)
+        if followed_w is None:
             # If no proof succeeds, for example without a bound, following is tried less and less often.
             start += stride
             stride *= 2
             continue
-        indices = slice(start, start + len(followed.is_accepted))
-        columns["eigenvalues"][indices] = followed.w
-        columns["error_estimate"][indices] = errors_with_rounding(followed.w, followed.error, rods.path.rod)
-        columns["unstable_count"][indices] = followed.unstable_count
+        indices = slice(start, start + len(followed_w.is_accepted))
+        columns["eigenvalues"][indices] = followed_w.w
+        columns["error_estimate"][indices] = errors_with_rounding(
+            followed_w.w, followed_w.error, rods.path.rod
+        )
+        columns["unstable_count"][indices] = followed_w.unstable_count
         columns["certified"][indices] = True
-        is_solved[indices] = followed.is_accepted
+        is_solved[indices] = followed_w.is_accepted
         start = indices.stop
         stride = 1
     seconds = np.full(n, (time.perf_counter() - start_time) / max(1, int(is_solved.sum())))
@@ -150,9 +152,9 @@ def _followed_eigenvalues(
         return None
     track = slice_track(track, 0, n)
     proved_counts = _proved_counts_along(later_rods, track, modes, proved_count)
-    reached = slice_track(track, 0, len(proved_counts))
-    is_good, unstable_counts = assess_points(reached, proved_counts, modes, request.accuracy)
-    return FollowedPoints(*leading_eigenvalues(reached, modes), unstable_counts, is_good)
+    reached_track = slice_track(track, 0, len(proved_counts))
+    is_good, unstable_counts = assess_points(reached_track, proved_counts, modes, request.accuracy)
+    return FollowedPoints(*leading_eigenvalues(reached_track, modes), unstable_counts, is_good)
 
 
 def _proved_counts_along(

@@ -82,9 +82,9 @@ def amplitude_branches(view: ResultView, name: str, units: CycleUnits = PLAIN_UN
     period = units.time * np.where(cycle, v["period"].ravel(), np.nan)
     power = units.power * np.where(cycle, v["injection_mean"].ravel(), np.nan)
     branches = []
-    stored = StoredThresholds(view, "F")
+    stored_thresholds = StoredThresholds(view, "F")
     for line in lines_along(view.point_columns, name):
-        changes = stored.thresholds_on(line) if name == "F" else []
+        changes = stored_thresholds.thresholds_on(line) if name == "F" else []
         indices = line.indices
         hopf_points = [
             change for change in changes if isinstance(change, LocatedThreshold) and change.changes_stability

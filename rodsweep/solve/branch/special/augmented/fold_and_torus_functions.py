@@ -169,21 +169,21 @@ def correct_until_converged(function: FoldFunction | TorusFunction, orbit: Orbit
     """Corrects a test function at an orbit until its value changes only by rounding error; raises
     Unsolvable."""
     value = function.value(orbit)
-    last = np.inf
+    previous_change = np.inf
     for number in range(AUGMENTED_SETTINGS.max_corrections):
         function.correct_vectors(orbit)
         previous_value = value
         value = function.value(orbit)
         change = abs(value - previous_value)
         if change <= SPECIAL_POINT_SETTINGS.test_function_tolerance or (
-            change > SPECIAL_POINT_SETTINGS.converging_step_ratio * last
+            change > SPECIAL_POINT_SETTINGS.converging_step_ratio * previous_change
             and change <= AUGMENTED_SETTINGS.rounding_correction
         ):
             return
-        if change > last:
+        if change > previous_change:
             break
         # The first value belongs to the cycle of the matrix; by chance it may be as close as the second.
-        last = change if number > 0 else np.inf
+        previous_change = change if number > 0 else np.inf
     raise Unsolvable("the iteration for the test function of the special point does not converge")
 
 

@@ -73,7 +73,7 @@ class NearbyCycleSolver:
         slope: approximate modulus of the derivative of the test function across the curve. tolerance:
         relative tolerance of cycle and test function; far from the curve
         `AUGMENTED_SETTINGS.tolerance_to_distance_ratio` allows more."""
-        last = 0.0
+        previous_change = 0.0
         for _ in range(AUGMENTED_SETTINGS.max_corrections):
             report()
             orbit, change = self._corrected_orbit(orbit, condition)
@@ -84,20 +84,24 @@ class NearbyCycleSolver:
             # The change of the test function, divided by `slope`, is a distance across the curve.
             change_after_step = max(change, abs(value - previous_value) / slope)
             # At the first correction the ratio is estimated from the distance to the cycle of the matrix.
-            rate = change_after_step / last if last else min(1.0, self.contraction_rate * distance)
-            if last and not self._family.has_small_cycles:
+            rate = (
+                change_after_step / previous_change
+                if previous_change
+                else min(1.0, self.contraction_rate * distance)
+            )
+            if previous_change and not self._family.has_small_cycles:
                 contraction = AUGMENTED_SETTINGS.contraction_safety_factor * rate / distance
                 self.contraction_rate = max(AUGMENTED_SETTINGS.min_contraction_rate, contraction)
             if change_after_step * min(rate, 1.0) <= max(
                 tolerance, AUGMENTED_SETTINGS.tolerance_to_distance_ratio * abs(value) / slope
             ):
                 return orbit, value
-            if last and rate > AUGMENTED_SETTINGS.max_correction_ratio:
+            if previous_change and rate > AUGMENTED_SETTINGS.max_correction_ratio:
                 if change_after_step <= AUGMENTED_SETTINGS.rounding_correction:
                     return orbit, value
                 self._assemble_matrix(orbit)
                 change_after_step = 0.0
-            last = change_after_step
+            previous_change = change_after_step
         raise Unsolvable(
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )

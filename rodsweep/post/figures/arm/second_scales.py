@@ -96,8 +96,8 @@ def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
     """
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
-    largest = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
-    power = 3 * int(np.floor(np.log10(largest) / 3)) if largest > 0 else 0
+    largest_value = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
+    power = 3 * int(np.floor(np.log10(largest_value) / 3)) if largest_value > 0 else 0
     power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))
     unit *= 10.0**-power
     symbol = EngFormatter.ENG_PREFIXES[power] + symbol
