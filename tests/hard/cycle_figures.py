@@ -453,7 +453,7 @@ def branch_figure(d, view, fine):
         every = d.lines(axes)
         found.append((name, _smooth(d, axes, every, [c for rod in rods for c in true[rod]], name)))
         stored = [c for rod in rods for c in own[rod]]
-        xs, ys = (np.concatenate([getattr(c, n) for c in stored]) for n in ("at", name))
+        xs, ys = (np.concatenate([getattr(c, n) for c in stored]) for n in ("parameter", name))
         found.append((name, d.compare(axes, (xs, ys), xy(every), 1e-4, whole=False)))
         found += [(name, _stable(d, line, own, rods, colours, columns, view)) for line in every]
     for axes in third:

@@ -176,7 +176,7 @@ def test_branch_without_a_fold():
 @pytest.mark.long
 def test_branch_that_leaves_the_model_ends_where_h1_is_0():
     found = solved(Rod(F=0.0, k1=100.0, k2=1e4, gamma3=0.1), 60.0, 120.0)
-    (curve,) = found.curves
+    (curve, _) = found.curves  # the other branch enters the range from the Hopf point near 42.8
     end = curve.special_points[-1]
     assert end.kind == SpecialKind.left_the_model
     assert end.parameter_value == pytest.approx(99.14065359, abs=1e-6)
