@@ -111,10 +111,12 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
     error = error_text(float(v["curve_agreement"]))
     agreement = f"crossings located on rows lie on them within {error} of the range of {line}; "
     agreement *= hopf_count + double_count > 0
-    lines = [
-        f"curves: {hopf_count} of Hopf points, {double_count} of double eigenvalues; {agreement}"
-        f"{_on_no_curve_clause(int(v['curves_untraced']), 'crossing')}"
-    ]
+    lines = []
+    if hopf_count or double_count or v["curves_untraced"]:
+        lines.append(
+            f"curves: {hopf_count} of Hopf points, {double_count} of double eigenvalues; {agreement}"
+            f"{_on_no_curve_clause(int(v['curves_untraced']), 'crossing')}"
+        )
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         error = error_text(float(v["cycle_curve_agreement"]))

@@ -200,11 +200,13 @@ def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]
     proved = count_of_total(int(v["certified"][computed].sum()), searches, noun)
     window = f"; for {counted(undecided, noun)} a narrow window of flutter may be missing" * (undecided > 0)
     unlisted = int((v["crossing_count"][computed] - stored_counts).clip(min=0).sum())
-    return [
-        f"the list of crossings {proof_clause(view)} for {proved}{window}",
-        f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a {noun}{bound}"
-        f"{unstored_clause(unlisted)}",
-    ]
+    lines = [f"the list of crossings {proof_clause(view)} for {proved}{window}"]
+    if stored_counts.any() or unlisted:
+        lines.append(
+            f"crossings stored: {int(stored_counts.sum())}, at most {int(stored_counts.max())} on a "
+            f"{noun}{bound}{unstored_clause(unlisted)}"
+        )
+    return lines
 
 
 def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
