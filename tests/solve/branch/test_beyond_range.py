@@ -154,6 +154,18 @@ def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
     assert 137.56 <= high < 1.5 * 137.56
 
 
+def test_a_branch_given_up_on_its_way_to_the_range_is_followed_only_to_its_last_cycle(monkeypatch):
+    """The branch from the Hopf point at F = 49.758 enters the range at 60, unless it is given up before."""
+    low, _ = followed(FIG_2C, 60.0, 80.0).followed_range
+    assert low == 0.0
+    settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, max_cycles=4)
+    monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    found = followed(FIG_2C, 60.0, 80.0)
+    assert found.curves == ()
+    low, _ = found.followed_range
+    assert 49.84 < low < 60.0  # its first cycle is at 49.817
+
+
 def test_a_failure_beyond_the_range_leaves_the_branches_within(monkeypatch):
     def overflows(*_):
         raise ZeroDivisionError
