@@ -11,7 +11,7 @@ from rodsweep.arrays import Array
 from rodsweep.bench.limit_cycle.default_integrator import (
     WAITING_TOLERANCES,
     IntegrationTask,
-    IntegratorGroup,
+    IntegratorWithTolerances,
     petsc_trajectory,
 )
 from rodsweep.discretization.stress.rates import write_rate, write_rate_jacobian
@@ -90,26 +90,30 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
 
 RADAU_TOLERANCES = (1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6)
 FAMILIES = (
-    IntegratorGroup("ARKIMEX 2", partial(petsc_trajectory, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)),
-    IntegratorGroup("ARKIMEX 3", partial(petsc_trajectory, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorGroup(
+    IntegratorWithTolerances(
+        "ARKIMEX 2", partial(petsc_trajectory, "arkimex", "2e"), (1e-4, 1e-5, 1e-6, 3e-7, 2e-7)
+    ),
+    IntegratorWithTolerances(
+        "ARKIMEX 3", partial(petsc_trajectory, "arkimex", "3"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)
+    ),
+    IntegratorWithTolerances(
         "ARKIMEX 4", partial(petsc_trajectory, "arkimex", "4"), (1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8)
     ),
-    IntegratorGroup("BDF 5", partial(petsc_trajectory, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
-    IntegratorGroup(
+    IntegratorWithTolerances("BDF 5", partial(petsc_trajectory, "bdf", "5"), (1e-6, 1e-7, 3e-8, 1e-8, 1e-9)),
+    IntegratorWithTolerances(
         "ROSW ra34pw2", partial(petsc_trajectory, "rosw", "ra34pw2"), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7)
     ),
-    IntegratorGroup(
+    IntegratorWithTolerances(
         "ROSW rodas3", partial(petsc_trajectory, "rosw", "rodas3"), (1e-4, 1e-5, 3e-6, 1e-6, 3e-7)
     ),
-    IntegratorGroup("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
-    IntegratorGroup(
+    IntegratorWithTolerances("SciPy BDF", partial(scipy_run, "BDF"), (1e-5, 1e-6, 3e-7, 1e-7, 1e-8)),
+    IntegratorWithTolerances(
         "SciPy Radau",
         partial(scipy_run, "Radau"),
         RADAU_TOLERANCES,
         (*RADAU_TOLERANCES[2:5], *WAITING_TOLERANCES[:4]),
     ),
-    IntegratorGroup(
+    IntegratorWithTolerances(
         "SciPy LSODA",
         partial(scipy_run, "LSODA"),
         (1e-5, 1e-6, 3e-7, 1e-7, 1e-8),
@@ -119,10 +123,12 @@ FAMILIES = (
 """Integrators of PETSc and SciPy with their tolerances. BDF 5 is nearly unstable at loose tolerances."""
 
 
-def installed_families() -> tuple[IntegratorGroup, ...]:
+def installed_families() -> tuple[IntegratorWithTolerances, ...]:
     """All installed integrators: FAMILIES, and CVODE if scikit-sundae is installed."""
     module = optional_module(CVODE_MODULE)
     ladder = (1e-5, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9)
     return FAMILIES + (
-        (IntegratorGroup(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),) if module else ()
+        (IntegratorWithTolerances(CVODE, partial(cvode_run, module), ladder, WAITING_TOLERANCES),)
+        if module
+        else ()
     )

@@ -38,7 +38,7 @@ fails."""
 
 
 @dataclass(frozen=True, slots=True)
-class IntegratorGroup:
+class IntegratorWithTolerances:
     """An integrator with its name in the tables, and its tolerances, from the loosest.
 
     integrate: the integrator. tolerances: tolerances of the runs that follow a cycle. waiting_tolerances:
@@ -80,7 +80,7 @@ def petsc_trajectory(family: str, variant: str, tolerance: float, task: Integrat
 
 WAITING_TOLERANCES = (1e-6, 3e-7, 1e-7, 3e-8, 1e-8, 3e-9, 1e-9)
 """Tolerances at which integrators run until the motion is periodic, from the loosest."""
-DEFAULT_INTEGRATOR = IntegratorGroup(
+DEFAULT_INTEGRATOR = IntegratorWithTolerances(
     "ARKIMEX 5 (default)",
     partial(petsc_trajectory, "arkimex", "5"),
     (1e-5, 5e-6, 2e-6, 1e-6, 3e-7, 1e-7, 1e-8),

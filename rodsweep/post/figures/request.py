@@ -161,7 +161,10 @@ class FigureRequest:
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
         if self.is_protected:
-            raise InputError(f"--output {self.output} cannot be overwritten by a figure; choose another name")
+            raise InputError(
+                f"--output {self.output} is one of the results or no regular file, so a figure does not "
+                "overwrite it; choose another name"
+            )
 
     def write(self, figure: Figure, caption: str, min_aspect: float = MIN_ASPECT) -> str:
         """Writes the figure, with second scales and hatches for an arm; returns `caption`, the

@@ -50,7 +50,7 @@ def measured_branch_calibration(
     # The mesh that is finer in time removes only the fraction `share` of the error in time.
     parts[1] /= fraction
     calibration = calibration_of(mesh, parts[0, :-1], parts[1, :-1], orbit, previous_calibration)
-    return BranchCalibration(calibration, parts[:, -1], tip_y_sensitivity(rough, derivatives))
+    return BranchCalibration(calibration, parts[:, -1], relative_tip_y_sensitivity(rough, derivatives))
 
 
 def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array:
@@ -95,7 +95,7 @@ def _differences_between_meshes(
     return np.array([*path_differences(rough, CyclePath(slid)), change, own_difference])
 
 
-def tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
+def relative_tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit

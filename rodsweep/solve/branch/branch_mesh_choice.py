@@ -20,7 +20,7 @@ from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, 
 from .bordered.condition import BorderCondition
 from .bordered.matrix import bordered_matrix_of
 from .bordered.scale import ArcLengthScale
-from .branch_error_measurement import measured_branch_calibration, tip_y_sensitivity
+from .branch_error_measurement import measured_branch_calibration, relative_tip_y_sensitivity
 from .branch_errors import BranchCalibration
 
 
@@ -236,6 +236,6 @@ def _with_interpolated_errors(
     if is_slow or float(error_growth) > BRANCH_MESH_SETTINGS.max_tail_growth:
         return with_measured_errors(point, accuracy)
     calibration = start.calibration.interpolate(
-        end.calibration, fraction, tip_y_sensitivity(point.cycle.path, point.derivatives)
+        end.calibration, fraction, relative_tip_y_sensitivity(point.cycle.path, point.derivatives)
     )
     return with_calibration(point, calibration, accuracy)

@@ -34,7 +34,7 @@ class ChangeKind(IntEnum):
     pair_leads = 7
 
     @property
-    def changes_leading_eigenvalue(self) -> bool:
+    def switches_real_and_complex(self) -> bool:
         """Whether the leading eigenvalue changes between real and complex at this threshold. Otherwise a pair
         crosses the imaginary axis."""
         return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)

@@ -221,7 +221,7 @@ def _crossings_without_leading_pair(
     oscillates: whether a pair leads at the start. count: number of unstable modes at the start."""
     missed = []
     for crossing in crossings:
-        if crossing.kind.changes_leading_eigenvalue:
+        if crossing.kind.switches_real_and_complex:
             oscillates = crossing.kind.pair_leads_after
         else:
             if min(count, crossing.unstable_after) == 0 and not oscillates:

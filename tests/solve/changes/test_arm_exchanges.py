@@ -81,7 +81,7 @@ def assert_leaders_are_those_of_spectra(rod, found, forces):
     """At each force the list tells the kind of the leading eigenvalue and the number of unstable modes."""
     for F in forces:
         before = [c for c in found.thresholds if c.value <= F]
-        pair = [c.kind.pair_leads_after for c in before if c.kind.changes_leading_eigenvalue][-1:]
+        pair = [c.kind.pair_leads_after for c in before if c.kind.switches_real_and_complex][-1:]
         spectrum = solve_spectrum(rod.with_values(F=F), SpectrumRequest(2, 1e-8, True))
         assert spectrum.certified
         assert (spectrum.eigenvalues[0].imag != 0) == (pair == [True])

@@ -24,7 +24,7 @@ from rodsweep.solve.cycle.accuracy.minimal_period import (
 )
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.reference_rod import warm_up
-from rodsweep.solve.cycle.transient import schemes, transient
+from rodsweep.solve.cycle.transient import schemes, transient_integration
 from rodsweep.solve.motion.integrator import destroy_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
@@ -257,7 +257,7 @@ def test_an_error_inside_is_a_status(monkeypatch):
     def fail(*_):
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr(transient, "refined_cycle", fail)
+    monkeypatch.setattr(transient_integration, "refined_cycle", fail)
     c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     assert (c.status, c.message) == (CycleStatus.failed, "Singular matrix")
 
@@ -496,7 +496,7 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     def fails(*_):
         raise Unsolvable("no orbit")
 
-    monkeypatch.setattr(transient, "refined_cycle", fails)
+    monkeypatch.setattr(transient_integration, "refined_cycle", fails)
     c = solve_cycle(rod_of(50.0, *SOFT), REQUEST)
     assert c.status == CycleStatus.not_settled
     assert c.periods < REQUEST.most_periods

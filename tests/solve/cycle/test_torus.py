@@ -11,7 +11,7 @@ from surveyed import survey_only
 from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
-from rodsweep.solve.cycle.transient import transient
+from rodsweep.solve.cycle.transient import transient_integration
 from rodsweep.solve.cycle.transient.returns import tip_angle_row
 from rodsweep.solve.cycle.transient.torus import TORUS_TEST_SETTINGS, torus_frequency_of
 from rodsweep.solve.motion.leading_mode import leading_mode
@@ -63,7 +63,7 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
     def none(*_):
         raise Unsolvable("not looked for")
 
-    monkeypatch.setattr(transient, "refined_cycle", none)
+    monkeypatch.setattr(transient_integration, "refined_cycle", none)
     assert rod.__wrapped__(203.0, 120).status == CycleStatus.not_settled
 
 

@@ -217,7 +217,7 @@ def test_hopf_points_are_those_of_all_transitions():
         end = min(200.0, rod.k1 * (1 - 1e-6))
         path = ParameterPath(Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=rod.gamma3), "F")
         every, pairs = find_thresholds(path, 0.0, end), find_axis_crossings(path, 0.0, end)
-        crossings = [c for c in every.thresholds if not c.kind.changes_leading_eigenvalue]
+        crossings = [c for c in every.thresholds if not c.kind.switches_real_and_complex]
         assert [(c.value, c.kind, c.unstable_after) for c in pairs.thresholds] == [
             (c.value, c.kind, c.unstable_after) for c in crossings
         ]

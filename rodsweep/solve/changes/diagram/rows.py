@@ -141,7 +141,7 @@ def classes_and_unstable_counts(
     is_undecided = np.zeros(len(values), dtype=bool)
     for crossing in result.thresholds:
         is_beyond = values > crossing.value
-        if crossing.kind.changes_leading_eigenvalue:
+        if crossing.kind.switches_real_and_complex:
             oscillates[is_beyond] = crossing.kind.pair_leads_after
         else:
             unstable_counts[is_beyond] = crossing.unstable_after
