@@ -463,7 +463,7 @@ def test_a_diagram_over_poissons_ratio_has_the_arm_a_scale_of_the_ratio_and_dots
     figure = figure_of(drawn, command.directory / "d.h5", command.directory / "f.png")
     title = figure.get_suptitle().replace("\xa0", " ")
     assert "length 14 cm, radius 4 mm, Young's modulus 100 kPa, viscosity 5 Pa s" in title
-    assert title.endswith("\ndotted: the model is doubtful, judged at the first Hopf point of each row")
+    assert title.endswith("\ndotted: the model is doubtful, judged at each row's first Hopf point or at rest")
     (axes,) = (axes for axes in figure.axes if axes.patches)
     assert {patch.get_hatch() for patch in axes.patches} == {"..."}
     (scale,) = (child for child in axes.child_axes if child.get_ylabel() == "Poisson's ratio")

@@ -157,6 +157,11 @@ REFUSED = [
         "limit_cycle.start: neighbour needs a grid, in which a point has neighbours",
     ),
     (
+        config("start: neighbour, along: taper"),
+        "limit_cycle.along is taper but parameters.taper is not given; give several values of it, or set "
+        "along to F, k1, k2, gamma3 or gamma1",
+    ),
+    (
         "task: limit_cycle\nparameters: {points: p.csv, gamma1: 1}",
         "parameters.points and parameters.gamma1 are both given",
     ),

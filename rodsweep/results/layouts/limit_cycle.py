@@ -83,7 +83,7 @@ CYCLE_VARIABLES = (
         "modulation_ratio",
         "1",
         "frequency of the modulation of a motion on a torus, divided by the frequency of its oscillation; "
-        "from the integrated motion, with a relative error of up to 0.001",
+        "from the integrated motion, to about three digits",
     ),
     LEAST_STRETCH,
     integer("periods", "number of returns to the Poincare section during the time integration"),

@@ -54,8 +54,8 @@ def _hatched_note(
     )
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
-        clause = ", judged at the first Hopf point of each row" if "crossing_at" in views[0].variables else ""
-        return f"{word}: {sentence}{clause}"
+        judged = ", judged at each row's first Hopf point or at rest"
+        return f"{word}: {sentence}{judged if 'crossing_at' in views[0].variables else ''}"
     return sentence if number == count else f"{sentence} at {number} of {count} points"
 
 
