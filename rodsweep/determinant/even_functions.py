@@ -47,11 +47,8 @@ EVEN_FUNCTION_SETTINGS = EvenFunctionSettings()
 
 
 class EvenFunctionValues(NamedTuple):
-    """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S),
-    S = `log_scale`.
-
-    s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4.
-    """
+    """The functions s(M, P^2) and d(M, P^2) of this module with their derivatives, all times exp(-S), S =
+    `log_scale`. s_M = ds/dM, d_M = dd/dM, d_P = (dd/dP^2)/4."""
 
     log_scale: float
     s: complex
@@ -70,11 +67,9 @@ def _rounding_by_roots(
     results: tuple[complex, complex],
     roundings: tuple[float, float, float],
 ) -> tuple[float, float]:
-    """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order.
-
-    squares: (M, P^2, u, v). difference: u - v. functions_of_u, functions_of_v: hyperbolic functions of
-    sqrt(u) and sqrt(v). results: (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2).
-    """
+    """Rounding errors of s and of d as computed by `even_functions_by_roots`, to first order. squares: (M,
+    P^2, u, v). difference: u - v. functions_of_u, functions_of_v: hyperbolic functions of sqrt(u) and
+    sqrt(v). results: (s, d). roundings: (exp(-S), rounding error of M, rounding error of P^2)."""
     M = modulus(squares[0])
     square = modulus(squares[1])
     u = modulus(squares[2])
@@ -159,11 +154,8 @@ def even_functions_by_roots(
 def even_functions_by_series(
     M: complex, P: complex, rounding_M: float, rounding_square: float
 ) -> tuple[EvenFunctionValues, float, float]:
-    """Returns (s and d with derivatives, rounding error of s, rounding error of d), by the series E(z) =
-    sum z^n/(2n + 2)!; for small z+ and z-.
-
-    rounding_M, rounding_square: rounding errors of M and P^2.
-    """
+    """Returns (s and d with derivatives, rounding error of s, rounding error of d), by the series E(z) = sum
+    z^n/(2n + 2)!; for small z+ and z-. rounding_M, rounding_square: rounding errors of M and P^2."""
     plus = M + 2 * P
     minus = M - 2 * P
     S = max(cmath.sqrt(plus).real, cmath.sqrt(minus).real)

@@ -124,11 +124,8 @@ def even_sum_by_squares(
 @compiled
 def even_parts(w: complex, coefficients: Coefficients) -> EvenSum:
     """Returns (s and d with derivatives, sum z+' E(z+) + z-' E(z-), rounding error of D), all times exp(-S),
-    for a uniform rod at w != 0.
-
-    The rounding error sums, to first order, the rounding errors of M, of P^2 and of every later operation. It
-    is a sum of moduli that do not vanish at a zero of D.
-    """
+    for a uniform rod at w != 0. The rounding error sums, to first order, the rounding errors of M, of P^2 and
+    of every later operation. It is a sum of moduli that do not vanish at a zero of D."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     T = c2 + gamma3

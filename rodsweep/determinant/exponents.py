@@ -43,8 +43,7 @@ ROUNDING_UNIT = 2 * ROUND_OFF
 
 class HyperbolicFunctions(NamedTuple):
     """cosh q, sinh(q)/q and the slope (1/q) d(sinh(q)/q)/dq, three entire functions of q^2, all times
-    exp(-Re q).
-    """
+    exp(-Re q)."""
 
     cosh: complex
     sinhc: complex
@@ -59,10 +58,8 @@ def modulus(z: complex) -> float:
 
 @compiled
 def squared_exponents(w: complex, coefficients: Coefficients) -> tuple[complex, complex, complex]:
-    """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`.
-
-    The smaller of z+ and z- follows from the product z+ z-, without cancellation.
-    """
+    """(P, z+, z-) of a uniform rod at w != 0, in the notation of `rodsweep.determinant.value`. The smaller of
+    z+ and z- follows from the product z+ z-, without cancellation."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     P = cmath.sqrt(w * (g * nu + c2 * gamma3 * w))

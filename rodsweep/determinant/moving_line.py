@@ -75,10 +75,7 @@ class UnprovedStrip(NamedTuple):
 @compiled
 def interpolate_ends(fraction: float, first: IntervalEnd, last: IntervalEnd) -> IntervalEnd:
     """p, coefficients and line interpolated linearly between `first` (fraction = 0) and `last` (fraction =
-    1).
-
-    The interpolation has no cancellation.
-    """
+    1). The interpolation has no cancellation."""
     a = 1 - fraction
     b = fraction
     F, nu, c2, gamma3 = first.coefficients

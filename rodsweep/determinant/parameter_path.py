@@ -17,8 +17,7 @@ from .value import ExponentDerivatives, determinant_from_parts
 
 class CoefficientDerivatives(NamedTuple):
     """First and second derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the
-    coefficients of D(w). T is linear in p.
-    """
+    coefficients of D(w). T is linear in p."""
 
     T_p: float
     """dT/dp."""
@@ -37,9 +36,8 @@ class CoefficientDerivatives(NamedTuple):
 
 
 class PathDeterminantValue(NamedTuple):
-    """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S), S = `log_scale`.
-
-    rounding_error: bound of the rounding error of D exp(-S)."""
+    """D, D_w = dD/dw and D_p = dD/dp, all times exp(-S), S = `log_scale`. rounding_error: bound of the
+    rounding error of D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -63,8 +61,7 @@ class ParameterPath:
     @property
     def is_compliance_path(self) -> bool:
         """Whether the path variable p is the compliance 1/k of a varying stiffness k, instead of the
-        parameter itself.
-        """
+        parameter itself."""
         return self.parameter.has_inverse_coordinate
 
     @property
@@ -145,8 +142,7 @@ def determinant_along_path(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> PathDeterminantValue:
     """D, dD/dw and dD/dp of a uniform rod on a path, times exp(-S), at w != 0. direction:
-    d(F, nu, c2, gamma3)/dp.
-    """
+    d(F, nu, c2, gamma3)/dp."""
     F, nu, c2, gamma3 = coefficients
     parts = even_parts(w, coefficients)
     D, D_w, S, rounding_error = determinant_from_parts(w, coefficients, parts)

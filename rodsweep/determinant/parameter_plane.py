@@ -48,8 +48,7 @@ class PlaneAxis:
 
     def value(self, x: float) -> float:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
-        to the end.
-        """
+        to the end."""
         if (
             -PLANE_DIFFERENCE_SETTINGS.end_tolerance < x < 0
             or 1 < x < 1 + PLANE_DIFFERENCE_SETTINGS.end_tolerance
@@ -71,17 +70,14 @@ class PlaneAxis:
 
     def path_variable_per_coordinate(self, value: float) -> float:
         """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
-        parameter.
-        """
+        parameter."""
         parameter_rate = self.parameter_per_coordinate(value)
         return -parameter_rate / value**2 if PARAMETERS[self.name].has_inverse_coordinate else parameter_rate
 
 
 class ValueOnPlane(NamedTuple):
-    """D and the derivatives of D by w, x and y, all times exp(-S), S = `log_scale`.
-
-    rounding_error: rounding error of D exp(-S), including the effect of rounding in w, x and y.
-    """
+    """D and the derivatives of D by w, x and y, all times exp(-S), S = `log_scale`. rounding_error: rounding
+    error of D exp(-S), including the effect of rounding in w, x and y."""
 
     D: complex
     D_w: complex
@@ -133,16 +129,14 @@ class Plane:
         self, x: float, y: float, axis_index: int
     ) -> tuple[tuple[tuple[float, float], ...], float]:
         """Returns (stencil, step) of a difference along axis number `axis_index`, 0 or 1, at scaled
-        coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid.
-        """
+        coordinates (x, y): `CENTRAL_STENCIL`, or `ONE_SIDED_STENCIL` if the rod two steps back is invalid."""
         h = self.difference_step_at(x, y, axis_index, PLANE_DIFFERENCE_SETTINGS.max_difference_step)
         two_steps_back = (x - 2 * h, y) if axis_index == 0 else (x, y - 2 * h)
         return (CENTRAL_STENCIL if self.is_valid_at(*two_steps_back) else ONE_SIDED_STENCIL), h
 
     def _determinant_of_arms(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """`determinant` for arms without a closed form of D; derivatives by x and y are fourth-order
-        differences.
-        """
+        differences."""
         D, D_w, S, rounding_error = self.determinant_value(w, x, y)
         slopes = []
         for axis_index in range(2):
@@ -163,16 +157,14 @@ class Plane:
         w: complex, rod: Rod, axis: PlaneAxis
     ) -> tuple[PathDeterminantValue, complex]:
         """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
-        coordinate of `axis`).
-        """
+        coordinate of `axis`)."""
         value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
         return value, value.D_p * axis.path_variable_per_coordinate(getattr(rod, axis.name))
 
     def difference_step_at(self, x: float, y: float, axis_index: int, max_step: float) -> float:
         """A difference step along axis number `axis_index` at (x, y): the smaller of `max_step` and the
         fraction `max_step_over_crushing_distance` of the distance to a crushed rod. The step is `max_step` if
-        no value on the axis crushes the rod.
-        """
+        no value on the axis crushes the rod."""
         rod = self.rod_at(x, y)
         axis = self.axes[axis_index]
         force = rod.crushing_force

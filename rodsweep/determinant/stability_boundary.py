@@ -42,8 +42,7 @@ BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
 
 class BoundarySolution(NamedTuple):
     """A point v = (x, y, h) on a stability boundary, the Jacobian of the two equations at v, (2, 3), and the
-    error of v.
-    """
+    error of v."""
 
     v: Array
     jacobian: Array
@@ -59,9 +58,7 @@ class BoundarySolution(NamedTuple):
 @dataclass(frozen=True, slots=True)
 class Boundary:
     """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
-
-    eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign.
-    """
+    eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign."""
 
     plane: Plane
     eigenvalue_sign: float
@@ -73,8 +70,7 @@ class Boundary:
 
     def residual_and_jacobian(self, v: Array) -> tuple[Array, Array, float]:
         """Returns (residual, (2,); Jacobian, (2, 3); rounding error of the residual) of the two equations of
-        the boundary at v = (x, y, h).
-        """
+        the boundary at v = (x, y, h)."""
         return self._double_equations(v) if self.eigenvalue_sign else self._hopf_equations(v)
 
     def tangent(self, v: Array) -> Array:
@@ -85,8 +81,7 @@ class Boundary:
     def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
         """The point of the boundary on the plane through `guess`, (3,), perpendicular to `normal`, (3,); None
         if Newton's method fails. guess: start of Newton's method, coordinates as in
-        `residual_and_jacobian`.
-        """
+        `residual_and_jacobian`."""
         v = guess.copy()
         previous_size = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):

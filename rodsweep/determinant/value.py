@@ -49,9 +49,8 @@ DETERMINANT_SETTINGS = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`.
-
-    rounding_error: bound of the rounding error of D exp(-S)."""
+    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`. rounding_error: bound of the rounding error of
+    D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -84,10 +83,8 @@ def exponent_derivatives(w: complex, coefficients: Coefficients) -> ExponentDeri
 
 @compiled
 def scaled_determinant(w: complex, coefficients: Coefficients) -> DeterminantValue:
-    """D and dD/dw of a uniform rod at w, times exp(-S).
-
-    w = 0 is replaced by `DETERMINANT_SETTINGS.zero_replacement`, where D equals D(0) = 1 within rounding.
-    """
+    """D and dD/dw of a uniform rod at w, times exp(-S). w = 0 is replaced by
+    `DETERMINANT_SETTINGS.zero_replacement`, where D equals D(0) = 1 within rounding."""
     if w == 0:
         w = complex(DETERMINANT_SETTINGS.zero_replacement, 0.0)
     return determinant_from_parts(w, coefficients, even_parts(w, coefficients))
@@ -137,9 +134,7 @@ def second_derivative(w: complex, S: float, coefficients: Coefficients) -> compl
 @compiled
 def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
     """Estimated distance 2 |D'/D''| from an eigenvalue w of a uniform rod to the nearest other eigenvalue.
-
-    The estimate is accurate if the two eigenvalues are close.
-    """
+    The estimate is accurate if the two eigenvalues are close."""
     value = scaled_determinant(w, coefficients)
     return (
         2

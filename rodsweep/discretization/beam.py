@@ -33,10 +33,8 @@ TIP_VELOCITY_SETTINGS = TipVelocitySettings()
 
 @dataclass(frozen=True, eq=False)
 class Beam(RodOnMesh):
-    """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system.
-
-    States z have the shape (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L.
-    """
+    """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system. States z have the shape
+    (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L."""
 
     @property
     def unknown_velocities(self) -> tuple[int, ...]:
@@ -49,11 +47,9 @@ class Beam(RodOnMesh):
 
     @cached_property
     def crushing_z1(self) -> Array:
-        """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,).
-
-        At a jump, h1 reaches 0 first on one side if the law is linear, and the value belongs to this side;
-        for another law h1 reaches 0 on both sides at once.
-        """
+        """Values of z1 at which the stretch h1 is 0, at all nodes except the tip, (nodes,). At a jump, h1
+        reaches 0 first on one side if the law is linear, and the value belongs to this side; for another law
+        h1 reaches 0 on both sides at once."""
         crushed = -self.nodal_rod.rest_strain[0, :-1] / self.sqrt_compliance[0, :-1]
         if self.has_continuous_stresses:
             for node, sides in zip(self.nodal_rod.jumps, self.nodal_rod.jump_sides, strict=True):
@@ -93,17 +89,14 @@ class Beam(RodOnMesh):
 
     def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:
         """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
-        for dz/dt = direction.
-
-        z, direction: (..., unknowns). The velocity is a complex-step derivative, which has no cancellation.
-        """
+        for dz/dt = direction. z, direction: (..., unknowns). The velocity is a complex-step derivative, which
+        has no cancellation."""
         shape = self._shape_and_velocities(z, direction)[..., -1]
         return shape.real, shape.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 
     def transverse_velocities(self, z: Array, direction: Array) -> Array:
         """Time derivative of y at z for dz/dt = direction, at all nodes, (..., nodes + 1); z, direction:
-        (..., unknowns).
-        """
+        (..., unknowns)."""
         velocities: Array = (
             self._shape_and_velocities(z, direction)[1].imag / TIP_VELOCITY_SETTINGS.imaginary_step
         )

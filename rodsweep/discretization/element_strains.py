@@ -26,22 +26,16 @@ from .nodal_rod import IntegerArray, NodalRod
 @compiled
 def index_before_jump(node: int, element_nodes: IntegerArray) -> int:
     """Index of the last node of the element before the jump at `node`, in arrays over the nodes of every
-    element.
-
-    The first node of the element behind the jump has the next index. element_nodes: indices of the nodes of
-    every element, one element after the other, (nodes + elements,).
-    """
+    element. The first node of the element behind the jump has the next index. element_nodes: indices of the
+    nodes of every element, one element after the other, (nodes + elements,)."""
     return int(np.searchsorted(element_nodes, node))
 
 
 @compiled_for_vectors
 def write_element_strains(S: Array, rod: NodalRod, element_nodes: IntegerArray, out: Array) -> None:
-    """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, nodes + elements).
-
-    S: stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the
-    strains of both sides are written. element_nodes: indices of the nodes of every
-    element, (nodes + elements,).
-    """
+    """Writes the strains (h1, h2, Pi) at the nodes of every element into out, (3, m, nodes + elements). S:
+    stresses of m states at all nodes, (3, m, nodes + 1), with the strain E = E0 + C S; at a jump, the strains
+    of both sides are written. element_nodes: indices of the nodes of every element, (nodes + elements,)."""
     for a in range(len(S)):
         for k in range(S.shape[1]):
             for i in range(out.shape[2]):

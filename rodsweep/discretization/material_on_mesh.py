@@ -25,10 +25,8 @@ from .nodal_rod import NO_JUMP_DERIVATIVE, NO_JUMPS, IntegerArray, Jumps
 
 def material_at_nodes(rod: Rod, mesh: Mesh) -> Material:
     """The material of a rod at the nodes of a mesh; compliance, drag and rest_strain are constants, (3,), for
-    a uniform rod of linear material, and (3, nodes + 1) for any other arm.
-
-    Elements of the mesh must end at the breaks of the arm's profile.
-    """
+    a uniform rod of linear material, and (3, nodes + 1) for any other arm. Elements of the mesh must end at
+    the breaks of the arm's profile."""
     if rod.is_uniform_and_linear:
         return rod.material
     compliance, drag, rest_strain = _mean_coefficients_at_nodes(
@@ -39,8 +37,7 @@ def material_at_nodes(rod: Rod, mesh: Mesh) -> Material:
 
 def material_derivative_at_nodes(rod: Rod, name: str, mesh: Mesh) -> Material:
     """The derivative of `material_at_nodes` with respect to the coordinate of the parameter `name`: 1/k for a
-    stiffness k, else the parameter itself.
-    """
+    stiffness k, else the parameter itself."""
     if rod.is_uniform_and_linear and name != "taper":
         return rod.material_derivative(name)
     compliance, drag, rest = _mean_coefficients_at_nodes(
@@ -51,10 +48,8 @@ def material_derivative_at_nodes(rod: Rod, name: str, mesh: Mesh) -> Material:
 
 def relative_bending_compliance_at_nodes(build: Build, mesh: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
-    `build`.
-
-    At a jump the value is the mean of both sides, so that its product with m3 is the mean bending strain.
-    """
+    `build`. At a jump the value is the mean of both sides, so that its product with m3 is the mean bending
+    strain."""
     if build.profile is None:
         return np.ones(mesh.node_count + 1)
     return _mean_at_nodes(build.relative_compliances(1.0, mesh.points_inside_elements)[2:], mesh)[0]
@@ -62,8 +57,7 @@ def relative_bending_compliance_at_nodes(build: Build, mesh: Mesh) -> Array:
 
 def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
-    nodes.
-    """
+    nodes."""
     indices, nodes = _indices_beside_jumps(rod.build, mesh)
     if not len(nodes):
         return NO_JUMPS
@@ -83,11 +77,8 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
 
 def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
     """Derivatives of nu, c1 and c3 on both sides of each jump with respect to the coordinate of the parameter
-    `name`, (k, 2, 3).
-
-    Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which the stress at a jump
-    depends only on the mean strain.
-    """
+    `name`, (k, 2, 3). Returns `NO_JUMP_DERIVATIVE` for a rod without jumps and for a linear law, for which
+    the stress at a jump depends only on the mean strain."""
     indices, nodes = _indices_beside_jumps(rod.build, mesh)
     if rod.build.constitutive_law is LINEAR or not len(nodes):
         return NO_JUMP_DERIVATIVE
@@ -99,8 +90,7 @@ def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, IntegerArray]:
     """Returns (points, nodes) of the k jumps. points: indices in the `points_inside_elements` of the
-    points left and right of each jump, (k, 2). nodes: node of each jump, (k,). Cached.
-    """
+    points left and right of each jump, (k, 2). nodes: node of each jump, (k,). Cached."""
     jumps = build.jump_positions
     ends = np.array([e for e in range(1, mesh.element_count) if mesh.edges[e] in jumps], np.int64)
     nodes = np.array([mesh.node_ranges[e].start for e in ends], np.int64)
@@ -109,11 +99,8 @@ def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, Integ
 
 
 def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, Array, Array]:
-    """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each.
-
-    sections: the coefficients at the `points_inside_elements` of the mesh, or derivatives of the
-    coefficients.
-    """
+    """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each. sections: the
+    coefficients at the `points_inside_elements` of the mesh, or derivatives of the coefficients."""
     rest_strain = np.zeros_like(sections.drag)
     rest_strain[0] = sections.nu
     compliance, drag, rest_strain = (
@@ -124,8 +111,7 @@ def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, 
 
 def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `points_inside_elements`,
-    (m, points).
-    """
+    (m, points)."""
     element, weights = _nodes_and_weights_of_points(mesh)
     mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / mesh.quadrature
     return mean
@@ -134,8 +120,7 @@ def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _nodes_and_weights_of_points(mesh: Mesh) -> tuple[IntegerArray, Array]:
     """Returns (nodes, weights) of all `points_inside_elements`, (nodes + elements,) each: node of the mesh,
-    and quadrature weight within the element.
-    """
+    and quadrature weight within the element."""
     parts = zip(mesh.lengths, mesh.orders, strict=True)
     weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
     return mesh.element_nodes, weights

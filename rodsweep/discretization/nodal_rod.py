@@ -53,8 +53,7 @@ of length 0."""
 
 class NodalRodDerivative(NamedTuple):
     """The derivatives of fields of a `NodalRod` with respect to the coordinate of a parameter, with the
-    shapes of the fields.
-    """
+    shapes of the fields."""
 
     tip_stress: Array
     rest_strain: Array
@@ -71,11 +70,8 @@ def nodal_rod(
     law: int = 0,
     jumps: Jumps = NO_JUMPS,
 ) -> NodalRod:
-    """The `NodalRod` of a material on a mesh.
-
-    unknown_velocities: indices of the components of V that are unknowns. law: number of the constitutive law.
-    jumps: jumps of the material on this mesh.
-    """
+    """The `NodalRod` of a material on a mesh. unknown_velocities: indices of the components of V that are
+    unknowns. law: number of the constitutive law. jumps: jumps of the material on this mesh."""
     size = mesh.node_count + 1
     rest_strain = _expanded_to_nodes(material.rest_strain, size)
     compliance = _expanded_to_nodes(material.compliance, size)
@@ -98,11 +94,8 @@ def _cached_drag_arrays(
     drag: bytes, shape: tuple[int, ...], mesh: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """The result of `_drag_arrays`, cached by the bytes of the drag, because rods that differ only in F have
-    equal drags.
-
-    drag, shape: bytes and shape of the array of drags. unknown_velocities: indices of the components of V
-    that are unknowns.
-    """
+    equal drags. drag, shape: bytes and shape of the array of drags. unknown_velocities: indices of the
+    components of V that are unknowns."""
     # Bytes can be a key of the cache, and the array is restored from the bytes.
     values = np.frombuffer(drag).reshape(shape)
     return _drag_arrays(values if len(shape) > 1 else values[:, None], mesh, unknown_velocities)
@@ -112,8 +105,7 @@ def _drag_arrays(
     drag: Array, mesh: Mesh, unknown_velocities: tuple[int, ...]
 ) -> tuple[Array, Array, Array, IntegerArray]:
     """Returns (drag, mobility, mobility_laplacian, unknown_velocities), fields of a `NodalRod`. drag: drags
-    of the components, (d, 1) or (d, nodes + 1).
-    """
+    of the components, (d, 1) or (d, nodes + 1)."""
     drag = _expanded_to_nodes(drag, mesh.node_count + 1)
     mobility = np.zeros(drag.shape)
     known_velocities = [a for a in range(len(drag)) if a not in unknown_velocities]

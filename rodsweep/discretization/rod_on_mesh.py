@@ -39,16 +39,11 @@ class RodOnMesh(ABC):
     @abstractmethod
     def stresses(self, x: Values) -> Values:
         """Stresses S of states x at all nodes, tip included, (3, ..., nodes + 1); the strain is E = E0 + C S.
-
-        In a linear rod S is (n1 + F, n2, m3).
-        """
+        In a linear rod S is (n1 + F, n2, m3)."""
 
     def with_coordinate(self, name: str, coordinate: float) -> Self:
         """The same rod on the same mesh with another coordinate of the parameter `name` (see
-        `Rod.with_coordinate`).
-
-        Raises ValueError for an invalid coordinate.
-        """
+        `Rod.with_coordinate`). Raises ValueError for an invalid coordinate."""
         return replace(self, rod=self.rod.with_coordinate(name, coordinate))
 
     @cached_property
@@ -73,22 +68,19 @@ class RodOnMesh(ABC):
     @property
     def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod. S is continuous if the material does not jump or the law is
-        linear.
-        """
+        linear."""
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
-        mean of both sides.
-        """
+        mean of both sides."""
         S = self.stresses(x)
         c = self.nodal_rod
         return broadcast_to_field(c.rest_strain, S) + broadcast_to_field(c.compliance, S) * S
 
     def element_strains(self, x: Array) -> Array:
         """Strains (h1, h2, Pi) of states x at the nodes of every element, (3, ..., nodes + elements); at
-        a jump, the strains of both sides.
-        """
+        a jump, the strains of both sides."""
         S = self.stresses(x)
         out = np.empty((*S.shape[:-1], self.mesh.element_nodes.size))
         write_element_strains(
@@ -97,10 +89,8 @@ class RodOnMesh(ABC):
         return out
 
     def element_strain_rates(self, x: Array, change: Array) -> Array:
-        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements).
-
-        x, change: (..., unknowns).
-        """
+        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements). x, change:
+        (..., unknowns)."""
         S = self.stresses(x)
         dS = self.stresses(change)
         dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS
@@ -116,8 +106,7 @@ class RodOnMesh(ABC):
 
     def shape(self, x: Array) -> Array:
         """Shape (x, y, theta) of states at all nodes, in L and rad, (3, ..., nodes + 1); the clamp is at the
-        origin, along e_x.
-        """
+        origin, along e_x."""
         return shape_from_strains(self.mesh, self.element_strains(x), np.zeros(3))
 
     def tip_coordinates(self, x: Array) -> Array:
@@ -125,10 +114,8 @@ class RodOnMesh(ABC):
         return self.shape(x)[..., -1]
 
     def elastic_energy(self, x: Array) -> Array:
-        """Elastic energy U of states x, in k3/L, (...).
-
-        For a uniform linear rod U = 1/2 int [k1 (h1 - 1)^2 + k2 h2^2 + Pi^2] du.
-        """
+        """Elastic energy U of states x, in k3/L, (...). For a uniform linear rod U = 1/2 int [k1 (h1 - 1)^2 +
+        k2 h2^2 + Pi^2] du."""
         S = self.stresses(x)
         c = self.nodal_rod
         nu = broadcast_to_field(c.rest_strain, S)[0]
@@ -144,8 +131,7 @@ class RodOnMesh(ABC):
 
     def _strain_energy_density(self, nu: Values, c1: Values, c3: Values, q1: Values, q3: Values) -> Values:
         """Energy per length of stretching and bending, without shear, at the nodes. nu: stretch of the
-        straight rod. c1, c3: compliances of stretching and bending. q1, q3: stresses S1 and S3.
-        """
+        straight rod. c1, c3: compliances of stretching and bending. q1, q3: stresses S1 and S3."""
         F = self.rod.F
         law = self.rod.build.constitutive_law
         load = F * c1
@@ -172,15 +158,12 @@ class RodOnMesh(ABC):
 
     def least_stretch(self, x: Array) -> float:
         """Smallest stretch h1 of all nodes and states x, over both sides of each jump. The model requires a
-        positive h1.
-        """
+        positive h1."""
         return float(self.element_strains(x)[0].min())
 
     def has_convex_energy(self, x: Array) -> bool:
-        """Whether the energy of every section is convex in its strain, for one state x, (unknowns,).
-
-        Without convexity the equations are ill-posed: the shortest waves of the mesh grow fastest.
-        """
+        """Whether the energy of every section is convex in its strain, for one state x, (unknowns,). Without
+        convexity the equations are ill-posed: the shortest waves of the mesh grow fastest."""
         S = self.stresses(x)
         c = self.nodal_rod
         sections = np.stack([c.rest_strain[0], c.compliance[0], c.compliance[2], S[0], S[2]], axis=1)

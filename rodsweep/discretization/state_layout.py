@@ -49,8 +49,7 @@ class StateLayout:
 
     def transverse_unknowns(self, x: Values) -> Values:
         """All unknowns of planar states x except the axial stress n1, a view; all these unknowns are 0 for a
-        straight rod.
-        """
+        straight rod."""
         return x[..., self.node_count :]
 
     def stresses(self, x: Values) -> Values:
@@ -73,15 +72,12 @@ class StateLayout:
 
     def state(self, S: Values, V: Values) -> Values:
         """States (..., unknowns) from stresses S and velocities V, (components, ..., nodes + 1) each.
-
-        Stresses at the tip and the components of V outside `unknown_velocities` are ignored.
-        """
+        Stresses at the tip and the components of V outside `unknown_velocities` are ignored."""
         return np.concatenate([*S[..., :-1], *(V[a] for a in self.unknown_velocities)], axis=-1)
 
     def interpolate(self, x: Array, E: Array) -> Array:
         """States x interpolated to another mesh. E: interpolation matrix from all nodes of the current mesh
-        to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1).
-        """
+        to all nodes of the other mesh, (nodes of the other mesh + 1, nodes + 1)."""
         stress_count = self.components * self.node_count
         slices = [slice(first, first + self.node_count) for first in range(0, stress_count, self.node_count)]
         parts = [x[..., stress] @ E[:-1, :-1].T for stress in slices]
@@ -99,8 +95,7 @@ class StateLayout:
 
 def plane_layout(nodes: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
     """Layout of the states of a rod in the plane. nodes: number of nodes without the tip. unknown_velocities:
-    indices of the components of V that are unknowns.
-    """
+    indices of the components of V that are unknowns."""
     return StateLayout(PLANE_COMPONENT_COUNT, nodes, unknown_velocities)
 
 
@@ -112,8 +107,6 @@ def stress_index(a: int, node: int, nodes: int) -> int:
 
 @compiled_for_vectors
 def velocity_index(k: int, node: int, components: int, nodes: int) -> int:
-    """Index in a state of the k-th unknown velocity component at a node.
-
-    components: number of stress components. nodes: number of nodes without the tip.
-    """
+    """Index in a state of the k-th unknown velocity component at a node. components: number of stress
+    components. nodes: number of nodes without the tip."""
     return components * nodes + k * (nodes + 1) + node

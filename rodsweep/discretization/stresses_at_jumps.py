@@ -36,11 +36,8 @@ JUMPING_COMPONENTS."""
 
 @compiled
 def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out: Array) -> None:
-    """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m).
-
-    law: number of the constitutive law. q1, q3: means over both sides, (m,). sides: the material on both
-    sides, (2, 7).
-    """
+    """Writes q1 and q3 before a jump, then q1 and q3 behind the jump, into out, (4, m). law: number of the
+    constitutive law. q1, q3: means over both sides, (m,). sides: the material on both sides, (2, 7)."""
     for i in range(len(q1)):
         q = LawUnknowns(q1[i], q3[i])
         a = unknowns_before_jump(law, sides, q)
@@ -52,10 +49,8 @@ def write_unknowns_beside_jump(law: int, sides: Array, q1: Array, q3: Array, out
 
 
 def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
-    """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...).
-
-    S: (3, ..., nodes + 1), with the mean of both sides at a jump.
-    """
+    """S1 and S3 on both sides of each jump, (k, 2, 2, ...), with axes (jump, side, stress, ...). S: (3, ...,
+    nodes + 1), with the mean of both sides at a jump."""
     out = np.empty((len(rod.jumps), 2, 2, *S.shape[1:-1]))
     for stresses, node, sides in zip(out, rod.jumps, rod.jump_sides, strict=True):
         q1, q3 = (
@@ -70,10 +65,7 @@ def stresses_at_both_sides(rod: NodalRod, S: Array) -> Array:
 
 def stresses_by_element(rod: NodalRod, mesh: Mesh, S: Array) -> Array:
     """S at the nodes of every element, (3, ..., nodes + elements); the two elements at a jump have the values
-    of their own side.
-
-    S: (3, ..., nodes + 1), with the mean of both sides at a jump.
-    """
+    of their own side. S: (3, ..., nodes + 1), with the mean of both sides at a jump."""
     fields: Array = S[..., mesh.element_nodes]
     for node, sides in zip(rod.jumps, stresses_at_both_sides(rod, S), strict=True):
         index = index_before_jump(int(node), mesh.element_nodes)
@@ -140,11 +132,8 @@ def _discontinuous_interpolation(  # noqa: PLR0913, PLR0917 - of both meshes
     fractions: Array,
 ) -> Array:
     """The interpolation matrix E, (target nodes, source nodes), modified for a field that is discontinuous at
-    jumps.
-
-    source_nodes, target_nodes: nodes of the jumps in `source` and `target`, (k,) each. fractions: weights of
-    both sides in the mean at each jump, (k, 2).
-    """
+    jumps. source_nodes, target_nodes: nodes of the jumps in `source` and `target`, (k,) each. fractions:
+    weights of both sides in the mean at each jump, (k, 2)."""
     # In elements with an end at a jump, E uses the mean at this end. Extrapolation from the other nodes
     # replaces this value.
     out = E.copy()
@@ -179,11 +168,8 @@ def _element_behind(mesh: Mesh, node: int) -> int:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _extrapolation_weights(order: int, jump_at_start: bool, jump_at_end: bool, to_start: bool) -> Array:
     """Weights, (p + 1,), that extrapolate from the nodes of an element of order p to one end, without nodes
-    at jumps.
-
-    jump_at_start: whether a jump lies at the first node. jump_at_end: whether a jump lies at the last node.
-    to_start: whether to extrapolate to the first node; otherwise to the last node.
-    """
+    at jumps. jump_at_start: whether a jump lies at the first node. jump_at_end: whether a jump lies at the
+    last node. to_start: whether to extrapolate to the first node; otherwise to the last node."""
     x = gauss_lobatto_rule(order)[0]
     # A value at a jump is a mean over both sides, not a value of the polynomial.
     used_nodes = slice(int(jump_at_start), order + 1 - int(jump_at_end))

@@ -50,9 +50,7 @@ quotient loses digits."""
 
 def tip_layer_factor(rod: Rod) -> float:
     """T = tanh(kappa)/kappa of the boundary layer of theta at the tip of a uniform rod with gamma3 = 0 < c2.
-
-    kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer.
-    """
+    kappa^2 = g nu/c2. T = 0 for all other rods, which have no such layer."""
     if rod.rotational_drag > 0 or rod.c2 == 0:
         return 0.0
     square = rod.g * rod.nu / rod.c2
@@ -64,9 +62,7 @@ def tip_layer_factor(rod: Rod) -> float:
 
 
 def hermitian_tip_coefficients(F: float, layer_factor: float) -> tuple[float, float]:
-    """Returns (p, r), the factors in the tip term that (L + L+)/2 has in addition to L in weak form.
-
-    The term is p (a theta - b y) - r a y at u = 1, with test functions (a, b) and fields (y, theta). p = F/2
-    in k3/L^2; r = (F^2/4) T in k3/L^3. layer_factor: T as returned by `tip_layer_factor`.
-    """
+    """Returns (p, r), the factors in the tip term that (L + L+)/2 has in addition to L in weak form. The term
+    is p (a theta - b y) - r a y at u = 1, with test functions (a, b) and fields (y, theta). p = F/2 in
+    k3/L^2; r = (F^2/4) T in k3/L^3. layer_factor: T as returned by `tip_layer_factor`."""
     return F / 2, F**2 / 4 * layer_factor

@@ -53,11 +53,9 @@ def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra
 
 
 def _cross_product_constants(out: int, left: int, right: int) -> list[StructureConstant]:
-    """Structure constants of a cross product of two triples of components, as a part of ad_E V.
-
-    The first factor is the triple of components of E that starts at index `left`, the second factor the
-    triple of V that starts at `right`, and the product the triple of ad_E V that starts at `out`.
-    """
+    """Structure constants of a cross product of two triples of components, as a part of ad_E V. The first
+    factor is the triple of components of E that starts at index `left`, the second factor the triple of V
+    that starts at `right`, and the product the triple of ad_E V that starts at `out`."""
     cyclic_orders = [(0, 1, 2), (1, 2, 0), (2, 0, 1)]
     positive = [(out + a, left + b, right + c, 1.0) for a, b, c in cyclic_orders]
     return positive + [(out + a, left + c, right + b, -1.0) for a, b, c in cyclic_orders]

@@ -33,11 +33,8 @@ K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COU
 
 def most_amplified_wave(rod: Rod) -> tuple[float, float]:
     """Returns (growth rate in 1/tau2, wave number in 1/L) of the most amplified wave; (0, 0) if all waves
-    decay.
-
-    The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function is not
-    compiled, so that `rodsweep check` need not load numba.
-    """
+    decay. The wave travels on an infinitely long rod with the coefficients of the uniform `rod`. The function
+    is not compiled, so that `rodsweep check` need not load numba."""
     F, nu, c2, gamma3 = rod.coefficients
     if not F * rod.g > 0:
         return 0.0, 0.0
@@ -67,8 +64,7 @@ def sampled_arm(rod: Rod) -> SampledArm:
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _interval_midpoints(build: Build) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of short intervals of u between the breaks of a profile, (points,)
-    each.
-    """
+    each."""
     lengths = np.diff(build.breaks)
     fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
@@ -78,11 +74,8 @@ def _interval_midpoints(build: Build) -> tuple[Array, Array]:
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
     """Returns (growth rates, wave numbers) of the most amplified wave at each point of `sampled_arm(rod)`,
-    (points,) each.
-
-    A local wave travels on an infinitely long uniform rod with the coefficients of the arm at the point. If
-    all waves at a point decay, both numbers are 0.
-    """
+    (points,) each. A local wave travels on an infinitely long uniform rod with the coefficients of the arm at
+    the point. If all waves at a point decay, both numbers are 0."""
     nu, c2, c3, gamma2, gamma3, g = sampled_arm(rod).local
     top = np.maximum(rod.F * c3 * g, 0.0)
     rate, wave_number = _largest_growth(top, g * nu, c2 / c3, gamma3 / gamma2)
@@ -91,10 +84,8 @@ def most_amplified_local_waves(rod: Rod) -> tuple[Array, Array]:
 
 def expected_unstable_count(rod: Rod) -> float:
     """Estimate of the number of unstable modes of an arm: the integral over the arm of the largest wave
-    number that grows by the local dispersion relation, divided by pi.
-
-    For 14 arms with 4 to 132 unstable modes the estimate was 0.9 to 1.9 times the true number.
-    """
+    number that grows by the local dispersion relation, divided by pi. For 14 arms with 4 to 132 unstable
+    modes the estimate was 0.9 to 1.9 times the true number."""
     _, weights, coefficients = sampled_arm(rod)
     return float(weights @ np.sqrt(np.maximum(rod.F * coefficients.c3 * coefficients.g, 0.0))) / math.pi
 

@@ -45,10 +45,8 @@ class Range:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Parameter:
-    """One parameter of the rod, an element of the table `PARAMETERS`.
-
-    unit: unit of the value. meaning: phrase for messages, files and figures. allowed: range of the value.
-    """
+    """One parameter of the rod, an element of the table `PARAMETERS`. unit: unit of the value. meaning:
+    phrase for messages, files and figures. allowed: range of the value."""
 
     name: str
     symbol: str
@@ -92,8 +90,7 @@ class Parameter:
 
     def value(self, coordinate: float) -> float:
         """Value of the parameter with the given coordinate: 1/coordinate (inf for 0) if
-        `has_inverse_coordinate`, otherwise the coordinate.
-        """
+        `has_inverse_coordinate`, otherwise the coordinate."""
         if self.has_inverse_coordinate:
             return 1 / coordinate if coordinate else inf
         return coordinate
@@ -101,8 +98,7 @@ class Parameter:
     @property
     def neutral_value(self) -> float:
         """The default of the parameter; without a default, the value at coordinate 0, which is valid for
-        every rod.
-        """
+        every rod."""
         return self.value(0.0) if self.default is None else self.default
 
     @property
@@ -123,10 +119,8 @@ stiffness."""
 
 
 def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
-    """The table row of a stiffness that may be inf.
-
-    name, symbol, meaning: fields of `Parameter`. rigid: adjective for a rod with infinite stiffness.
-    """
+    """The table row of a stiffness that may be inf. name, symbol, meaning: fields of `Parameter`. rigid:
+    adjective for a rod with infinite stiffness."""
     return Parameter(
         name=name,
         symbol=symbol,
@@ -211,15 +205,13 @@ CRUSHING_PARAMETERS = ("F", "k1")
 
 def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
     """All names in `names` except `excluded`. names: parameter names, by default the parameters of the
-    transverse linear problem.
-    """
+    transverse linear problem."""
     return tuple(name for name in names if name != excluded)
 
 
 def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
     """Class decorator that adds every parameter of `PARAMETERS`, in this order, as a field with its
-    default.
-    """
+    default."""
     own_annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own_annotations.items() if n not in PARAMETERS

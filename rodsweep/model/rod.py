@@ -134,10 +134,8 @@ class Rod:
     @property
     def equivalent_linear_rod(self) -> tuple["Rod", float]:
         """Returns (linear rod, rate). Eigenvalues of this rod are `rate` times eigenvalues of the linear rod.
-
-        With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients
-        (F/K, nu, c2 K, gamma3), and rate = K. Raises NotUniform for an arm that varies.
-        """
+        With the bending factor K = B(nu) of this rod's law, the linear rod has the coefficients (F/K, nu, c2
+        K, gamma3), and rate = K. Raises NotUniform for an arm that varies."""
         if not self.is_uniform:
             raise NotUniform(f"{self} is not uniform")
         law = self.build.constitutive_law
@@ -151,8 +149,7 @@ class Rod:
     @property
     def without_nonlinear_parameters(self) -> "Rod":
         """The rod with the same parameters of the transverse linear problem, and defaults of all other
-        parameters.
-        """
+        parameters."""
         return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:

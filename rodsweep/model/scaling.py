@@ -13,11 +13,9 @@ from .parameters import SCALING_PAIRS
 
 
 def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Force, stiffnesses and drags at the base, by name, from the parameter values by name.
-
-    A result is the value of the parameter of the same name, times the values of all parameters that multiply
-    this parameter (`Parameter.scaled_names`). All other values, such as the taper, are passed on unchanged.
-    """
+    """Force, stiffnesses and drags at the base, by name, from the parameter values by name. A result is the
+    value of the parameter of the same name, times the values of all parameters that multiply this parameter
+    (`Parameter.scaled_names`). All other values, such as the taper, are passed on unchanged."""
     if not SCALING_PAIRS:
         return values
     base_values = dict(values)
@@ -27,10 +25,8 @@ def stiffnesses_and_drags_at_base(values: Mapping[str, Any]) -> Mapping[str, Any
 
 
 def stretch_of_straight_rod(F: Any, k1: Any) -> Any:
-    """Stretch nu = 1 - F/k1 of the straight rod of linear material, for floats or arrays (...,).
-
-    The formula has no cancellation for F near k1. nu = 1 for k1 = inf.
-    """
+    """Stretch nu = 1 - F/k1 of the straight rod of linear material, for floats or arrays (...,). The formula
+    has no cancellation for F near k1. nu = 1 for k1 = inf."""
     if isinstance(k1, np.ndarray):
         with np.errstate(invalid="ignore"):  # inf/inf where k1 = inf
             return np.where(np.isinf(k1), 1.0, (k1 - F) / k1)

@@ -41,8 +41,7 @@ KINEMATIC_VISCOSITY_MESSAGE = "is a kinematic viscosity; multiply it by the dens
 @cache
 def unit_registry() -> "UnitRegistry":
     """pint's registry of units, loaded at first use. Raises EnvironmentIncomplete if pint is not
-    installed.
-    """
+    installed."""
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
@@ -51,12 +50,9 @@ def unit_registry() -> "UnitRegistry":
 
 
 def split_quantity(text: str) -> tuple[float, str]:
-    """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a
-    number.
-
-    In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and
-    not checked.
-    """
+    """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a number.
+    In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and not
+    checked."""
     match = NUMBER_AND_UNIT_PATTERN.fullmatch(text)
     if not match:
         return math.nan, ""
@@ -64,10 +60,8 @@ def split_quantity(text: str) -> tuple[float, str]:
 
 
 def quantity_in_si(name: str, quantity: GivenQuantity, unit: str, example: str) -> float:
-    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `quantity`.
-
-    example: a valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity.
-    """
+    """Value, in the SI unit `unit`, of the quantity `name`, which the user wrote as `quantity`. example: a
+    valid text, for messages. Raises InputError, beginning with the name, for an invalid quantity."""
     allowed = f"a number with a unit, as in '{example}'"
     if not isinstance(quantity, str):
         value = _number_in_si(name, quantity, unit, allowed)
@@ -85,10 +79,7 @@ def quantity_in_si(name: str, quantity: GivenQuantity, unit: str, example: str) 
 
 def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
     """Value in the SI unit `unit` of `quantity`, a number in SI or a pint quantity. Raises InputError for
-    other objects.
-
-    name, allowed: name of the quantity and allowed texts, for messages.
-    """
+    other objects. name, allowed: name of the quantity and allowed texts, for messages."""
     if hasattr(quantity, "to_base_units"):
         return _number_in_si(name, quantity.magnitude, unit, allowed) * conversion_factor(
             f"{name} = '{quantity!s:.60}'", f"{quantity.units:C}", unit, allowed
@@ -105,11 +96,9 @@ def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
 
 
 def conversion_factor(beginning: str, unit_text: str, unit: str, allowed: str) -> float:
-    """Number by which a value in the unit `unit_text` is multiplied to get the value in `unit`.
-
-    beginning, allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of
-    another dimension.
-    """
+    """Number by which a value in the unit `unit_text` is multiplied to get the value in `unit`. beginning,
+    allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of another
+    dimension."""
     if unit_text.startswith(","):
         raise InputError(f"{beginning} has a decimal comma; write a point")
     if (
@@ -151,8 +140,7 @@ def _cached_conversion_factor(unit_text: str, unit: str) -> float:
 
 def _suggestion(unit_text: str, unit: str) -> str:
     """The text "did you mean 'kPa'? " if `unit_text` is a misspelt common unit with the dimension of `unit`;
-    else "".
-    """
+    else ""."""
     plain_text = "".join(unit_text.split()).casefold()
     for common_unit in COMMON_UNITS:
         if "".join(common_unit.split()).casefold() == plain_text and unit_registry()(common_unit).check(
@@ -173,10 +161,8 @@ def value_in_unit(value: float, unit: str, si: str) -> float:
 
 
 def load_over_flutter(text: GivenQuantity) -> float | None:
-    """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter".
-
-    None for a number, for any other text, and for 100 % or more below flutter.
-    """
+    """Load divided by the flutter load, from a text like "1.2 of flutter" or "20 % above flutter". None for a
+    number, for any other text, and for 100 % or more below flutter."""
     if not isinstance(text, str):
         return None
     if match := MULTIPLE_OF_FLUTTER_PATTERN.fullmatch(text):
@@ -190,10 +176,8 @@ def load_over_flutter(text: GivenQuantity) -> float | None:
 
 def with_si_prefix(value: float, unit: str) -> tuple[float, str]:
     """Returns (factor, prefixed unit): `value` in the SI unit `unit` is factor * value in the prefixed unit.
-
     The SI prefix makes the number prefixed: with_si_prefix(0.002, "m") is (1000.0, "mm"). For a value that is
-    0, inf or nan, returns (1.0, `unit`).
-    """
+    0, inf or nan, returns (1.0, `unit`)."""
     if not value or not math.isfinite(value):
         return 1.0, unit
     prefixed = unit_registry().Quantity(value, unit).to_compact()

@@ -57,10 +57,8 @@ def branches_cost(points: Points, name: str, limits: tuple[float, float], accura
 
 def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated; empty if
-    there are none.
-
-    builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,).
-    """
+    there are none. builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or
+    (rods,)."""
     min_taper, max_taper = MEASURED_TAPERS
     if any(build.constitutive_law is not LINEAR for build in builds):
         return "branches of rubber"

@@ -61,8 +61,7 @@ class RankReport:
 
 class ChunkQueue:
     """Queue of the unsolved items, on the first rank; safe to use from two threads. ranges: ranges of items.
-    ranks: number of ranks.
-    """
+    ranks: number of ranks."""
 
     def __init__(self, ranges: list[IndexRange], ranks: int):
         self.unsolved = deque(ranges)
@@ -175,8 +174,7 @@ class DependentItemQueue(ChunkQueue):
 
     def next_chunk(self, rank: int) -> IndexRange | None:
         """The next item for a rank, as a range; NO_WORK_LEFT if no item is left or after a stop request, None
-        if the rank has to wait.
-        """
+        if the rank has to wait."""
         with self.change:
             if self.is_stopped:
                 return NO_WORK_LEFT

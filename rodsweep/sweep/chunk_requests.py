@@ -52,8 +52,7 @@ class ChunkServer:
         self, ranks: Ranks, queue: ChunkQueue, stop: StopRequest, show_position: Callable[[str, float], None]
     ):
         """show_position: function (text on the progress of a long point, fractions of all unfinished points
-        done, summed) that displays the progress.
-        """
+        done, summed) that displays the progress."""
         self.ranks = ranks
         self.queue = queue
         self.stop = stop
@@ -78,9 +77,7 @@ class ChunkServer:
 
     def next_chunk(self, report: RankReport) -> IndexRange:
         """The next chunk for the first rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
-
-        Waits until a chunk is available or no work is left.
-        """
+        Waits until a chunk is available or no work is left."""
         with self.serving_lock:
             self._pass_on_stop()
         self.positions.pop(0, None)
@@ -157,12 +154,9 @@ class ChunkServer:
             self.positions[rank] = comm.recv(source=rank, tag=PROGRESS_TAG)
 
     def _handle_report(self, rank: int, report: RankReport) -> None:
-        """Handles the report of a rank.
-
-        A request made in advance (`report.is_in_advance`) is answered immediately if enough items are left.
-        Any other request is queued, unless the rank already has its next chunk from a request made in
-        advance.
-        """
+        """Handles the report of a rank. A request made in advance (`report.is_in_advance`) is answered
+        immediately if enough items are left. Any other request is queued, unless the rank already has its
+        next chunk from a request made in advance."""
         if report.is_in_advance:
             if (chunk := self.queue.next_chunk_in_advance(rank)) is not None:
                 self.ranks.comm.send(chunk, dest=rank, tag=ANSWER_TAG)
@@ -196,10 +190,8 @@ class ChunkClient:
         self.stop_exchanged = False
 
     def next_chunk(self, report: RankReport) -> IndexRange:
-        """The next chunk for this rank, given the `report` on its last chunk; NO_WORK_LEFT at the end.
-
-        Waits for the answer of the first rank, and requests the following chunk in advance.
-        """
+        """The next chunk for this rank, given the `report` on its last chunk; NO_WORK_LEFT at the end. Waits
+        for the answer of the first rank, and requests the following chunk in advance."""
         self.comm.send(report, dest=0, tag=REQUEST_TAG)
         # A blocking receive would spin and take the processor from the ranks that compute.
         wait_seconds = FIRST_CHUNK_POLL_SECONDS
@@ -218,8 +210,7 @@ class ChunkClient:
 
     def poll_messages(self) -> None:
         """Exchanges at most one stop request with the first rank: sends the request of this rank, or receives
-        the request of the first rank.
-        """
+        the request of the first rank."""
         if not self.stop_exchanged and self.comm.Iprobe(source=0, tag=STOP_TAG):
             self.stop.adopt(self.comm.recv(source=0, tag=STOP_TAG))
             self.stop_exchanged = True

@@ -125,9 +125,7 @@ def with_loading_time(cost: CostEstimate) -> CostEstimate:
 
 def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> CostEstimate:
     """Cost of `modes` eigenvectors at each of `count` points, from the cost `spectra` of the eigenvalues.
-
-    growth: whether the transient growth is computed too.
-    """
+    growth: whether the transient growth is computed too."""
     extra_seconds = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + extra_seconds, unknowns=None)
 
@@ -136,8 +134,7 @@ def followed_spectra_cost(
     separate: CostEstimate, groups: PointGroups, points: Points, modes: int
 ) -> CostEstimate:
     """Estimated cost of the spectra of `points` followed along groups. separate: cost of solving every
-    point alone. modes: number of eigenvalues.
-    """
+    point alone. modes: number of eigenvalues."""
     firsts = FIRST_POINT_COST * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     point_ms = (
@@ -153,8 +150,7 @@ def followed_spectra_cost(
 
 def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate:
     """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. modes: number of eigenvalues.
-    accuracy: relative accuracy.
-    """
+    accuracy: relative accuracy."""
     single = spectra_cost(points, modes, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
@@ -166,8 +162,7 @@ def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate
 def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
     """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
     none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
-    whether spectra are certified.
-    """
+    whether spectra are certified."""
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
@@ -205,8 +200,7 @@ def _soft_or_pulled_rod_ms(rod: Rod) -> float:
 
 def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
     """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes to the relative
-    accuracy `accuracy`.
-    """
+    accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:
         return arm_mesh(rod, modes, accuracy).unknown_count
     _, wave = most_amplified_wave(rod)
@@ -215,8 +209,7 @@ def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
 
 def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:
     """Flat indices, (n,), of at most `max_count` evenly spaced points of a sweep, without points to which the
-    rod model does not apply.
-    """
+    rod model does not apply."""
     indices = np.unique(np.linspace(0, points.count - 1, min(max_count, points.count)).astype(np.int64))
     return indices[[points.is_in_model(int(index)) for index in indices]]
 

@@ -22,11 +22,8 @@ Indices = int | NDArray[np.int64]
 
 
 class ItemSolver(Protocol):
-    """Function that solves a work item, that is, a point, a chain or a group of points.
-
-    Yields (flat index, result) of a point, or (flat indices, results) of points of a group that were solved
-    together.
-    """
+    """Function that solves a work item, that is, a point, a chain or a group of points. Yields (flat index,
+    result) of a point, or (flat indices, results) of points of a group that were solved together."""
 
     def __call__(self, item: int, /) -> Iterable[tuple[Indices, Any]]: ...
 
@@ -38,10 +35,8 @@ class ProgressSink(Protocol):
         """Shows `finished`, the number of points that all ranks have finished."""
 
     def show_position(self, text: str, partial: float) -> None:
-        """Shows the text `text` on the progress of a long point.
-
-        partial: sum of the fractions done of all unfinished points.
-        """
+        """Shows the text `text` on the progress of a long point. partial: sum of the fractions done of all
+        unfinished points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +75,8 @@ def sweep(
     ranks: Ranks, queue: ChunkQueue, loop: SweepCallbacks, progress: ProgressSink, stop: StopRequest
 ) -> RankStatistics:
     """Solves every item in `queue`, which is used on the first rank only; returns when all ranks have
-    finished.
-
-    An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after the
-    current point, or abandons the point after GRACE_SECONDS (see `stop`).
-    """
+    finished. An exception on any rank ends all ranks. After a stop request to any rank, each rank ends after
+    the current point, or abandons the point after GRACE_SECONDS (see `stop`)."""
     requests = (
         ChunkServer(ranks, queue, stop, progress.show_position)
         if ranks.is_first
@@ -143,10 +135,8 @@ class _RankLoop:
         )
 
     def _solve_chunk(self, chunk: IndexRange) -> int:
-        """Solves the items of a chunk in order; returns the number of the first unsolved item.
-
-        Later items stay unsolved after a stop request, or if the chunk takes too long.
-        """
+        """Solves the items of a chunk in order; returns the number of the first unsolved item. Later items
+        stay unsolved after a stop request, or if the chunk takes too long."""
         patience = time.monotonic() + MAX_CHUNK_TIME_RATIO * chunk_seconds(self.ranks.size)
         item = chunk[0]
         points_before = self.points

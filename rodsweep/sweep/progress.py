@@ -22,8 +22,7 @@ BAR_SECONDS = 0.1
 
 def on_terminal() -> bool:
     """Whether standard error is a terminal; under an MPI launcher, standard error of the launcher is tested
-    as well.
-    """
+    as well."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -60,8 +59,7 @@ class ProgressReporter:
 
     def __init__(self, total: int | None, title: str, noun: str = "points", is_bar: bool | None = None):
         """total, title, noun: see the class. is_bar: True for a progress bar, False for lines; None: a bar on
-        a terminal, lines elsewhere.
-        """
+        a terminal, lines elsewhere."""
         self.total = total
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
@@ -86,10 +84,8 @@ class ProgressReporter:
         self._show()
 
     def show_position(self, text: str, partial: float = 0.0) -> None:
-        """Shows the text `text` on the progress of a long point, if an update is due.
-
-        partial: sum of the fractions done of all unfinished points.
-        """
+        """Shows the text `text` on the progress of a long point, if an update is due. partial: sum of the
+        fractions done of all unfinished points."""
         self.begun = partial
         self.where = text
         self._show()

@@ -29,11 +29,8 @@ times as long as a rod under half or twice the pull."""
 
 def pulled_rows_seconds(rods: Sequence[Rod], values: Array, count: int) -> tuple[float, str]:
     """Returns (time in s to search all rows below F = 0, doubt). doubt: kind of rows whose time may be many
-    times as long; empty if there are none.
-
-    rods: rods of evenly spaced rows, with any F. values: increasing forces along a row, (n,). count: number
-    of rows.
-    """
+    times as long; empty if there are none. rods: rods of evenly spaced rows, with any F. values: increasing
+    forces along a row, (n,). count: number of rows."""
     pulls = values[values < 0]
     if not pulls.size or not rods:
         return 0.0, ""

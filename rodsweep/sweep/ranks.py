@@ -42,8 +42,7 @@ class Ranks:
 
     def call_on_first_rank(self, work: Callable[[], T]) -> T:
         """Calls `work` on the first rank only. Every rank returns the result, or raises the `UserError` that
-        `work` raised.
-        """
+        `work` raised."""
         outcome: Any = None
         if self.is_first:
             try:
@@ -66,8 +65,7 @@ class Ranks:
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
         """Calls `work` on every rank. If `work` raises a `UserError` on any rank, all ranks raise this
-        refusal.
-        """
+        refusal."""
         first_error: UserError | None = None
         try:
             work()
@@ -95,11 +93,8 @@ class Ranks:
     @contextmanager
     def abort_all_ranks_on_error(self) -> Iterator[None]:
         """Context in which an exception on any rank aborts all ranks, with the rank's message and exit
-        status.
-
-        Otherwise all other ranks would wait forever. An exception propagates without abort if there is a
-        single rank, or if all ranks raise the same refusal.
-        """
+        status. Otherwise all other ranks would wait forever. An exception propagates without abort if there
+        is a single rank, or if all ranks raise the same refusal."""
         try:
             yield
         except BaseException as error:

@@ -34,10 +34,8 @@ class RemainingTimeEstimator:
 
     def remaining_seconds(self, finished: int, now: float, partial: float = 0.0) -> float | None:
         """Remaining time, in s, when `finished` points are finished at the time `now`, smoothed over the
-        calls; None if too little work is done for an estimate.
-
-        now: in s since the start of the sweep. partial: sum of the fractions done of unfinished points.
-        """
+        calls; None if too little work is done for an estimate. now: in s since the start of the sweep.
+        partial: sum of the fractions done of unfinished points."""
         if finished == self.total:
             return 0.0
         if finished and (not self.records or finished > self.records[-1][0]):
@@ -90,10 +88,7 @@ def duration_text(seconds: float) -> str:
 
 def rate_in_words(finished: int, seconds: float) -> str:
     """Text of the rate of `finished` points in `seconds`: points per second, or the time per point if this
-    time exceeds one second.
-
-    Empty before the first point.
-    """
+    time exceeds one second. Empty before the first point."""
     if not finished or not seconds:
         return ""
     rate = finished / seconds

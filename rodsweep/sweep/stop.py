@@ -55,16 +55,14 @@ class StopRequest:
 
     def listen(self) -> None:
         """Installs handlers, so that stop signals set this request instead of ending the process; only for
-        the main thread.
-        """
+        the main thread."""
         for number in STOP_SIGNALS:
             signal.signal(number, self._record_signal)
 
     @staticmethod
     def ignore() -> None:
         """Makes the process ignore stop signals, even while Python and MPI shut down; only for the main
-        thread.
-        """
+        thread."""
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
@@ -104,10 +102,7 @@ class SingleRankCommunication:
 
 class RankListener:
     """Receives the solvers' reports on a rank: polls messages, forwards progress, ends a solve on a stop
-    request.
-
-    A new listener is created for every item.
-    """
+    request. A new listener is created for every item."""
 
     def __init__(
         self, communication: RankCommunication, stop: StopRequest, item_label: Callable[[], str] = str
@@ -121,8 +116,7 @@ class RankListener:
 
     def __call__(self, make_position: PositionMaker) -> None:
         """Handles a solver's report at the position `make_position()`; raises SolveStopped if the solve must
-        end.
-        """
+        end."""
         now = time.monotonic()
         if now >= self.next_report and (position := make_position()).text:
             self.next_report = now + POSITION_SECONDS

@@ -44,8 +44,7 @@ class ArmReport:
 
     def styled_paragraphs(self) -> Iterator[tuple[str, str]]:
         """Yields (text, style) of each paragraph, wrapped at 80 columns; style: "warning",
-        "headline" or "".
-        """
+        "headline" or ""."""
         for check in self.warnings:
             yield _wrapped(check.text), "warning"
         for number, sentence in enumerate(self.verdict):
@@ -73,8 +72,7 @@ class ArmReport:
 
 def arm_report(arm: SlenderArm) -> ArmReport:
     """Solves for the thresholds of an arm and returns the report. Raises InputError if the load is given
-    relative to the flutter load and the arm does not flutter.
-    """
+    relative to the flutter load and the arm does not flutter."""
     planes = with_absolute_load(planes_of(arm))
     first_plane = planes.first
     assessment = Assessment(first_plane.arm, first_plane.thresholds)

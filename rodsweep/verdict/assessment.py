@@ -1,6 +1,5 @@
 """Validity of the model for an arm at its flutter threshold and under its load, and the changes of arm or
-fluid with which the model would apply.
-"""
+fluid with which the model would apply."""
 
 from dataclasses import asdict, dataclass
 from functools import cached_property
@@ -38,8 +37,7 @@ and 1. The thickness then has two correct digits."""
 @dataclass(frozen=True)
 class Assessment:
     """Neglected effects on an arm, at the flutter threshold and under the load, compared with their limits in
-    the model. thresholds: thresholds of the arm for every drag.
-    """
+    the model. thresholds: thresholds of the arm for every drag."""
 
     arm: SlenderArm
     thresholds: ThresholdsOverDrags
@@ -47,15 +45,13 @@ class Assessment:
     @cached_property
     def at_flutter(self) -> tuple[Effect, ...]:
         """Neglected effects at the first flutter force for the most likely drag for which the arm flutters.
-        The rate of motion is the largest rate over all drags.
-        """
+        The rate of motion is the largest rate over all drags."""
         return effects_at_flutter(self.arm, self.thresholds)
 
     @cached_property
     def compression_under_load(self) -> tuple[Effect, ...]:
         """Compression by the arm's load, the only neglected effect that depends on the load; empty if the arm
-        has no load.
-        """
+        has no load."""
         return (
             ()
             if self.arm.load is None
@@ -65,8 +61,7 @@ class Assessment:
     @property
     def force_at_flutter(self) -> float | None:
         """Smallest flutter force, in k3/L^2, for the most likely drag for which the arm flutters; None if the
-        arm flutters for no drag.
-        """
+        arm flutters for no drag."""
         change = first_hopf_point(self.thresholds)
         return None if change is None else change.value
 
@@ -87,24 +82,21 @@ class Assessment:
 
     def effects_with(self, validity: Validity) -> list[Effect]:
         """Neglected effects with the given validity, in decreasing order of their ratio to the limit. Effects
-        on cycles alone are left out.
-        """
+        on cycles alone are left out."""
         effects = [e for e in self.effects if e.validity == validity and not e.of_cycles_only]
         return sorted(effects, key=lambda effect: -float(effect.value_over_limit))
 
 
 def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
-    drag.
-    """
+    drag."""
     return next((change for c in thresholds.by_drag if (change := c.first_threshold(ChangeKind.hopf))), None)
 
 
 def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tuple[Effect, ...]:
     """Neglected effects at the first flutter in `thresholds`, for the most likely drag for which the arm
     flutters; the rate of motion is the largest over all drags. Inertia, compression and Reynolds number are
-    NaN if the arm does not flutter.
-    """
+    NaN if the arm does not flutter."""
     change = first_hopf_point(thresholds)
     if change is None:
         return neglected_effects(arm, nan, nan)
@@ -117,8 +109,7 @@ def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tupl
 
 def viscosity_factor(effects: tuple[Effect, ...]) -> float:
     """Factor on the viscosity with which the larger inertia in `effects`, of arm or fluid, just reaches its
-    limit; NaN if the arm does not flutter.
-    """
+    limit; NaN if the arm does not flutter."""
     return max(float(e.viscosity_factor) for e in effects if e.name.startswith("inertia"))
 
 

@@ -27,10 +27,8 @@ USUAL_POISSON = (0.3, 0.5)
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Check of one neglected effect or one assumption of the model.
-
-    validity: whether the model applies despite the effect. sentence: result, without the warning's prefix.
-    """
+    """Check of one neglected effect or one assumption of the model. validity: whether the model applies
+    despite the effect. sentence: result, without the warning's prefix."""
 
     validity: Validity
     sentence: str
@@ -41,8 +39,7 @@ class Check:
     @property
     def makes_verdict_doubtful(self) -> bool:
         """Whether the check makes the verdict doubtful. False for an effect beyond the limit of the model,
-        because the verdict itself then says that the model does not apply.
-        """
+        because the verdict itself then says that the model does not apply."""
         return self.can_change_verdict and self.validity == Validity.doubtful
 
     @property
@@ -109,8 +106,7 @@ def compression_check(assessment: "Assessment", at_flutter: Effect) -> Check:
 
 def _rubber_compression_check(assessment: "Assessment") -> Check:
     """Check of the compressive strain of a rubber arm. The check always passes, because the law of rubber is
-    valid for large strains.
-    """
+    valid for large strains."""
     arm = assessment.arm
     texts = []
     flutter = assessment.force_at_flutter
@@ -135,8 +131,7 @@ def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
 
 def rubber_stiffening(strain: float) -> float:
     """Relative increase of the tangent modulus E (1 + 2/h^3)/3 of neo-Hookean rubber over E, at the stretch
-    ratio h = 1 - `strain`.
-    """
+    ratio h = 1 - `strain`."""
     return float(2 * ((1 - strain) ** -3 - 1) / 3)
 
 
@@ -148,8 +143,7 @@ def _one_digit_text(value: float) -> str:
 
 def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
     """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list if the arm
-    does not flutter.
-    """
+    does not flutter."""
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity_of_effect, (of_arm, of_fluid)))
@@ -168,8 +162,7 @@ def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
 
 def reynolds_checks(number: Effect) -> list[Check]:
     """Check of the Reynolds number of beating with amplitude L/2 at the frequency of flutter; an empty list
-    if the arm does not flutter. number: the effect "Reynolds number".
-    """
+    if the arm does not flutter. number: the effect "Reynolds number"."""
     if isnan(number.value):
         return []
     validity = _validity_of_effect(number)
@@ -184,15 +177,13 @@ def reynolds_checks(number: Effect) -> list[Check]:
 
 def wall_checks(effect: Effect | None) -> list[Check]:
     """Check of the flattening of a tube's section in beating of large amplitude; an empty list if the section
-    is not a tube (`effect` is None).
-    """
+    is not a tube (`effect` is None)."""
     return [] if effect is None else [tube_wall_check(effect)]
 
 
 def tube_wall_check(effect: Effect) -> Check:
     """Check of a tube's wall. effect: relative loss of bending stiffness by flattening of the section, if the
-    tip moves by L/2.
-    """
+    tip moves by L/2."""
     loss = float(effect.value)
     result = f"takes some {100 * loss:.2g} % of its bending stiffness" if loss < 1 else "folds the tube"
     validity = _validity_of_effect(effect)
@@ -207,8 +198,7 @@ def tube_wall_check(effect: Effect) -> Check:
 
 def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
     """Check of weight minus buoyancy against bending stiffness. effect: None if the density difference is
-    unknown.
-    """
+    unknown."""
     if effect is None:
         text = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, text)

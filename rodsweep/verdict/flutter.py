@@ -1,6 +1,5 @@
 """Thresholds of an arm for each drag of its range: flutter, frequency at flutter, restabilization.
-Forces are in k3/L^2.
-"""
+Forces are in k3/L^2."""
 
 from dataclasses import dataclass, replace
 from math import inf, pi
@@ -50,8 +49,7 @@ class ThresholdsWithDrag:
     @property
     def doubt(self) -> str:
         """Why usable thresholds are uncertain: a threshold of a kind in KINDS_USED_BY_VERDICT misses the
-        accuracy, or the list is not proved complete; empty if the thresholds are certain.
-        """
+        accuracy, or the list is not proved complete; empty if the thresholds are certain."""
         search = self.thresholds
         accuracy = SEARCH_REQUEST.accuracy
         if any(
@@ -86,8 +84,7 @@ class ThresholdsWithDrag:
 
     def is_unstable_at(self, F: float) -> bool:
         """Whether the straight arm is unstable at the force F. For an F beyond the end of the search, the
-        stability at this end is returned.
-        """
+        stability at this end is returned."""
         counts = [c.unstable_after for c in self.thresholds.thresholds if c.value <= F]
         return bool(counts) and counts[-1] != 0
 
@@ -104,9 +101,7 @@ class ThresholdsWithDrag:
 @dataclass(frozen=True, slots=True)
 class RangeOverDrags:
     """Range of a quantity over the drags of an arm; drags for which the quantity does not exist are left out.
-
-    low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag.
-    """
+    low, high: smallest and largest value. for_every_drag: whether the quantity exists for every drag."""
 
     low: float
     high: float
@@ -123,8 +118,7 @@ class ThresholdsOverDrags:
     @property
     def failures(self) -> list[str]:
         """Distinct error messages of failed searches. A search that stopped before the requested force did
-        not fail.
-        """
+        not fail."""
         failed = [f.thresholds for f in self.by_drag if not f.is_usable]
         return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed})
 
@@ -140,8 +134,7 @@ class ThresholdsOverDrags:
 
     def first_forces(self, kind: ChangeKind) -> RangeOverDrags | None:
         """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
-        drag has such a threshold.
-        """
+        drag has such a threshold."""
         return range_over_drags([f.first_force(kind) for f in self.by_drag])
 
     @property
@@ -152,8 +145,7 @@ class ThresholdsOverDrags:
 
     def first_frequencies(self, kind: ChangeKind) -> RangeOverDrags | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
-        drag has such a threshold.
-        """
+        drag has such a threshold."""
         return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
 
     def is_unstable_by_drag(self, F: float) -> list[bool]:
@@ -179,11 +171,9 @@ def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -
 
 @exclusive_solve
 def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
-    """All thresholds of the straight arm for each drag, up to a force common to all drags.
-
-    The search with the most likely drag sets this force. If a search stops at a smaller force, this smaller
-    force is used for all drags.
-    """
+    """All thresholds of the straight arm for each drag, up to a force common to all drags. The search with
+    the most likely drag sets this force. If a search stops at a smaller force, this smaller force is used for
+    all drags."""
     likeliest_drag, *others = arm.drags
     end, first_result = _first_search(arm, likeliest_drag)
     results = (first_result, *(thresholds_with_drag(arm, drag, end) for drag in others))
@@ -195,8 +185,7 @@ def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDra
     """Returns (end, found): the largest force requested, and the thresholds up to this force. `end` is
     SEARCH_END; for an arm that is not uniform or not of linear material, the first of
     SEARCH_ENDS_OF_VARYING_ARM that exceeds the first flutter force and a known load by at least the factor
-    MIN_SEARCH_RATIO, or before which the search ended, else the last.
-    """
+    MIN_SEARCH_RATIO, or before which the search ended, else the last."""
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)

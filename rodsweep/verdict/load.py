@@ -49,8 +49,7 @@ class LoadFormatter:
 
 def _shortened_load(load: object, value: float, si: str) -> str:
     """The load `load` as text: as the user typed it, or rounded to four digits if its number is long. A load
-    given as a number is written in the SI unit `si`, in which it is `value`.
-    """
+    given as a number is written in the SI unit `si`, in which it is `value`."""
     if not isinstance(load, str):
         return f"{value:.4g} {si}"
     number = load.split()[0]

@@ -26,8 +26,7 @@ class NumberRow(NamedTuple):
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
     """Rows with all numbers of an arm, dimensional numbers first. plane: plane in which the arm flutters
-    first.
-    """
+    first."""
     arm = plane.arm
     return [
         *plane_row(plane),
@@ -41,8 +40,7 @@ def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
 
 def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
     """Row with the plane of motion and the width w and height h of a rectangular section, h in this plane; an
-    empty list for other sections.
-    """
+    empty list for other sections."""
     if not plane.name:
         return []
     sizes = f"w = {plane.arm.si.width:.4g} m, h = {plane.arm.si.height:.4g} m"
@@ -51,8 +49,7 @@ def plane_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 def shape_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the taper or the segments, and with the constitutive law if it is not linear; an empty list
-    for a uniform arm of linear material.
-    """
+    for a uniform arm of linear material."""
     rows = []
     if arm.taper != 1:
         formula = "tip radius/radius; all other rows are for the base"
@@ -98,10 +95,8 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
 
 def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
     """Row with the force at the tip at which the arm flutters; an empty list if the arm flutters with no drag
-    or only with part of the drags, or if a search failed.
-
-    Of two arms with tips of different size, the larger pressure may be the smaller force.
-    """
+    or only with part of the drags, or if a search failed. Of two arms with tips of different size, the larger
+    pressure may be the smaller force."""
     thresholds = plane.thresholds
     forces = [] if thresholds.failures else plane.flutter_load_by_drag
     if not forces or not all(isfinite(force) for force in forces):
@@ -112,8 +107,7 @@ def flutter_force_row(plane: PlaneOfMotion) -> list[NumberRow]:
 
 def value_with_drag_range(values: list[float], unit: str = "") -> str:
     """values[0], followed by the range of all values in brackets and by `unit`, as text. values: a quantity
-    for each drag, the most likely drag first.
-    """
+    for each drag, the most likely drag first."""
     return f"{values[0]:.3g} ({range_text(min(values), max(values))}){unit}"
 
 
@@ -151,8 +145,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
     """Rows with the dimensionless parameters of an arm, named like the keys of a config; F only for an arm
-    with a load.
-    """
+    with a load."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [
@@ -182,8 +175,7 @@ def law_phrase(arm: SlenderArm) -> str:
 
 def station_phrase(station: Station) -> str:
     """Phrase for the radius, the inner radius (of a tube) and Young's modulus of a segment: "radius 6 mm,
-    inner radius 3 mm, 80 kPa".
-    """
+    inner radius 3 mm, 80 kPa"."""
     sizes = {"radius": station.section.drag_radius}
     if isinstance(station.section, Tube):
         sizes["inner radius"] = station.section.inner_radius

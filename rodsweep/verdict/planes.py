@@ -36,11 +36,8 @@ class PlaneOfMotion:
 
 @dataclass(frozen=True, slots=True)
 class Planes:
-    """Planes in which an arm can bend.
-
-    first: plane with the smaller flutter load for the most likely drag. second: the other plane; None if all
-    planes are equivalent.
-    """
+    """Planes in which an arm can bend. first: plane with the smaller flutter load for the most likely drag.
+    second: the other plane; None if all planes are equivalent."""
 
     first: PlaneOfMotion
     second: PlaneOfMotion | None = None
@@ -48,8 +45,7 @@ class Planes:
     @property
     def is_first_for_every_drag(self) -> bool:
         """Whether, for every drag, the flutter load in the plane `first` is not larger than in `second`; True
-        without a second plane.
-        """
+        without a second plane."""
         if self.second is None:
             return True
         loads = zip(self.first.flutter_load_by_drag, self.second.flutter_load_by_drag, strict=True)
@@ -58,8 +54,7 @@ class Planes:
 
 def planes_of(arm: SlenderArm) -> Planes:
     """Planes of motion of an arm, each with its solved thresholds: two for a rectangular section with unequal
-    sides, in order of the flutter load for the likeliest drag; otherwise one.
-    """
+    sides, in order of the flutter load for the likeliest drag; otherwise one."""
     if arm.is_equally_stiff_in_all_planes:
         return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))
     exchanged = with_exchanged_sides(arm)
@@ -71,11 +66,9 @@ def planes_of(arm: SlenderArm) -> Planes:
 
 
 def with_absolute_load(planes: Planes) -> Planes:
-    """The planes with a load relative to the flutter load replaced by the load in a physical unit.
-
-    The flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm
-    does not flutter.
-    """
+    """The planes with a load relative to the flutter load replaced by the load in a physical unit. The
+    flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does
+    not flutter."""
     first = planes.first
     ratio = first.arm.share_of_flutter
     load = first.arm.load

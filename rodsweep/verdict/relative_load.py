@@ -43,14 +43,12 @@ have, and few enough to be equal on all machines. A run resumed on another machi
 
 class FlutterSearchFailed(InputError):
     """Raised if the search for the flutter load to which a relative load refers fails; the message states
-    the reason.
-    """
+    the reason."""
 
 
 def with_exchanged_sides(arm: A) -> A:
     """The arm turned by 90 degrees about its axis: width and height of its rectangular section
-    are exchanged.
-    """
+    are exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 
@@ -58,11 +56,8 @@ def rods_by_plane(
     arm: SlenderArm, build: Build | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
     """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
-    drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm.
-
-    build: constitutive law and profile. taper: ratio of tip to base radius. If given, `build` and `taper`
-    replace the values of the arm.
-    """
+    drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm. build: constitutive law and profile. taper:
+    ratio of tip to base radius. If given, `build` and `taper` replace the values of the arm."""
     planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
     if not arm.is_equally_stiff_in_all_planes:
         exchanged = with_exchanged_sides(arm)
@@ -80,19 +75,16 @@ def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None)
 
 def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
-    section's height. build: constitutive law and profile; None for the build of the arm.
-    """
+    section's height. build: constitutive law and profile; None for the build of the arm."""
     parameters = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
     return Rod(F=0.0, **parameters, build=build or arm.build_with_drag(drag))
 
 
 @cache
 def first_hopf_force(rod: Rod) -> float:
-    """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits.
-
-    inf if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
-    overflows or cannot exclude a Hopf point at a smaller F.
-    """
+    """Smallest F at which a pair of modes of `rod` becomes unstable, rounded to REFERENCE_DIGITS digits. inf
+    if no pair becomes unstable up to the end of the search. Raises FlutterSearchFailed if the search
+    overflows or cannot exclude a Hopf point at a smaller F."""
     path = ParameterPath(rod, "F")
     find_first = _first_hopf_force_by_boxes if rod.is_uniform_and_linear else _first_hopf_force_of_varying_arm
     try:
@@ -113,8 +105,7 @@ def first_hopf_force(rod: Rod) -> float:
 
 def _first_hopf_force_by_boxes(path: ParameterPath, end: float) -> float:
     """Smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Covers the zeros
-    of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded.
-    """
+    of the determinant with boxes. Raises FlutterSearchFailed if a smaller F is not excluded."""
     boxes = first_boxes(path, 0.0, end)
     if boxes is None:
         raise FlutterSearchFailed(
@@ -134,8 +125,7 @@ def _first_hopf_force_by_boxes(path: ParameterPath, end: float) -> float:
 def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
     """For arms that are not uniform or not of linear material (others: `_first_hopf_force_by_boxes`):
     smallest F up to `end` at which a pair of modes becomes unstable; inf if no pair does. Raises
-    FlutterSearchFailed if the search along F fails or a smaller F is not excluded.
-    """
+    FlutterSearchFailed if the search along F fails or a smaller F is not excluded."""
     from ..solve.changes.thresholds_along_path import find_axis_crossings
     from ..solve.point_outcome import FAILURES, cause_of
 
@@ -159,8 +149,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
 
 def _becomes_unstable(path: ParameterPath, zero: LocatedEigenvalue) -> bool:
     """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
-    d Re w/dp > 0.
-    """
+    d Re w/dp > 0."""
     value = determinant_along_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )

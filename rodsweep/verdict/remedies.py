@@ -1,6 +1,5 @@
 """Sentences for an arm to which the model does not apply: violated limit, excess over the limit,
-and remedy.
-"""
+and remedy."""
 
 from collections.abc import Iterable
 from math import isnan
@@ -19,8 +18,7 @@ MAX_FOUR_DIGIT_RATIO = 1.1
 
 def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
     """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
-    limit first.
-    """
+    limit first."""
     first, *others = _first_effect_of_each_kind(assessment.effects_with(Validity.does_not_apply))
     remedy = _remedy(first, arm, assessment)
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
@@ -42,15 +40,13 @@ def effect_kinds_text(effects: Iterable[Effect]) -> str:
 
 def effect_kind(effect: Effect) -> str:
     """Kind of a neglected effect: the first word of the effect's name. Inertia of the arm and inertia of the
-    fluid therefore have the same kind.
-    """
+    fluid therefore have the same kind."""
     return effect.name.split()[0]
 
 
 def excess_text(effect: Effect) -> str:
     """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
-    MAX_FOUR_DIGIT_RATIO.
-    """
+    MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
     return f"{float(f'{ratio:.2g}'):g} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 
@@ -78,8 +74,7 @@ def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:
 
 def _thicker_fluid_or_thinner_arm(arm: SlenderArm, assessment: Assessment) -> str:
     """Clause with the smallest viscosity of the fluid, and the largest thickness of the arm if known, for
-    which inertia is within its limit.
-    """
+    which inertia is within its limit."""
     si = UNITS["viscosity"][0]
     unit = unit_of(arm.viscosity, si)
     factor = viscosity_factor(assessment.at_flutter)

@@ -8,8 +8,7 @@ ROUNDING_TOLERANCE = 1e-12
 
 def three_digits(value: float) -> str:
     """`value` as text with three significant digits; with an exponent only from a million on and below
-    1e-4.
-    """
+    1e-4."""
     rounded = float(f"{value:.3g}")
     return f"{rounded:.0f}" if 1000 <= abs(rounded) < 1e6 else f"{rounded:g}"
 
@@ -22,16 +21,14 @@ def three_digits_rounded_down(value: float) -> str:
 
 def range_text(low: float, high: float) -> str:
     """The range from `low` to `high` as text, with three significant digits; a single number if both ends
-    round to the same number.
-    """
+    round to the same number."""
     ends = [three_digits(low), three_digits(high)]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)
 
 
 def percent_range_text(low: float, high: float) -> str:
     """The range between the fractions `low` and `high` as text in percent, rounded to integers, or to one
-    significant digit below 1 percent; a single number if both ends round to the same number.
-    """
+    significant digit below 1 percent; a single number if both ends round to the same number."""
     percents = [100 * value for value in sorted((low, high))]
     ends = [f"{value:.0f}" if value >= 1 else f"{value:.1g}" for value in percents]
     return ends[0] if ends[0] == ends[1] else " to ".join(ends)

@@ -18,8 +18,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
     are uncertain (if they are), flutter in the plane with the smaller flutter load, then in the second plane.
     The second plane is left out if the model applies at flutter but not under the load. If a search in the
-    first plane failed, the list contains only the reason.
-    """
+    first plane failed, the list contains only the reason."""
     plane = planes.first
     if plane.thresholds.failures:
         return [
@@ -95,8 +94,7 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
 
 def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> str:
     """Clause on the load at which an arm that is stable again flutters a second time; empty if it does not
-    flutter again.
-    """
+    flutter again."""
     forces = thresholds.second_flutter_forces
     if forces is None:
         return ""
@@ -106,16 +104,14 @@ def _second_flutter_clause(thresholds: ThresholdsOverDrags, load: LoadFormatter)
 
 def _flutter_load_text(plane: PlaneOfMotion, flutter: RangeOverDrags) -> str:
     """Range of the flutter load over the drags as text; for a rectangular section, followed by the name of
-    the plane of motion.
-    """
+    the plane of motion."""
     load_text = LoadFormatter(plane.arm).range_of_forces_text(flutter)
     return f"{load_text} in {plane.name}" if plane.name else load_text
 
 
 def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, load: LoadFormatter) -> str:
     """Sentence that compares the arm's load with the range of the flutter load over the drags and says
-    whether the arm beats.
-    """
+    whether the arm beats."""
     F = plane.arm.F
     thresholds = plane.thresholds
     load_text = _flutter_load_text(plane, flutter)
@@ -139,8 +135,7 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
 
 def _excess_text(F: float, flutter: RangeOverDrags) -> str:
     """Excess of the force F over the range of the flutter load, as text: "20 to 30 % above", or as a factor,
-    "3 times", if the factor is larger than 2.
-    """
+    "3 times", if the factor is larger than 2."""
     low, high = (F / end for end in (flutter.high, flutter.low))
     return f"{range_text(low, high)} times" if low > 2 else f"{percent_range_text(low - 1, high - 1)} % above"
 
@@ -171,8 +166,7 @@ def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
 
 def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
-    verb: "is" or "would be".
-    """
+    verb: "is" or "would be"."""
     second_plane = planes.second
     if second_plane is None:
         return []
@@ -200,8 +194,7 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
 
 def _oscillation_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
-    found.
-    """
+    found."""
     onset = thresholds.first_forces(ChangeKind.onset)
     if onset is None:
         return []

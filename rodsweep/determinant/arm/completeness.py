@@ -69,11 +69,8 @@ COMPLETENESS_SETTINGS = CompletenessSettings()
 
 
 class Remainder(NamedTuple):
-    """The sum R of phi over all unknown eigenvalues (see the module docstring).
-
-    rounding: rounding error of R. least_contribution: lower bound of the contribution of an unknown
-    eigenvalue right of the line to R.
-    """
+    """The sum R of phi over all unknown eigenvalues (see the module docstring). rounding: rounding error of
+    R. least_contribution: lower bound of the contribution of an unknown eigenvalue right of the line to R."""
 
     R: float
     rounding: float
@@ -114,8 +111,7 @@ def has_conjugate(known_w: Complex) -> Array:
 
 def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> float:
     """Largest |w| at which the first possible trial of `prove_complete` evaluates D; inf if no trial is
-    possible. line: Re w of the vertical line. known_w: known eigenvalues, (n,).
-    """
+    possible. line: Re w of the vertical line. known_w: known eigenvalues, (n,)."""
     largest_w = float(np.abs(known_w).max())
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         if (last_w := _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))) <= ratio * largest_w:
@@ -124,11 +120,9 @@ def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> f
 
 
 def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, modes: int) -> tuple[int, float]:
-    """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof).
-
-    line: Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof
-    has the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible.
-    """
+    """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof). line:
+    Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof has
+    the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible."""
     cheapest = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known_w)).tolist()
     ends_whole = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
@@ -148,10 +142,8 @@ def _last_proof_point(points: Array) -> float:
 
 @compiled
 def proves_completeness(remainder: Remainder) -> bool:
-    """Whether R excludes an unknown eigenvalue right of the line.
-
-    False also if R is far below 0: some known eigenvalue is then not a root of D.
-    """
+    """Whether R excludes an unknown eigenvalue right of the line. False also if R is far below 0: some known
+    eigenvalue is then not a root of D."""
     max_remainder = COMPLETENESS_SETTINGS.max_remainder * remainder.least_contribution
     return remainder.R + remainder.rounding < max_remainder and -max_remainder < remainder.R
 
@@ -159,10 +151,8 @@ def proves_completeness(remainder: Remainder) -> bool:
 @compiled
 def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; empty if such
-    points would overflow.
-
-    line: Re w of the vertical line. k: number of points. a, c: constants of the hull.
-    """
+    points would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the
+    hull."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(a * a, COMPLETENESS_SETTINGS.min_first_point * abs(line))
     x = max(x, COMPLETENESS_SETTINGS.min_first_distance)

@@ -49,10 +49,8 @@ class ArmDeterminant:
         return determinant_along_chain(complex(w), W, polynomials)
 
     def value_on_finer_elements(self, w: complex, factor: float) -> DeterminantValue:
-        """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1.
-
-        The differences between values for several factors show the rounding error of D.
-        """
+        """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1. The differences
+        between values for several factors show the rounding error of D."""
         W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
         return determinant_along_chain(complex(w), W, polynomials)
 
@@ -77,10 +75,8 @@ class ArmDeterminant:
 
     def propagators_for(self, min_W: float, max_ratio: float | None = None) -> PropagatorsUpToW:
         """Returns (W, propagators that are valid for |w| <= W, (elements, terms, PADDED)) with W >= min_W.
-
         Existing propagators with the smallest such W are reused if W <= max_ratio * min_W; otherwise new
-        propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`.
-        """
+        propagators are made. max_ratio: by default `ARM_ELEMENT_SETTINGS.max_reuse_ratio`."""
         max_ratio = ARM_ELEMENT_SETTINGS.max_reuse_ratio if max_ratio is None else max_ratio
         min_W = max(min_W, ARM_ELEMENT_SETTINGS.min_W)
         for level in self._known_propagators:
@@ -111,8 +107,7 @@ class CoefficientSamples(NamedTuple):
 
 class PropagatorElements(NamedTuple):
     """Elements of n arms: their lengths, (elements,), and `LocalCoefficients` at their Gauss points,
-    (6, n, elements, stages).
-    """
+    (6, n, elements, stages)."""
 
     lengths: Array
     local: Array
@@ -127,10 +122,8 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
 
 
 def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:
-    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same build.
-
-    Raises FloatingPointError if `max_elements` elements do not resolve an arm.
-    """
+    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same build. Raises
+    FloatingPointError if `max_elements` elements do not resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
     edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
     points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
@@ -159,8 +152,7 @@ def arm_determinant(rod: Rod) -> ArmDeterminant:
 
 def wave_number(rod: Rod, w: complex) -> float:
     """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for an arm that is not
-    uniform or not of linear material, the average along the arm.
-    """
+    uniform or not of linear material, the average along the arm."""
     return (
         newton_correction_and_scales(w, rod.coefficients)[2]
         if rod.is_uniform_and_linear
@@ -169,9 +161,7 @@ def wave_number(rod: Rod, w: complex) -> float:
 
 
 def forget_arm_determinants() -> None:
-    """Empties the cache of `arm_determinant`.
-
-    Propagators made for a larger |w| change D by rounding errors. A point or a search that begins with an
-    empty cache has the same result in every process, whatever this process solved before.
-    """
+    """Empties the cache of `arm_determinant`. Propagators made for a larger |w| change D by rounding errors.
+    A point or a search that begins with an empty cache has the same result in every process, whatever this
+    process solved before."""
     arm_determinant.cache_clear()

@@ -75,11 +75,8 @@ class _DoubleEigenvalueStep(NamedTuple):
 
 
 class ArmAlongPath:
-    """D of the arms of one path, as a function of the path variable p.
-
-    family_at: function that returns the family of arms that contains p, or None to compute D from the arm at
-    p itself.
-    """
+    """D of the arms of one path, as a function of the path variable p. family_at: function that returns the
+    family of arms that contains p, or None to compute D from the arm at p itself."""
 
     def __init__(self, path: ParameterPath, family: Callable[[float], ArmFamily | None] = lambda p: None):
         self.path = path

@@ -21,8 +21,7 @@ from .value import determinant_along_chain, path_value_by_chain
 @compiled
 def write_propagators(family: ArmFamily, p: float, polynomials: Array, p_derivatives: Array) -> None:
     """Writes the propagators of the arm at p into polynomials, and their derivatives by p into changes, both
-    (elements, terms, PADDED).
-    """
+    (elements, terms, PADDED)."""
     half = (family.p_high - family.p_low) / 2
     t = (p - (family.p_low + family.p_high) / 2) / half
     if family.scale < LINEAR_SCALE:
@@ -98,8 +97,7 @@ def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> Determ
 def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the eigenvalue near `guess`, for the arm at p of a family. Newton's
     method ends when rounding stops the decrease of the steps. A real guess gives a real w. Not for nearly
-    double eigenvalues.
-    """
+    double eigenvalues."""
     polynomials = np.empty(family.coefficients.shape[1:])
     p_derivatives = np.empty_like(polynomials)
     write_propagators(family, p, polynomials, p_derivatives)

@@ -30,10 +30,8 @@ class ArmSamples(NamedTuple):
 
 
 def arm_samples(F: float | Array, coefficients: LocalCoefficients, weights: Array) -> ArmSamples:
-    """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,).
-
-    For n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points).
-    """
+    """Samples of an arm from the force F, its coefficients at points, (points,), and weights, (points,). For
+    n arms, F is (n, 1), each coefficient (n, points), and squares get the shape (4, n, points)."""
     nu, c2, c3, gamma2, gamma3, g = coefficients
     shear = c2 * gamma2
     rotation = c3 * gamma3

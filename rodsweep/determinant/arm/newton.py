@@ -118,11 +118,8 @@ def refine_eigenvalue_and_error(
     w: complex, determinant: ArmDeterminant, max_first_step: float = math.inf
 ) -> tuple[complex, float]:
     """Returns (eigenvalue of an arm near w, error), by Newton's method until rounding error stops the
-    convergence.
-
-    A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least this long, w
-    is returned unchanged.
-    """
+    convergence. A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least
+    this long, w is returned unchanged."""
     error = -1.0
     last = 2 * max_first_step
     while error < 0:
@@ -131,8 +128,6 @@ def refine_eigenvalue_and_error(
 
 
 def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
-    """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`.
-
-    For a real `middle` the roots are both real or complex conjugates.
-    """
+    """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`. For a real `middle` the
+    roots are both real or complex conjugates."""
     return _parabola_roots_by_propagators(middle, _propagators_at(middle, determinant))

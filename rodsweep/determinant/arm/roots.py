@@ -109,10 +109,8 @@ def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
     """Returns (w, valid_radius), with every two eigenvalues closer than their errors moved to two roots of D.
-
     error: errors of w. half_distance: half the distance of an eigenvalue from its partner; inf if it was not
-    moved.
-    """
+    moved."""
     w = w.copy()
     half_distance = [math.inf] * len(w)
     eigenvalues_and_errors = zip(w, error, strict=True)
@@ -146,8 +144,7 @@ class _LocatedRoot(NamedTuple):
 
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
     """The root of D near each guess (w, valid_radius), a pair of results of `_separate_close_roots`. For
-    conjugate guesses only the first is refined.
-    """
+    conjugate guesses only the first is refined."""
     roots: list[_LocatedRoot] = []
     for index, (w, radius) in enumerate(guesses):
         if index > 0 and w.imag != 0 and w == guesses[index - 1][0].conjugate():

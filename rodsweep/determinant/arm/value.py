@@ -72,8 +72,7 @@ def _needs_rescaling(size: float) -> bool:
 @compiled
 def divide_by_norm(x: Array) -> float:
     """Divides the minors x, (2, MINORS), by their norm if it is not between 1/`max_norm_ratio` and
-    `max_norm_ratio`. Returns the logarithm of the divisor.
-    """
+    `max_norm_ratio`. Returns the logarithm of the divisor."""
     size = _norm(x)
     if not _needs_rescaling(size):
         return 0.0
@@ -86,9 +85,7 @@ def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
     """(D, dD/dw, dD/dp, S) of `path_value_by_chain` at w = z W; dD/dp is 0 if `p_derivatives` is empty.
-
-    polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED).
-    """
+    polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)

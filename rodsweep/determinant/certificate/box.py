@@ -55,16 +55,14 @@ ZERO_FREE_DISC_SETTINGS = ZeroFreeDiscSettings()
 
 def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|), in 1/tau2, of all eigenvalues with Re w >= -depth, depth >= 0; inf if
-    no bound exists.
-    """
+    no bound exists."""
     return box_from_sqrt_bound(sqrt(frequency_bound(rod)), depth)
 
 
 @compiled
 def box_from_sqrt_bound(a: float, depth: float) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth; a: square root of
-    `frequency_bound`.
-    """
+    `frequency_bound`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
     padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
@@ -95,20 +93,16 @@ def frequency_bound(rod: Rod) -> float:
 
 def frequency_bound_on_path(path: ParameterPath, start: float, stop: float) -> float:
     """An upper bound of `frequency_bound` over all rods of a path with p from start to stop; inf if no
-    bound is known.
-    """
+    bound is known."""
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     return frequency_bound_between_rods(ends[0], ends[1])
 
 
 @compiled
 def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> float:
-    """An upper bound of `frequency_bound` over all rods between two rods of a path; inf if no
-    bound is known.
-
+    """An upper bound of `frequency_bound` over all rods between two rods of a path; inf if no bound is known.
     Every factor of the bound is monotone along a path, so its extremes are at the two rods. The product nu g
-    is not monotone and not used.
-    """
+    is not monotone and not used."""
     load = max(abs(first.F), abs(last.F))
     # F passes 0 between loads of opposite signs.
     least_load = 0.0 if first.F * last.F < 0 else min(abs(first.F), abs(last.F))
@@ -130,8 +124,7 @@ def frequency_bound_between_rods(first: Coefficients, last: Coefficients) -> flo
 
 def zero_free_radius(path: ParameterPath, start: float, stop: float, max_radius: float) -> float:
     """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r and every p of a path from start to
-    stop; 0 if r underflows.
-    """
+    stop; 0 if r underflows."""
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
@@ -156,20 +149,16 @@ def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> fl
 
 
 def _zero_free_radius(r: float, T: float, X: float, G: float, max_pull: float) -> float:
-    """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows.
-
-    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0.
-    """
+    """The first of r, r/2, r/4, ... such that |D(i eta) - 1| < 1/2 for |eta| <= r; 0 if r underflows. T, X,
+    G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
     while _distance_from_one_bound(r, T, X, G, max_pull) >= ZERO_FREE_DISC_SETTINGS.max_deviation_from_one:
         r /= 2
     return r
 
 
 def _distance_from_one_bound(r: float, T: float, X: float, G: float, max_pull: float) -> float:
-    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful.
-
-    T, X, G: bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0.
-    """
+    """An upper bound of |D(i eta) - 1| for |eta| <= r; inf where it would be too large to be useful. T, X, G:
+    bounds of c2 + gamma3, c2 gamma3 and |g nu|. max_pull: bound of -F g, at least 0."""
     exponent = sqrt(max_pull + T * r + 2 * sqrt(r * (G + X * r)))
     if exponent > 1 + sqrt(max_pull):
         return inf

@@ -95,8 +95,7 @@ def distance_from_zero_bound(value: complex, a: complex, b: complex) -> float:
 @compiled
 def mean_growth_rates(centre: BidiscCentre) -> DerivativePair:
     """(L, K): the slopes d sqrt(z)/dw and d sqrt(z)/dp of the exponents, averaged over the two exponentials
-    of D with their moduli as weights.
-    """
+    of D with their moduli as weights."""
     root_plus = cmath.sqrt(centre.z_plus)
     root_minus = cmath.sqrt(centre.z_minus)
     # Removing the mean growth of the exponentials leaves a function that hardly changes over the box.
@@ -113,11 +112,8 @@ def is_remainder_below(
     centre: BidiscCentre, rates: DerivativePair, half: tuple[float, float], margin: float, power: int
 ) -> bool:
     """Whether the Taylor remainder M t^2/(1 - t)^power of D exp(-L dw - K dp) over a box is proved to be
-    below `margin`.
-
-    t: half-widths of the box divided by the radii of the bidisc on which M bounds the function; several t are
-    tried. rates: (L, K). half: half-widths of the box.
-    """
+    below `margin`. t: half-widths of the box divided by the radii of the bidisc on which M bounds the
+    function; several t are tried. rates: (L, K). half: half-widths of the box."""
     t = BOX_PROOF_SETTINGS.first_radius_ratio
     previous_remainder = math.inf
     for _ in range(BOX_PROOF_SETTINGS.max_radius_ratios):
@@ -194,9 +190,7 @@ def cover_with_boxes(
     first: Array, origin: Coefficients, direction: Coefficients
 ) -> tuple[list[LocatedEigenvalue], list[Box], int]:
     """Returns (zeros of D(i eta; p) in the boxes `first`, (n, 4); boxes left open; number of examined boxes).
-
-    origin, direction: coefficients at p = 0 and their derivative by p.
-    """
+    origin, direction: coefficients at p = 0 and their derivative by p."""
     stack = [Box(first[i, 0], first[i, 1], first[i, 2], first[i, 3]) for i in range(len(first))]
     # numba infers the type of an empty list from its element.
     zeros = [FAILED_EIGENVALUE for _ in range(0)]

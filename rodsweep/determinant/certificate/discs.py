@@ -92,11 +92,8 @@ def bidisc_centre(
 
 @compiled
 def nonlinear_root_bound(root: complex, nonlinear_change: float, x: float) -> float:
-    """Bound of the nonlinear part of the change of sqrt(z) = `root`.
-
-    x: bound of the total change of z over |z|. nonlinear_change: bound of the nonlinear part of the change of
-    z.
-    """
+    """Bound of the nonlinear part of the change of sqrt(z) = `root`. x: bound of the total change of z over
+    |z|. nonlinear_change: bound of the nonlinear part of the change of z."""
     return nonlinear_change / (2 * abs(root)) + abs(root) * x * x / (8 * (1 - x))
 
 
@@ -185,11 +182,8 @@ def bound_on_bidisc(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRa
 @compiled
 def bound_for_distinct_exponents(centre: BidiscCentre, rates: DerivativePair, radii: BidiscRadii) -> float:
     """`bound_on_bidisc` for distinct z+ and z-, from separate bounds of E(z+) and E(z-); inf if the bidisc is
-    too large.
-
-    Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with bounds of
-    |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e).
-    """
+    too large. Over the bidisc, w changes by a factor 1 + e1 and g nu + c2 gamma3 w by a factor 1 + e2, with
+    bounds of |e1| and |e2|; 2 - sqrt(1 - e) majorises sqrt(1 + e)."""
     w = centre.w
     S = centre.log_scale
     P = centre.P

@@ -72,10 +72,8 @@ def _nonlinearity_bounds(
     w: complex, rho: float, P: complex, coefficients: Coefficients
 ) -> tuple[float, float]:
     """Returns upper bounds (nonlinear part of z+-, change of dz+-/dw) over the disc |dw| <= rho about w; inf
-    if the disc is too large.
-
-    Only the term 2 P of z+- = T w - F g +- 2 P is nonlinear in w; 2 - sqrt(1 - e) majorises sqrt(1 + e).
-    """
+    if the disc is too large. Only the term 2 P of z+- = T w - F g +- 2 P is nonlinear in w; 2 - sqrt(1 - e)
+    majorises sqrt(1 + e)."""
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu
@@ -94,8 +92,7 @@ def _nonlinearity_bounds(
 @compiled
 def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
-    w.
-    """
+    w."""
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
@@ -137,8 +134,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 @compiled
 def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
     """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant exponential A
-    of D.
-    """
+    of D."""
     _, dominant, _ = _dominant_and_recessive(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
@@ -158,10 +154,7 @@ def phase_over_dominated_segment(
 ) -> tuple[float, float, int]:
     """Returns (length, change, disc count). length: length of the segment from `start` on which dominance is
     proved, at most the argument `length`. change: change of arg D over this segment. disc_count: number of
-    examined discs.
-
-    direction: unit vector of the segment.
-    """
+    examined discs. direction: unit vector of the segment."""
     F, nu, c2, gamma3 = coefficients
     X = c2 * gamma3
     gn = (nu + F * c2) * nu

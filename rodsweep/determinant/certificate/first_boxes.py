@@ -40,8 +40,7 @@ COVERING_SETTINGS = CoveringSettings()
 
 def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple[float, float]]:
     """Intervals (start, end) of p from `start` to `stop`; over each interval nu at most halves, and a drag or
-    compliance at most doubles, except on the shortest intervals.
-    """
+    compliance at most doubles, except on the shortest intervals."""
     edges = [start]
     width = (stop - start) / COVERING_SETTINGS.min_intervals
     while edges[-1] < stop:
@@ -60,9 +59,7 @@ def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple
 
 def first_boxes(path: ParameterPath, start: float, stop: float) -> Array | None:
     """Boxes (eta_from, eta_to, p_from, p_to) that contain every crossing with p from start to stop, (n, 4).
-
-    None if no a-priori bound exists, or if the lower bound of eta underflows, or almost.
-    """
+    None if no a-priori bound exists, or if the lower bound of eta underflows, or almost."""
     boxes = []
     for a, b in path_intervals(path, start, stop):
         top = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(

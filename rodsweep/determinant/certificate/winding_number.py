@@ -68,11 +68,8 @@ NO_INTEGER_MESSAGE = "the winding number of D is not an integer within rounding 
 
 @dataclass(frozen=True, slots=True)
 class EigenvalueCount:
-    """Number of eigenvalues right of a vertical line.
-
-    number: None if the count failed. node_count: number of nodes and discs on the contour.
-    failure_reason: reason of the failure.
-    """
+    """Number of eigenvalues right of a vertical line. number: None if the count failed. node_count: number of
+    nodes and discs on the contour. failure_reason: reason of the failure."""
 
     number: int | None
     node_count: int
@@ -81,12 +78,9 @@ class EigenvalueCount:
 
 @compiled
 def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
-    """Returns (change of arg D along the segment from `start` to `end`, number of nodes and discs).
-
-    Where one exponential of D is proved to dominate, `phase_over_dominated_segment` gives the change;
-    elsewhere `phase_change_by_nodes` does. If the change cannot be proved, returns (0, -number of nodes and
-    discs).
-    """
+    """Returns (change of arg D along the segment from `start` to `end`, number of nodes and discs). Where one
+    exponential of D is proved to dominate, `phase_over_dominated_segment` gives the change; elsewhere
+    `phase_change_by_nodes` does. If the change cannot be proved, returns (0, -number of nodes and discs)."""
     length = abs(end - start)
     direction = (end - start) / length
     t = 0.0
@@ -117,11 +111,8 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
 @compiled
 def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficients) -> tuple[float, int]:
     """Returns (change of arg D along the segment from `start` to `end`, number of nodes), by zero-free discs
-    about successive nodes on the segment.
-
-    If the zero-free radius of a node is too small, or too many nodes are needed, returns (0, -number of
-    nodes).
-    """
+    about successive nodes on the segment. If the zero-free radius of a node is too small, or too many nodes
+    are needed, returns (0, -number of nodes)."""
     length = abs(end - start)
     direction = (end - start) / length
     t = 0.0
@@ -162,12 +153,9 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
 def contour_phase_change(
     line: float, start_height: float, corner: complex, coefficients: Coefficients
 ) -> tuple[float, int]:
-    """Returns (change of arg D along the upper half of the box, number of nodes and discs).
-
-    The contour goes from the real axis up to `corner`, left to Re w = line, and down to the height
-    `start_height`. The number is negative, and the returned change meaningless, if the change could not be
-    proved.
-    """
+    """Returns (change of arg D along the upper half of the box, number of nodes and discs). The contour goes
+    from the real axis up to `corner`, left to Re w = line, and down to the height `start_height`. The number
+    is negative, and the returned change meaningless, if the change could not be proved."""
     top = complex(line, corner.imag)
     right_change, node_count = phase_change(complex(corner.real, 0.0), corner, coefficients)
     if node_count < 0:
@@ -184,10 +172,7 @@ def contour_phase_change(
 
 def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
     """Proved number of transverse eigenvalues of a uniform rod with Re w > line, for any real `line`, in
-    1/tau2.
-
-    A failed proof raises no exception: `number` is then None and `failure_reason` the reason.
-    """
+    1/tau2. A failed proof raises no exception: `number` is then None and `failure_reason` the reason."""
     real, imag = eigenvalue_box(rod, max(-line, 0.0))
     if not math.isfinite(imag) or not math.isfinite(real):
         place = f"at F = {rod.F:g}"
@@ -217,11 +202,9 @@ def count_right_of(line: float, rod: Rod) -> EigenvalueCount:
 
 
 def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
-    """Upper right corner of the contour, in 1/tau2: the point of the contour with the largest |w|.
-
-    line: real part of the left edge of the contour. box: bounds (max Re w, max |Im w|) of all eigenvalues
-    right of the line. Also for the contours of arms.
-    """
+    """Upper right corner of the contour, in 1/tau2: the point of the contour with the largest |w|. line: real
+    part of the left edge of the contour. box: bounds (max Re w, max |Im w|) of all eigenvalues right of the
+    line. Also for the contours of arms."""
     real, imag = box
     return complex(
         WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,

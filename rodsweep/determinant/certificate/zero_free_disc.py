@@ -57,10 +57,7 @@ class ZeroFreeDiscNode(NamedTuple):
 @compiled
 def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -> float:
     """Radius of a disc about w that avoids branch points and over which the exponents of D change by order
-    one.
-
-    L: D'/D at w. S: logarithm of the scale of D at w.
-    """
+    one. L: D'/D at w. S: logarithm of the scale of D at w."""
     F, nu, c2, gamma3 = coefficients
     _, P1, P2, plus, minus = exponent_derivatives(w, coefficients)
     stiffness = abs((nu + F * c2) * nu + c2 * gamma3 * w)
@@ -89,8 +86,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
 @compiled
 def zero_free_disc_at(w: complex, coefficients: Coefficients) -> ZeroFreeDiscNode:
     """The point w with its zero-free radius, for a uniform rod. Within the zero-free radius the phase of D
-    exp(-L dw) changes by less than pi/2. Reach and L are 0 if |D| is not above its rounding error.
-    """
+    exp(-L dw) changes by less than pi/2. Reach and L are 0 if |D| is not above its rounding error."""
     D, D_w, S, rounding_error = scaled_determinant(w, coefficients)
     max_remainder = (
         DISC_BOUND_SETTINGS.max_relative_change * abs(D)

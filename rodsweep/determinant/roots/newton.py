@@ -20,10 +20,7 @@ from .settings import ROOT_NEWTON_SETTINGS
 
 class LocatedEigenvalue(NamedTuple):
     """A crossing at w = i eta, or a double eigenvalue at w = x, on a path at p; all fields are nan after a
-    failure.
-
-    eta_or_x: eta or x. error: error of eta_or_x. error_of_p: error of p.
-    """
+    failure. eta_or_x: eta or x. error: error of eta_or_x. error_of_p: error of p."""
 
     eta_or_x: float
     p: float
@@ -139,10 +136,8 @@ def _real_determinant(
 @compiled
 def refine_eigenvalue(w: complex, coefficients: Coefficients, max_first_step: float = math.inf) -> complex:
     """The eigenvalue of a uniform rod near w, by Newton's method until rounding error stops the convergence.
-
     A real guess w gives a real eigenvalue. max_first_step: if the first Newton step is at least this long, w
-    is returned unchanged.
-    """
+    is returned unchanged."""
     real = w.imag == 0
     last = 2 * max_first_step
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
@@ -168,8 +163,7 @@ def eigenvalue_newton(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> tuple[complex, complex, float]:
     """Returns (w, dw/dp, error of w) of the simple eigenvalue w of a uniform rod near the guess w. direction:
-    d(F, nu, c2, gamma3)/dp.
-    """
+    d(F, nu, c2, gamma3)/dp."""
     w = refine_eigenvalue(w, coefficients)
     value = determinant_along_path(w, coefficients, direction)
     return w, -value.D_p / value.D_w, max(abs(value.D), value.rounding_error) / abs(value.D_w)

@@ -71,10 +71,8 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
 
 @compiled
 def taylor_parabola_roots(middle: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod.
-
-    For a real `middle` the roots are both real or complex conjugates.
-    """
+    """The two roots of the quadratic Taylor polynomial of D about `middle`, for a uniform rod. For a real
+    `middle` the roots are both real or complex conjugates."""
     D, D1, S, _ = scaled_determinant(middle, coefficients)
     if middle.imag == 0:
         D = complex(D.real, 0.0)
@@ -85,8 +83,7 @@ def taylor_parabola_roots(middle: complex, coefficients: Coefficients) -> tuple[
 @compiled
 def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> tuple[complex, complex]:
     """The two roots of the quadratic polynomial with value D, first derivative D1 and second derivative D2 at
-    `middle`; `middle` twice if D2 = 0.
-    """
+    `middle`; `middle` twice if D2 = 0."""
     if D2 == 0:
         return middle, middle
     root = cmath.sqrt(D1 * D1 - 2 * D * D2)
@@ -95,11 +92,9 @@ def roots_of_parabola(middle: complex, D: complex, D1: complex, D2: complex) -> 
 
 @compiled
 def _separate_close_pairs(w: Complex, error: Array, coefficients: Coefficients) -> Array:
-    """Replaces, in w, every two eigenvalues closer than their errors by estimates of two roots of D.
-
-    w, error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its
-    partner, (n,); inf if the eigenvalue was not moved.
-    """
+    """Replaces, in w, every two eigenvalues closer than their errors by estimates of two roots of D. w,
+    error: eigenvalues and their errors, (n,). Returns for each eigenvalue half its distance from its partner,
+    (n,); inf if the eigenvalue was not moved."""
     half_distances = np.full(len(w), math.inf)
     for i in range(len(w)):
         if half_distances[i] < math.inf:
@@ -134,10 +129,7 @@ def _descending_order(w: Complex) -> NDArray:
 @compiled
 def sort_descending(w: Complex, order: NDArray) -> None:
     """Sorts the indices `order` of w, (n,), in place, by descending real part of w, then descending
-    frequency.
-
-    Insertion sort: fast for lists that are almost sorted.
-    """
+    frequency. Insertion sort: fast for lists that are almost sorted."""
     for m in range(1, len(order)):
         i = order[m]
         position = m
@@ -206,10 +198,8 @@ def _refine_candidates(
     first: Complex, error: Array, wave: Array, is_near_root: NDArray[np.bool_], coefficients: Coefficients
 ) -> tuple[Complex, NDArray[np.bool_]]:
     """Returns (w, mask), both (k,). w: eigenvalues refined to roots of D. mask: whether w[i] is a root.
-
     first: eigenvalues of the mesh, (k,). is_near_root: whether first[i] approximates a root, (k,). error,
-    wave: errors and wave numbers, (k,), updated in place.
-    """
+    wave: errors and wave numbers, (k,), updated in place."""
     w = first.copy()
     half_distances = _separate_close_pairs(w, error, coefficients)
     is_separated = np.isfinite(half_distances)
@@ -232,11 +222,8 @@ def _refine_candidates(
 
 @compiled
 def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coefficients) -> None:
-    """Sets, in place, the errors of two entries of w that converged to the same root of D to at least
-    2 |D'/D''|, the distance of the next root.
-
-    w, error: roots and their errors, (n,).
-    """
+    """Sets, in place, the errors of two entries of w that converged to the same root of D to at least 2
+    |D'/D''|, the distance of the next root. w, error: roots and their errors, (n,)."""
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             distance = abs(w[i] - w[j])

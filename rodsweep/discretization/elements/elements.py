@@ -94,10 +94,8 @@ class Elements:
     @cached_property
     def points_inside_elements(self) -> Array:
         """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
-        inside the element.
-
-        At a jump between two elements, each element therefore evaluates a coefficient on its own side.
-        """
+        inside the element. At a jump between two elements, each element therefore evaluates a coefficient on
+        its own side."""
         distance = ELEMENT_SETTINGS.end_distance
         return np.concatenate(
             [
@@ -120,10 +118,7 @@ class Elements:
 
     def element_evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + elements) from values at the nodes of every element to values at `points`, (n,),
-        in [0, 1].
-
-        A node between two elements has one value for each of the two elements.
-        """
+        in [0, 1]. A node between two elements has one value for each of the two elements."""
         matrix = np.zeros((len(points), self.element_nodes.size))
         for e, indices, coordinates in self.points_by_element(points):
             nodes = gauss_lobatto_rule(self.orders[e])[0]
@@ -133,10 +128,8 @@ class Elements:
 
     def points_by_element(self, points: Array) -> Iterator[tuple[int, NDArray[np.integer], Array]]:
         """Yields (element, indices, coordinates) for each element that contains some of the `points`, (n,).
-
         indices: indices of the points in the element. coordinates: coordinates of these points, from -1 to 1
-        along the element. A point between two elements belongs to the right element.
-        """
+        along the element. A point between two elements belongs to the right element."""
         element = np.clip(np.searchsorted(self.edges, points, side="right") - 1, 0, self.element_count - 1)
         for e in np.unique(element):
             indices = np.nonzero(element == e)[0]

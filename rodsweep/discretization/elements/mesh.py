@@ -43,10 +43,8 @@ class NodeMatrices(NamedTuple):
 
 @dataclass(frozen=True)
 class Mesh(Elements):
-    """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip.
-
-    Meshes with equal edges and orders compare equal, also in different processes.
-    """
+    """Elements with matrices over all nodes. `node_count` is the number of nodes without the tip. Meshes with
+    equal edges and orders compare equal, also in different processes."""
 
     matrices: NodeMatrices = field(compare=False, repr=False)
 
@@ -89,19 +87,14 @@ def mesh_with_edges(edges: tuple[float, ...], order: int, order_ratios: tuple[fl
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def interpolation_matrix(source: Mesh, target: Mesh) -> Array:
-    """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`.
-
-    Shape (target nodes + 1, source nodes + 1); the numbers of nodes are without the tip.
-    """
+    """Interpolation matrix from values at all nodes of `source` to values at all nodes of `target`. Shape
+    (target nodes + 1, source nodes + 1); the numbers of nodes are without the tip."""
     return source.evaluation_matrix(target.node_positions)
 
 
 def shape_from_strains(mesh: Mesh, strains: Array, clamp: Array) -> Array:
-    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains.
-
-    strains: (h1, h2, Pi) at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at
-    u = 0, (3,).
-    """
+    """Shape (x, y, theta) of a rod at all nodes, (3, ..., nodes + 1), from its strains. strains: (h1, h2, Pi)
+    at the nodes of every element, (3, ..., nodes + elements). clamp: (x, y, theta) at u = 0, (3,)."""
     points = mesh.order + RECONSTRUCTION_SETTINGS.extra_points
     state = np.empty((*strains.shape[:-1], mesh.node_count + 1), strains.dtype)
     start = np.broadcast_to(clamp.reshape(3, *(1,) * (strains.ndim - 1)), (3, *strains.shape[1:-1], 1))
@@ -151,10 +144,8 @@ def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegr
 
 def integration_matrix(nodes: Array, upper_limits: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
-    element of length 1, from its start to each of `upper_limits`, (m,).
-
-    Nodes and ends are coordinates in [-1, 1] of the element.
-    """
+    element of length 1, from its start to each of `upper_limits`, (m,). Nodes and ends are coordinates in
+    [-1, 1] of the element."""
     points, weights = gauss_legendre_rule(len(nodes))
     return np.array(
         [

@@ -83,8 +83,7 @@ def mesh_accuracy(accuracy: float, vectors: bool) -> float:
 
 def required_order(wave_number: float, accuracy: float) -> float:
     """Order, not rounded up, of a single element that resolves exp(+-q u), |q| = wave_number, to the relative
-    accuracy `accuracy`.
-    """
+    accuracy `accuracy`."""
     settings = RESOLUTION_SETTINGS
     further_digits = max(-log10(accuracy), settings.base_digits) - settings.base_digits
     per_digit = settings.digit_intercept + settings.digit_slope * min(
@@ -114,8 +113,7 @@ def resolution_for(wave_number: float, accuracy: float, largest_order: int | Non
 
 def finer_resolution(resolution: Resolution) -> Resolution:
     """The next finer resolution, with a third more unknowns: a higher order up to the maximum order, then
-    more elements.
-    """
+    more elements."""
     order = ceil(resolution.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return Resolution(resolution.element_count, order)

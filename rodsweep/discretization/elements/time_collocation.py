@@ -53,8 +53,7 @@ class CollocationMethod(NamedTuple):
 @cache
 def radau_method(stages: int) -> CollocationMethod:
     """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
-    [0, 1]. P_s: Legendre polynomial.
-    """
+    [0, 1]. P_s: Legendre polynomial."""
     series = np.zeros(stages + 1)
     series[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(series).real)

@@ -41,10 +41,8 @@ def fourier_coefficients(samples: Array) -> Complex:
 
 def hermite_coefficients(values: Array, slopes: Array) -> Complex:
     """Coefficients c, (m + 1, ...): Re sum_k c_k exp(2 pi i k t) interpolates values and slopes at t = k/m.
-
     values, slopes: (m, ...); slopes are derivatives by the time in periods. The slopes distinguish the
-    harmonics k and m - k, so twice as many harmonics are resolved as from values alone.
-    """
+    harmonics k and m - k, so twice as many harmonics are resolved as from values alone."""
     columns = np.ascontiguousarray(values).reshape(len(values), -1)
     rates = np.ascontiguousarray(slopes).reshape(len(slopes), -1)
     c: Complex = hermite_coefficients_of_columns(columns, rates, np.zeros(columns.shape[1]))
@@ -117,11 +115,9 @@ def series_samples(c: Complex, count: int) -> Array:
 
 @compiled_for_vectors
 def series_samples_of_columns(c: Complex, count: int) -> Array:
-    """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns).
-
-    For an even count, sums of the first half of the period also give the second half: even harmonics are
-    equal, odd harmonics have the opposite sign.
-    """
+    """`series_samples` of columns, (count, columns), from coefficients c, (harmonics, columns). For an even
+    count, sums of the first half of the period also give the second half: even harmonics are equal, odd
+    harmonics have the opposite sign."""
     harmonics, columns = c.shape
     # Even harmonics come first, because odd harmonics change their sign after half a period.
     order = np.append(np.arange(0, harmonics, 2), np.arange(1, harmonics, 2))
@@ -179,10 +175,8 @@ def time_derivative(samples: Array) -> Array:
 
 @compiled_for_vectors
 def series_maxima(c: Complex, samples: Array) -> Array:
-    """Maxima, (m,), of m series Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples.
-
-    c: (harmonics, m). samples: equidistant over a period, (n, m).
-    """
+    """Maxima, (m,), of m series Re sum_k c_k exp(2 pi i k t), by Newton's method from the largest samples. c:
+    (harmonics, m). samples: equidistant over a period, (n, m)."""
     n, m = samples.shape
     maxima = np.empty(m)
     for column in range(m):
@@ -229,8 +223,7 @@ def _series_value_slope_curvature(c: Complex, t: float) -> tuple[float, float, f
 
 def time_of_rise_through_mean(samples: Array) -> float:
     """Time, in periods, of the first rise of the interpolant of samples, (N,), through its mean after a
-    minimum.
-    """
+    minimum."""
     n = len(samples)
     deviation = samples - samples.mean()
     after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n

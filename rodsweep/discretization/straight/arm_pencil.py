@@ -107,10 +107,8 @@ class ArmPencil:
 
     def _sparsity_pattern(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64]]:
         """Returns (rows, columns, positions). rows, columns: row and column of each entry of the pattern,
-        (nnz,) each. positions: index in the pattern of each entry of all element blocks, (m,).
-
-        Entries in the row or column of the clamp have the index nnz.
-        """
+        (nnz,) each. positions: index in the pattern of each entry of all element blocks, (m,). Entries in the
+        row or column of the clamp have the index nnz."""
         n = self.node_count
         size = self.unknown_count
         y = self._y_indices
@@ -130,10 +128,8 @@ class ArmPencil:
 def _flat_entry_positions(
     rows: NDArray[np.int64], columns: NDArray[np.int64], size: int
 ) -> NDArray[np.int64]:
-    """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp.
-
-    rows: (elements, n). columns: (elements, m). size: number of unknowns.
-    """
+    """row * size + column of each entry of element blocks, flat; -1 if the row or column is the clamp. rows:
+    (elements, n). columns: (elements, m). size: number of unknowns."""
     keys = rows[:, :, None] * size + columns[:, None, :]
     clamped = (rows < 0)[:, :, None] | (columns < 0)[:, None, :]
     return np.where(clamped, -1, keys).ravel()
@@ -178,11 +174,9 @@ def _pencil_of_coefficients(
 
 @compiled
 def _add_entries(F: float, coefficients: Array, matrices: _MeshMatrices, A: Array) -> None:
-    """Adds the entries of all element blocks, in the order of `entry_positions`, to A.
-
-    F: follower force. coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the
-    pattern, then one for the clamp, (nnz + 1,).
-    """
+    """Adds the entries of all element blocks, in the order of `entry_positions`, to A. F: follower force.
+    coefficients: coefficients of the arm, (6, elements, 2 order + 1). A: entries of the pattern, then one for
+    the clamp, (nnz + 1,)."""
     elements, order = matrices.weights_times_half_length.shape
     value = matrices.value_matrix
     positions = matrices.entry_positions
@@ -218,8 +212,7 @@ def _add_entries(F: float, coefficients: Array, matrices: _MeshMatrices, A: Arra
 @compiled
 def _bending_block(slope: Array, factors: Array) -> Array:
     """The block -slope^T diag(factors) slope, (p + 1, p + 1). slope: (p, p + 1). factors: values at the
-    Gauss points, (p,).
-    """
+    Gauss points, (p,)."""
     block = np.zeros((slope.shape[1], slope.shape[1]))
     for q in range(len(factors)):
         for i in range(len(block)):
@@ -232,10 +225,7 @@ def _bending_block(slope: Array, factors: Array) -> Array:
 @compiled
 def _add_block(block: Array, position: int, positions: NDArray[np.int64], A: Array) -> int:
     """Adds the entries of `block`, (...,), to A, (nnz + 1,). Returns the index in `entry_positions` of the
-    entry after the block.
-
-    position: index in `entry_positions` of the first entry of the block.
-    """
+    entry after the block. position: index in `entry_positions` of the first entry of the block."""
     for entry in block.flat:
         A[positions[position]] += entry
         position += 1

@@ -37,8 +37,7 @@ class ArmMesh(Elements):
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
     """The mesh that is expected to give `modes` leading eigenvalues of the arm `rod` to the relative accuracy
-    `accuracy`.
-    """
+    `accuracy`."""
     weights = sampled_arm(rod).weights
     _, amplified_q = most_amplified_local_waves(rod)
     unloaded_q = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
@@ -49,10 +48,8 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
-    relative accuracy.
-
-    largest_order: maximum order of an element, `RESOLUTION_SETTINGS.max_order` by default.
-    """
+    relative accuracy. largest_order: maximum order of an element, `RESOLUTION_SETTINGS.max_order` by
+    default."""
     waves = wave_number * _relative_wave_number(rod)
     return _elements_for_wave(
         rod, waves * sampled_arm(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order
@@ -61,19 +58,15 @@ def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: i
 
 def _relative_wave_number(rod: Rod) -> Array:
     """Wave number at each sample of an arm, divided by the mean wave number, (points,), for a bending wave of
-    the same frequency along the arm.
-    """
+    the same frequency along the arm."""
     _, weights, coefficients = sampled_arm(rod)
     wave_number: Array = (coefficients.gamma2 * coefficients.c3) ** 0.25
     return wave_number / (weights @ wave_number)
 
 
 def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, largest_order: int) -> Elements:
-    """Elements that resolve a wave along an arm to a relative accuracy.
-
-    phases: phase of the wave over each sample interval, |q| times length, (n,). largest_order: maximum order
-    of an element.
-    """
+    """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
+    sample interval, |q| times length, (n,). largest_order: maximum order of an element."""
     breaks = rod.build.breaks
     fractions = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges = [0.0]
@@ -92,8 +85,7 @@ def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, largest_order: 
 
 def finer_arm_mesh(rod: Rod, mesh: ArmMesh) -> ArmMesh:
     """The next finer mesh of an arm: elements of 4/3 of the order or, if this exceeds the maximum order,
-    twice as many elements of 2/3 of the order.
-    """
+    twice as many elements of 2/3 of the order."""
     order = ceil(mesh.order * RESOLUTION_SETTINGS.refinement_ratio)
     if order <= RESOLUTION_SETTINGS.max_order:
         return ArmMesh(mesh.edges, order)

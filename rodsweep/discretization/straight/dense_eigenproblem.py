@@ -33,25 +33,20 @@ class DenseEigenproblem:
 
     def displacements(self, vectors: Complex) -> tuple[NDArray, NDArray]:
         """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
-        (nodes + 1, k) each.
-        """
+        (nodes + 1, k) each."""
         return fields_of_vectors(vectors, self.displacement_factors)
 
     def strains(self, vectors: Complex, points: Array) -> Complex:
         """Strains (h2, Pi) = (Y' - nu Theta, Theta') of k eigenvectors, (unknowns, k), at points, (points,):
-        (2, k, points).
-
-        h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains are limits from
-        the right.
-        """
+        (2, k, points). h2 = c2 s is exactly 0 in an unshearable rod. At a jump of a coefficient both strains
+        are limits from the right."""
         c2 = self.rod.local_coefficients(_points_inside_elements(self.mesh, points)).c2
         shear = c2[:, None] * shear_force(self.mesh, vectors, points)
         return np.stack([shear.T, field_derivatives_at(self.mesh, self.displacements(vectors)[1], points).T])
 
     def with_tip_terms(self, pair: float, tip: float) -> Array:
         """A plus the matrix of the tip term pair (a theta - b y) - tip a y at u = 1, (unknowns, unknowns); a,
-        b: test functions of y and theta.
-        """
+        b: test functions of y and theta."""
         A = self.A.copy()
         n = self.mesh.node_count
         y, theta = self.displacement_factors[:, -1]

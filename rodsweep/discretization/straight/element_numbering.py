@@ -36,8 +36,7 @@ class ElementNumbering:
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
     """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
-    stresses and velocities that are unknowns.
-    """
+    stresses and velocities that are unknowns."""
     last_node = elements * order
     nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
     unknown_count = PLANE_COMPONENT_COUNT * (2 * last_node + 1)

@@ -106,8 +106,7 @@ class StraightElements:
 
     def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
-        machine epsilon times this number. p, q: (unknowns,).
-        """
+        machine epsilon times this number. p, q: (unknowns,)."""
         return float(np.sum(np.abs(self.gather(p)) * (np.abs(self.gather(q)) @ np.abs(self.A).T)))
 
     def gather(self, x: Values) -> Values:
@@ -191,11 +190,8 @@ class ElementFactors:
 
     def solve(self, b: Values, adjoint: bool = False) -> Complex:
         """The solution x, (unknowns,), of (A - shift M) x = b or, if `adjoint`, of (A - shift M)^H x = b; b:
-        (unknowns,).
-
-        The elimination of the interior chooses no pivots at the ends of elements, so one step of iterative
-        refinement follows.
-        """
+        (unknowns,). The elimination of the interior chooses no pivots at the ends of elements, so one step of
+        iterative refinement follows."""
         elements = self.elements
         x = self._solve_unrefined(b, adjoint)
         if self.interior is None:
@@ -235,8 +231,7 @@ def lu_factorisation(K: Complex) -> LU:
 
 def solve_factorised(factors: LU, right_side: Values, adjoint: bool = False) -> Complex:
     """The solution x of K x = right_side, or of K^H x = right_side if `adjoint`. factors: LU factorisation of
-    K, (n, n). right_side: (n,) or (n, m).
-    """
+    K, (n, n). right_side: (n,) or (n, m)."""
     x, _ = zgetrs(*factors, right_side, trans=2 if adjoint else 0)
     return x
 
@@ -244,7 +239,6 @@ def solve_factorised(factors: LU, right_side: Values, adjoint: bool = False) -> 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
 def _weighted_derivative_matrix(order: int) -> tuple[Array, Array]:
     """Returns (W D, W) on the element [-1, 1]. W: quadrature weights, (order + 1,). W D: diag(W) times the
-    differentiation matrix, (order + 1, order + 1), which is the same for elements of every length.
-    """
+    differentiation matrix, (order + 1, order + 1), which is the same for elements of every length."""
     x, w = gauss_lobatto_rule(order)
     return w[:, None] * differentiation_matrix(x), w

@@ -18,8 +18,7 @@ from ..nodal_rod import NodalRod
 @dataclass(frozen=True)
 class ForceDerivatives:
     """Derivatives with respect to the force F at all nodes: of the stretch nu of the straight rod,
-    (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1).
-    """
+    (nodes + 1,), and of `LawDerivativesAtRest.tangent`, (3, nodes + 1)."""
 
     nu: Array
     tangent: Array
@@ -63,8 +62,7 @@ class LawDerivativesAtRest:
 
 def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the same rod at
-    these nodes.
-    """
+    these nodes."""
     law: Law = rod.build.constitutive_law
     nu = nodal.rest_strain[0]
     c1, _, c3 = nodal.compliance
@@ -98,8 +96,7 @@ def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
 
 def _write_derivatives_at_jumps(derivatives: LawDerivativesAtRest, law: Law, nodal: NodalRod) -> None:
     """Writes the derivatives of the law at the nodes where the material jumps into `derivatives`. nodal: the
-    rod at the nodes.
-    """
+    rod at the nodes."""
     nodes = nodal.jumps
     sides = nodal.jump_sides
     nu = sides[..., 0]
@@ -132,12 +129,9 @@ DerivativeTensors = tuple[Array, Array, Array]
 
 
 def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
-    """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides:
-    (k, 2, 7).
-
-    The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
-    M(q1, q3) are the inverse of (N, M) -> (q1, q3).
-    """
+    """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides: (k, 2,
+    7). The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
+    M(q1, q3) are the inverse of (N, M) -> (q1, q3)."""
     fractions = sides[..., 3:5]
     unknowns = inverse_function_derivatives(
         _derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0))
@@ -148,8 +142,7 @@ def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
 
 def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> DerivativeTensors:
     """Derivatives of N and M at rest with respect to q1 and q3 on each side of a jump; nu, c1, c3: arrays of
-    equal shape.
-    """
+    equal shape."""
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
     first[..., 1, 1] = law.bending_factor(nu)
@@ -167,8 +160,7 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> Deriv
 
 def inverse_function_derivatives(derivatives: DerivativeTensors) -> DerivativeTensors:
     """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. derivatives:
-    derivatives of f.
-    """
+    derivatives of f."""
     f1, f2, f3 = derivatives
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

@@ -54,9 +54,7 @@ LONGITUDINAL_MODE_SETTINGS = LongitudinalModeSettings()
 
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """Returns (w, relative errors) of the leading longitudinal eigenvalues w, in 1/tau2, (modes,) each.
-
-    Raises ValueError for an inextensible rod.
-    """
+    Raises ValueError for an inextensible rod."""
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
     mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.first_mesh_accuracy)
@@ -86,10 +84,8 @@ def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, modes: int) -> Ar
 
 
 def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
-    """The matrix A of the module docstring, (elements (order + extra_points), elements order).
-
-    edges: edges of the elements, (elements + 1,). order: number of strains per element.
-    """
+    """The matrix A of the module docstring, (elements (order + extra_points), elements order). edges: edges
+    of the elements, (elements + 1,). order: number of strains per element."""
     strain_points, strain_weights = gauss_legendre_rule(order)
     points, weights = gauss_legendre_rule(order + LONGITUDINAL_MODE_SETTINGS.extra_points)
     halves = np.diff(edges)[:, None] / 2
@@ -121,8 +117,7 @@ def _legendre_coefficients_at_gauss(order: int) -> Array:
 
 def _lagrange_integrals(order: int, points: Array) -> Array:
     """Integrals from -1 to each of `points`, (points,), of the Lagrange polynomials through the Gauss points,
-    (points, order).
-    """
+    (points, order)."""
     series = legendre.legint(_legendre_coefficients_at_gauss(order), lbnd=-1)
     integrals: Array = legendre.legval(points, series).T
     return integrals

@@ -80,8 +80,7 @@ class MixedForm:
     @cached_property
     def reflection_signs(self) -> Array:
         """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
-        mirror image R X.
-        """
+        mirror image R X."""
         signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.node_count + 1, axis=1)
         return self.layout.state(signs, signs)
 
@@ -107,8 +106,7 @@ class MixedForm:
 
     def times_force_derivative_of_A(self, X: Values) -> Values:
         """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A with respect to the
-        force F.
-        """
+        force F."""
         S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
         change = self.law_derivatives.force_derivatives
@@ -123,10 +121,8 @@ class MixedForm:
 
     @cached_property
     def tip_y_row(self) -> Array:
-        """Vector, (unknowns,), whose product with X is the deflection y of the tip in L, to first order.
-
-        y = int c2 S2 + c3 S3(u) (int_u^1 nu) du.
-        """
+        """Vector, (unknowns,), whose product with X is the deflection y of the tip in L, to first order. y =
+        int c2 S2 + c3 S3(u) (int_u^1 nu) du."""
         W = self.mesh.quadrature[:-1]
         c = self.nodal_rod.compliance[:, :-1]
         return self.layout.state_with_stresses(
@@ -135,20 +131,17 @@ class MixedForm:
 
     def stresses_and_velocities(self, X: Values) -> tuple[Values, Values]:
         """Returns (S, V), stresses and velocities of states X at all nodes, tip included, (3, ..., nodes + 1)
-        each.
-        """
+        each."""
         return self.layout.stresses(X), self.layout.velocities(X)
 
     def state(self, S: Values, V: Values) -> Values:
         """States X, (..., unknowns), from stresses S and velocities V at all nodes, (3, ..., nodes + 1) each.
-        S at the tip is ignored.
-        """
+        S at the tip is ignored."""
         return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
         """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and the result:
-        (..., unknowns).
-        """
+        (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
         T, V = self.stresses_and_velocities(Y)
         CS = self._compliance_times_stress(S)
@@ -166,8 +159,7 @@ class MixedForm:
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
         """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns), for states X, Y, Z; 0
-        for a linear law.
-        """
+        for a linear law."""
         S, T, R = (self.stresses_and_velocities(state)[0] for state in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law_derivatives
@@ -194,11 +186,9 @@ class MixedForm:
         return field @ -self.mesh.matrices.weak_derivative
 
     def _coupling_matrix(self) -> Array:
-        """Matrix of the terms of A without D and without drag, (unknowns, unknowns).
-
-        These terms are W ad_E V in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations
-        of V; T: tangent of the law.
-        """
+        """Matrix of the terms of A without D and without drag, (unknowns, unknowns). These terms are W ad_E V
+        in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the
+        law."""
         N = self.mesh.node_count
         W = self.mesh.quadrature[:-1]
         identity = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]
@@ -226,8 +216,7 @@ def axial_field(values: Array) -> Array:
 
 def integral_to_tip(mesh: Mesh, values: Array) -> Array:
     """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
-    (nodes + 1,).
-    """
+    (nodes + 1,)."""
     total = np.zeros(mesh.node_count + 1)
     for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
         ends = shape_integration_matrices(order).angles_at_nodes

@@ -93,8 +93,7 @@ class Pencil(Elements):
 
     def dense_terms(self) -> Array:
         """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
-        unknowns^2).
-        """
+        unknowns^2)."""
         dense = np.zeros((6, self.unknown_count**2))
         dense[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
         return dense
@@ -116,26 +115,21 @@ class Pencil(Elements):
 
     def displacement_factors(self, rod: Rod) -> Array:
         """Factors that convert the unknowns of a rod to y and theta at the nodes, clamp excluded,
-        (2, nodes).
-        """
+        (2, nodes)."""
         inverse_root = 1 / np.sqrt(self.nodal_masses)
         return np.stack([inverse_root, inverse_root / angle_weight(rod.rotational_drag)])
 
 
 def finite_eigenvalue_count(rod: Rod, nodes: int) -> int:
-    """Number of finite eigenvalues of a rod on a mesh with `nodes` nodes, without the clamp.
-
-    Every node contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag.
-    """
+    """Number of finite eigenvalues of a rod on a mesh with `nodes` nodes, without the clamp. Every node
+    contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag."""
     return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
 
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
-    """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included,
-    (nodes + 1, k) each.
-
-    scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2, nodes).
-    """
+    """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included, (nodes +
+    1, k) each. scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2,
+    nodes)."""
     n = scale.shape[1]
     clamp = np.zeros((1, vectors.shape[1]))
     y, theta = (np.vstack([clamp, vectors[i * n : (i + 1) * n] * scale[i][:, None]]) for i in range(2))
@@ -144,24 +138,20 @@ def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]
 
 def angle_weight(gamma3: float) -> float:
     """Weight of theta in the norm of the pencil: sqrt(gamma3), but at least
-    `PENCIL_NORM_SETTINGS.min_angle_weight`.
-    """
+    `PENCIL_NORM_SETTINGS.min_angle_weight`."""
     return max(sqrt(gamma3), PENCIL_NORM_SETTINGS.min_angle_weight)
 
 
 def factors_to_unit_tip(y: Complex, theta: Complex) -> Complex:
-    """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding.
-
-    y, theta: the modes at all nodes, (nodes + 1, k).
-    """
+    """Factors, (k,), that normalise k modes to y(1) = 1; NaN for a mode whose y(1) is 0 to rounding. y,
+    theta: the modes at all nodes, (nodes + 1, k)."""
     size = np.maximum(np.abs(y).max(axis=0), np.abs(theta).max(axis=0))
     return np.where(np.abs(y[-1]) > PENCIL_NORM_SETTINGS.min_tip_displacement * size, 1 / y[-1], COMPLEX_NAN)
 
 
 def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
     """Shear force s of k eigenvectors, (unknowns, k), at points, (points,), interpolated from the Gauss
-    nodes: (points, k).
-    """
+    nodes: (points, k)."""
     nodes, weights = gauss_legendre_rule(mesh.order)
     mass = (weights * mesh.lengths[:, None] / 2).ravel() * PENCIL_NORM_SETTINGS.shear_weight**2
     values = vectors[2 * mesh.node_count :] / np.sqrt(mass)[:, None]
@@ -174,8 +164,7 @@ def shear_force(mesh: Elements, vectors: Complex, points: Array) -> Complex:
 
 def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Complex:
     """Derivatives d/du at points, (points,), of k fields, shape (points, k). values: the fields at all nodes,
-    (nodes + 1, k).
-    """
+    (nodes + 1, k)."""
     nodes, _ = gauss_lobatto_rule(mesh.order)
     derivative = 2 * differentiation_matrix(nodes)
     result = np.empty((len(points), values.shape[1]), complex)
@@ -225,10 +214,8 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
 
 def _assemble_blocks(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
     """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
-
     elements, order: number and order of the elements. entries: (index of the constant matrix, rows, columns,
-    block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,).
-    """
+    block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,)."""
     size = 3 * elements * order
     diagonal = np.arange(size)
     keys = [diagonal * size + diagonal]

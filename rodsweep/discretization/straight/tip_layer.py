@@ -64,10 +64,8 @@ def tip_layer_ratio(rod: Rod) -> float:
 
 
 def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
-    """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end.
-
-    K: stiffness matrix of the element, (nodes, nodes).
-    """
+    """The ratio d/m of `tip_layer_ratio` at the right end of an element. left_ratio: d/m at the left end. K:
+    stiffness matrix of the element, (nodes, nodes)."""
     # At the clamp (before = 0) d is not an unknown; otherwise all previous elements act as a spring of
     # stiffness 1/before.
     if left_ratio == 0:
@@ -82,8 +80,7 @@ def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
 
 def _element_edges(rod: Rod) -> Array:
     """Increasing edges of elements: breaks of the arm, edges of equal elements and, for a thin layer, edges
-    of shorter elements towards the tip.
-    """
+    of shorter elements towards the tip."""
     breaks = rod.build.breaks
     intervals = zip(breaks, breaks[1:], strict=False)
     midpoints = np.concatenate(

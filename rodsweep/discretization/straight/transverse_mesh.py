@@ -20,8 +20,7 @@ AnyMesh = Resolution | ArmMesh
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
     """The mesh that resolves fields of the wave number `wave_number`, in 1/L, on a rod to the relative
-    accuracy `accuracy`.
-    """
+    accuracy `accuracy`."""
     if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)

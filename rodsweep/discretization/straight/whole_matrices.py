@@ -56,8 +56,7 @@ class WholeRodMatrices:
 
     def product_magnitude(self, p: Values, q: Values) -> float:
         """The number |p| |A| |q|, with the modulus of every entry. The rounding error of p A q is about
-        machine epsilon times this number. p, q: (unknowns,).
-        """
+        machine epsilon times this number. p, q: (unknowns,)."""
         return float(np.abs(p[self.state_indices]) @ (np.abs(self.A) @ np.abs(q[self.state_indices])))
 
     def lu_factors(self, shift: complex) -> "WholeRodFactors":
@@ -66,8 +65,7 @@ class WholeRodMatrices:
 
     def _scatter(self, values: Values) -> Values:
         """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
-        entries.
-        """
+        entries."""
         x = np.zeros(self.form.unknown_count, values.dtype)
         x[self.state_indices] = values
         return x
@@ -89,6 +87,5 @@ class WholeRodFactors:
 
 def straight_matrices(form: MixedForm, components: tuple[int, ...]) -> StraightElements | WholeRodMatrices:
     """A and M of the form `form` about its straight rod. components: indices of the components of stresses
-    and velocities to which A and M are restricted.
-    """
+    and velocities to which A and M are restricted."""
     return (StraightElements if form.rod.is_uniform_and_linear else WholeRodMatrices)(form, components)

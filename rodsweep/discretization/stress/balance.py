@@ -49,8 +49,7 @@ from ..state_layout import stress_index, velocity_index
 @UnrolledOverAlgebra
 def write_strains_and_stresses(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
     """Writes the strains and the stresses of a state x, (unknowns,), at all nodes into E and S, each
-    (d, nodes + 1).
-    """
+    (d, nodes + 1)."""
     size = E.shape[1]
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]
@@ -76,10 +75,8 @@ def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
 
 @UnrolledOverAlgebra
 def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1).
-
-    E, S: strains and stresses from `write_strains_and_stresses`, (d, nodes + 1) each.
-    """
+    """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1). E, S: strains and
+    stresses from `write_strains_and_stresses`, (d, nodes + 1) each."""
     size = len(m.weights)
     out[:, :] = 0.0
     for j in range(size - 1):
@@ -101,10 +98,8 @@ def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: Nod
 
 @UnrolledOverAlgebra
 def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
-    """Writes the strain rates W (V' + ad_E V) at all nodes, in weak form, into G.
-
-    E: strains. V: velocities. E, V, G: (d, nodes + 1).
-    """
+    """Writes the strain rates W (V' + ad_E V) at all nodes, in weak form, into G. E: strains. V: velocities.
+    E, V, G: (d, nodes + 1)."""
     size = len(m.weights)
     for i in range(size):
         rate = [0.0 for _ in g.components]
@@ -130,10 +125,7 @@ def add_weak_derivative(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None
 @UnrolledOverAlgebra
 def write_balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
-    V and G, (d, nodes + 1) each.
-
-    Unknown components of V are copied from x.
-    """
+    V and G, (d, nodes + 1) each. Unknown components of V are copied from x."""
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
@@ -151,10 +143,8 @@ def write_balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: Node
 
 @UnrolledOverAlgebra
 def write_velocity_residuals(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,).
-
-    x: state, (unknowns,). Entries of out for stresses are not changed.
-    """
+    """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,). x:
+    state, (unknowns,). Entries of out for stresses are not changed."""
     size = len(m.weights)
     E = np.empty((g.dimension, size))
     S = np.empty((g.dimension, size))
@@ -170,10 +160,8 @@ def write_velocity_residuals(g: Algebra, x: Array, out: Array, c: NodalRod, m: N
 
 @compiled
 def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: NodalRod) -> None:
-    """Writes the derivative of s(S) with respect to a parameter, at fixed S, into dS, (3, nodes + 1).
-
-    x: a state in the plane, (unknowns,). change: derivative of the rod `c` with respect to the parameter.
-    """
+    """Writes the derivative of s(S) with respect to a parameter, at fixed S, into dS, (3, nodes + 1). x: a
+    state in the plane, (unknowns,). change: derivative of the rod `c` with respect to the parameter."""
     n = dS.shape[1] - 1
     k = 0
     for i in range(n + 1):

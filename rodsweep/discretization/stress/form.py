@@ -101,8 +101,7 @@ class StressForm(RodOnMesh):
 
     def parameter_derivative(self, name: str) -> NodalRodDerivative:
         """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
-        stiffness k, else the parameter itself.
-        """
+        stiffness k, else the parameter itself."""
         change = material_derivative_at_nodes(self.rod, name, self.mesh)
         return nodal_rod_derivative(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
 
@@ -113,15 +112,13 @@ class StressForm(RodOnMesh):
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:
         """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
-        of a rod.
-        """
+        of a rod."""
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def energy_norm(self, x: Array) -> Array:
         """Energy norm sqrt(x M x), (...), of states x, (..., unknowns); 0 for the straight rod. The mass
         matrix M of the stress form holds the compliances, so that x M x is twice the elastic energy of a
-        linear rod.
-        """
+        linear rod."""
         amplitude: Array = np.sqrt(x**2 @ self.mass_diagonal)
         return amplitude

@@ -55,8 +55,7 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
 @compiled
 def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
     """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the planar rod `c` at the state
-    x.
-    """
+    x."""
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):
@@ -86,11 +85,9 @@ def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
     c: NodalRod,
     m: NodeMatrices,
 ) -> None:
-    """Writes the derivative of the equations with respect to S, for a linear law, into J and tip.
-
-    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0
-    give the part P. J: (unknowns, unknowns). tip: (d, unknowns).
-    """
+    """Writes the derivative of the equations with respect to S, for a linear law, into J and tip. fields: E,
+    s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1); arrays of 0 give the part
+    P. J: (unknowns, unknowns). tip: (d, unknowns)."""
     slopes = np.empty((g.dimension, g.dimension, len(m.weights)))
     _write_velocity_derivatives(g, fields, slopes, compliance, c)
     _write_rate_derivatives(g, fields, slopes, J, tip, compliance, c, m)
@@ -134,10 +131,8 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
     m: NodeMatrices,
 ) -> None:
     """Writes the derivative of G with respect to S into J, (unknowns, unknowns), and tip, (d, unknowns).
-
     fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1). slopes: result
-    of `_write_velocity_derivatives`.
-    """
+    of `_write_velocity_derivatives`."""
     n = len(m.weights) - 1
     E, _, V = fields
     for i in range(n + 1):
@@ -178,10 +173,7 @@ def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
     g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivative of the strain rates G with respect to the k-th unknown velocity component into J
-    and tip.
-
-    E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns).
-    """
+    and tip. E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns)."""
     size = len(m.weights)
     n = len(m.weights) - 1
     component = c.unknown_velocities[k]
@@ -207,9 +199,7 @@ def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
     m: NodeMatrices,
 ) -> None:
     """Writes the rows of the balance of the k-th unknown velocity component into J, (unknowns, unknowns).
-
-    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1).
-    """
+    fields: E, s(S) and V at all nodes, (d, nodes + 1) each. compliance: dE/dS, (d, nodes + 1)."""
     size = len(m.weights)
     n = len(m.weights) - 1
     component = c.unknown_velocities[k]

@@ -15,10 +15,8 @@ from ..state_layout import stress_index
 
 @compiled_for_vectors
 def write_rate(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes dz/dt, with time in tau2, of the state z into out; z, out: (unknowns,).
-
-    roots: positive square roots of the compliances C at the nodes, (d, nodes + 1).
-    """
+    """Writes dz/dt, with time in tau2, of the state z into out; z, out: (unknowns,). roots: positive square
+    roots of the compliances C at the nodes, (d, nodes + 1)."""
     d, size = c.drag.shape
     V = np.empty((d, size))
     G = np.empty((d, size))
@@ -45,11 +43,9 @@ def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
 
 @compiled_for_vectors
 def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns).
-
-    out is column-major as in LAPACK: out[column, row]. roots: square roots of the
-    compliances at the nodes, (d, nodes + 1).
-    """
+    """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns). out is
+    column-major as in LAPACK: out[column, row]. roots: square roots of the compliances at the nodes, (d,
+    nodes + 1)."""
     d, size = c.drag.shape
     unknowns = len(z)
     V = np.empty((d, size))
@@ -82,11 +78,7 @@ def write_rates(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMat
 
 @compiled_for_vectors
 def write_rate_jacobians(states: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
-    """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out,
-    (n, unknowns, unknowns).
-
-    roots: square roots of the
-    compliances at the nodes, (d, nodes + 1).
-    """
+    """Writes the Jacobians of `write_rate_jacobian` at n states z, (n, unknowns), into out, (n, unknowns,
+    unknowns). roots: square roots of the compliances at the nodes, (d, nodes + 1)."""
     for i in range(len(states)):
         write_rate_jacobian(states[i], out[i], roots, c, m)

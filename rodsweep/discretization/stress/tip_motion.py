@@ -55,12 +55,8 @@ def tip_matrices(mesh: Elements) -> TipMatrices:
 @compiled_for_vectors
 def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, velocity: Array) -> None:
     """Writes (x, y, theta) of the tip, in L and rad, into tip, and the time derivative of (x, y, theta) into
-    velocity.
-
-    strains: (h1, h2, Pi) at the nodes of every element, (3, states, m). rates: time
-    derivatives of the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the
-    origin along e_x.
-    """
+    velocity. strains: (h1, h2, Pi) at the nodes of every element, (3, states, m). rates: time derivatives of
+    the strains, of the same shape. tip, velocity: (states, 3). The rod is clamped at the origin along e_x."""
     points = len(m.gauss_weights)
     fields = np.empty((6, points))  # h1, h2, theta and their rates at the Gauss points
     for k in range(strains.shape[1]):
@@ -101,11 +97,8 @@ def write_tip_motion(strains: Array, rates: Array, m: TipMatrices, tip: Array, v
 def _write_fields_at_gauss_points(
     strains: Array, m: TipMatrices, e: int, start_angle: float, fields: Array
 ) -> None:
-    """Writes h1, h2 and theta at the Gauss points of element e into fields, (3, g).
-
-    strains: (h1, h2, Pi) at the nodes of all elements, (3, m). start_angle: theta at the left end of the
-    element.
-    """
+    """Writes h1, h2 and theta at the Gauss points of element e into fields, (3, g). strains: (h1, h2, Pi) at
+    the nodes of all elements, (3, m). start_angle: theta at the left end of the element."""
     fields[:2] = 0.0
     fields[2] = start_angle
     length = m.element_lengths[e]

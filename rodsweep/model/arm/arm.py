@@ -144,10 +144,8 @@ class SlenderArm:
         return None if self.load is None else load_over_flutter(getattr(self, self.load))
 
     def mass_at(self, station: Station) -> float:
-        """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore.
-
-        Without a `density_difference` the material has the density of the fluid.
-        """
+        """Mass per length at the cross-section `station`, in kg/m: material plus fluid in the bore. Without a
+        `density_difference` the material has the density of the fluid."""
         fluid = self.si.fluid_density
         difference = self.si.density_difference
         density = fluid + (0.0 if isnan(difference) else difference)
@@ -156,9 +154,7 @@ class SlenderArm:
     @property
     def tip_force(self) -> float:
         """Follower force at the tip, in N: pressure times face area, p A, or the given force (Sec. IV).
-
-        Raises InputError for an arm without load and for a load relative to flutter.
-        """
+        Raises InputError for an arm without load and for a load relative to flutter."""
         if self.load is None:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:

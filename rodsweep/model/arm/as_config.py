@@ -13,9 +13,7 @@ from .arm import SlenderArm
 
 def rod_parameters_of(arm: SlenderArm) -> dict[str, float]:
     """Dimensionless parameters of the rod that represents `arm`, by name; without F for an arm without load.
-
-    Raises InputError for a load relative to flutter, because the flutter threshold must be solved first.
-    """
+    Raises InputError for a load relative to flutter, because the flutter threshold must be solved first."""
     names = [name for name in NONLINEAR_PARAMETERS if name != "F" or arm.load is not None]
     names += ["taper"] if arm.taper != 1 else []
     return {name: arm.parameter(name) for name in names}
@@ -23,9 +21,7 @@ def rod_parameters_of(arm: SlenderArm) -> dict[str, float]:
 
 def material_config_of(arm: SlenderArm) -> dict[str, Any]:
     """Keys and values of the config section `material` for `arm`; keys with default values are left out.
-
-    Possible keys are law, section and profile.
-    """
+    Possible keys are law, section and profile."""
     build = arm.build
     values_and_defaults = {
         "law": (build.law, DEFAULT_BUILD.law),

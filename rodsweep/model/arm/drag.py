@@ -54,29 +54,22 @@ class Drag:
 
 
 def cox_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Returns (gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970).
-
-    viscosity: in Pa s. slenderness: L/a.
-    """
+    """Returns (gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970). viscosity:
+    in Pa s. slenderness: L/a."""
     logarithm = log(2 * slenderness)
     return 2 * pi * viscosity / (logarithm - 1.5), 4 * pi * viscosity / (logarithm - 0.5)
 
 
 def gray_hancock_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Returns (gamma1, gamma2), in Pa s, for waves of length 4 L, the longest waves of a clamped rod.
-
-    Gray and Hancock (1955). viscosity: in Pa s. slenderness: L/a.
-    """
+    """Returns (gamma1, gamma2), in Pa s, for waves of length 4 L, the longest waves of a clamped rod. Gray
+    and Hancock (1955). viscosity: in Pa s. slenderness: L/a."""
     logarithm = log(8 * slenderness)
     return 2 * pi * viscosity / (logarithm - 0.5), 4 * pi * viscosity / (logarithm + 0.5)
 
 
 def lighthill_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
     """Returns (gamma1, gamma2), in Pa s, for helical waves of length L, which is near the wavelength of
-    flutter.
-
-    Lighthill (1976). viscosity: in Pa s. slenderness: L/a.
-    """
+    flutter. Lighthill (1976). viscosity: in Pa s. slenderness: L/a."""
     logarithm = log(0.18 * slenderness)
     return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
 
@@ -93,20 +86,15 @@ def min_rotational_drag(viscosity: float, half_height: float) -> float:
 
 
 def max_rotational_drag(viscosity: float, half_height: float) -> float:
-    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2.
-
-    viscosity: eta, in Pa s. half_height: a, in m. The value for rotation about the axis of the cylinder
-    (Powers 2010) is used for rotation about a diameter.
-    """
+    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2. viscosity: eta, in Pa s.
+    half_height: a, in m. The value for rotation about the axis of the cylinder (Powers 2010) is used for
+    rotation about a diameter."""
     return 4 * pi * viscosity * half_height**2
 
 
 def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAG_NAMES.
-
-    The likeliest estimate has the geometric mean of the smallest and largest gamma3. viscosity: in Pa s.
-    length, radius, half_height: in m.
-    """
+    """Drag estimates of one arm, in the order of DRAG_NAMES. The likeliest estimate has the geometric mean of
+    the smallest and largest gamma3. viscosity: in Pa s. length, radius, half_height: in m."""
     slenderness = length / radius
     min_rotational = min_rotational_drag(1.0, half_height)
     max_rotational = max_rotational_drag(1.0, half_height)

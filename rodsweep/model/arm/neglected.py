@@ -63,8 +63,7 @@ class Validity(IntEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
     """One effect that the model neglects. Arrays have the common shape (...,) of rates, forces and
-    amplitudes.
-    """
+    amplitudes."""
 
     name: str
     value: Array
@@ -125,10 +124,8 @@ def neglected_effects(
 
 
 def worst_validity(effects: Iterable[Effect], *, of_cycles: bool) -> NDArray[np.int8]:
-    """Worst `Validity` under all effects, integers of the shape (...,) of the effects.
-
-    of_cycles: whether to include effects that change only limit cycles.
-    """
+    """Worst `Validity` under all effects, integers of the shape (...,) of the effects. of_cycles: whether to
+    include effects that change only limit cycles."""
     validities = (effect.validity for effect in effects if of_cycles or not effect.of_cycles_only)
     return np.maximum.reduce(list(validities))
 
@@ -171,24 +168,20 @@ def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 def compression_effect(arm: SlenderArm, F: Array) -> Effect:
     """Relative change of the length of the arm by compression or tension, abs(F)/k1, in the shape of F,
-    (...,).
-    """
+    (...,)."""
     return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
 def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
     """Force that compresses the base as much as F compresses the weakest section, in the shape of F, (...,).
-
-    F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression.
-    """
+    F: in k3/L^2. The result is nan for rubber, whose constitutive law includes large compression."""
     fraction = arm.crushing_force / arm.k1
     return np.asarray(F, float) / fraction if fraction < inf else np.full(np.shape(F), np.nan)
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:
     """Ratio of weight minus buoyancy to the weight that buckles the upright arm, in the shape of F,
-    (...,).
-    """
+    (...,)."""
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)
@@ -222,10 +215,8 @@ def wall_flattening_effect(
 
 
 def reynolds_number_effect(arm: SlenderArm, rate: Array, amplitude: Array) -> Effect:
-    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L.
-
-    rate: in rad/s, (...,). amplitude: in L. The effect has the shape of `rate`.
-    """
+    """Reynolds number rho U (2 a)/eta of the tip, which has the speed U = rate * amplitude * L. rate: in
+    rad/s, (...,). amplitude: in L. The effect has the shape of `rate`."""
     # The tip is the fastest point of the arm.
     speed = rate * amplitude * arm.si.length
     value = arm.si.fluid_density * speed * 2 * arm.shape.largest_drag_radius / arm.si.viscosity
@@ -242,8 +233,7 @@ def _effect_independent_of_viscosity(
     name: str, value: Array, limit: float, of_cycles_only: bool = False
 ) -> Effect:
     """The effect `name`, whose `value` does not depend on the viscosity: its viscosity factor is inf if
-    `value` exceeds `limit`, otherwise 0. of_cycles_only: whether the effect changes only limit cycles.
-    """
+    `value` exceeds `limit`, otherwise 0. of_cycles_only: whether the effect changes only limit cycles."""
     # No viscosity reduces the effect; below the limit a fluid of any viscosity is allowed.
     factor = np.where(value > limit, inf, 0.0)
     return Effect(name=name, value=value, limit=limit, viscosity_factor=factor, of_cycles_only=of_cycles_only)

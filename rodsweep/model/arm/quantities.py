@@ -16,8 +16,7 @@ LOADS = ("pressure", "force")
 
 class Quantity(NamedTuple):
     """A quantity of an arm: SI unit, meaning, and an example with a unit; the example of a pure number is
-    empty.
-    """
+    empty."""
 
     unit: str
     meaning: str
@@ -76,10 +75,7 @@ ALL_QUANTITIES = QUANTITIES | ARM_SCALES
 
 def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
     """Value in SI of the quantity `name` in UNITS; nan for a missing quantity and for a load relative to
-    flutter.
-
-    Raises InputError, naming the quantity, for an invalid value.
-    """
+    flutter. Raises InputError, naming the quantity, for an invalid value."""
     if quantity is None or (name in LOADS and load_over_flutter(quantity) is not None):
         return float("nan")
     value = quantity_in_si(name, quantity, *UNITS[name])
@@ -91,8 +87,7 @@ def arm_quantity_in_si(name: str, quantity: GivenQuantity | None) -> float:
 
 def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
     """Name and value of the quantity `name` in UNITS, for messages, like "length = '10 cm'": a text as the
-    user wrote it, a number with its SI unit.
-    """
+    user wrote it, a number with its SI unit."""
     if isinstance(quantity, str):
         return f"{name} = '{quantity}'"
     return f"{name} = {quantity_in_si(name, quantity, *UNITS[name]):.6g} {UNITS[name][0]}"
@@ -100,8 +95,7 @@ def quoted_quantity(name: str, quantity: GivenQuantity) -> str:
 
 def radius_of_diameter(name: str, names: Collection[str]) -> str:
     """The quantity in `names` that is half of the diameter `name`, such as inner_radius for inner_diameter;
-    "" if `name` is no diameter, or its radius is not known.
-    """
+    "" if `name` is no diameter, or its radius is not known."""
     plain_name = name.lower().replace("-", "_").removeprefix("outer_")
     radius = plain_name.replace("diameter", "radius")
     return radius if radius != plain_name and radius in names else ""

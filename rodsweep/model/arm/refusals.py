@@ -33,10 +33,8 @@ class NotSlender(InputError):
 
 
 def refuse_wrong_choices(arm: "SlenderArm") -> None:
-    """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm.
-
-    A swelling section requires a Poisson's ratio of 0.5.
-    """
+    """Raises InputError for an invalid Poisson's ratio, drag name, law or section of the arm. A swelling
+    section requires a Poisson's ratio of 0.5."""
     ratio: Any = arm.poisson
     is_number = isinstance(ratio, Real) and not isinstance(ratio, bool | np.bool_)
     if not is_number or not -1 < ratio <= INCOMPRESSIBLE_POISSON:
@@ -69,8 +67,7 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
 
 def refuse_wrong_combinations(arm: "SlenderArm") -> None:
     """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, and at most one
-    load.
-    """
+    load."""
     if arm.segments is not None:
         _refuse_wrong_segments(arm)
     else:
@@ -90,8 +87,7 @@ def refuse_wrong_combinations(arm: "SlenderArm") -> None:
 
 def _refuse_sections(arm: "SlenderArm") -> None:
     """Raises InputError unless an arm without segments has exactly one cross-section, with valid radii;
-    BoreTooWide if the bore is too wide.
-    """
+    BoreTooWide if the bore is too wide."""
     sides = (arm.width, arm.height)
     for name, reason in (
         ("inner_radius", "a rectangular section has no bore"),
@@ -123,11 +119,8 @@ def _refuse_sections(arm: "SlenderArm") -> None:
 
 def _refuse_wrong_segments(arm: "SlenderArm") -> None:
     """Raises InputError if an arm with segments also has a cross-section, or a length that is not the sum of
-    the segment lengths.
-
-    Also raises InputError for a segment that is too short, or if neither a segment nor the arm has a Young's
-    modulus.
-    """
+    the segment lengths. Also raises InputError for a segment that is too short, or if neither a segment nor
+    the arm has a Young's modulus."""
     for name in (*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]):
         if getattr(arm, name) is not None:
             raise InputError(
@@ -156,10 +149,7 @@ def _refuse_wrong_segments(arm: "SlenderArm") -> None:
 
 def refuse_out_of_range(arm: "SlenderArm") -> None:
     """Raises InputError for an arm without mass, and if its stiffnesses or its force scale overflow or
-    underflow.
-
-    Raises NotSlender for an arm that is too short.
-    """
+    underflow. Raises NotSlender for an arm that is too short."""
     if arm.si.density_difference <= -arm.si.fluid_density:
         density_text = arm.text_of("density_difference")
         min_density = f"{-arm.si.fluid_density:.4g} kg/m^3"
@@ -197,10 +187,8 @@ def _radius_text(arm: "SlenderArm") -> str:
 
 
 def refuse_crushed(arm: "SlenderArm") -> None:
-    """Raises InputError if the load crushes the arm at its weakest cross-section.
-
-    An arm without load, or with a load given relative to flutter, is not checked.
-    """
+    """Raises InputError if the load crushes the arm at its weakest cross-section. An arm without load, or
+    with a load given relative to flutter, is not checked."""
     load = arm.load
     if load is None or arm.share_of_flutter is not None or CRUSHED_FORCE_RATIO * arm.crushing_force > arm.F:
         return

@@ -105,8 +105,7 @@ class Tube:
 
     def shear_coefficient(self, poisson: float) -> float:
         """Shear coefficient kappa of a hollow circle, see `shear_formula` (Cowper 1966); nu = poisson. For a
-        thin wall kappa = 2 (1 + nu)/(4 + 3 nu).
-        """
+        thin wall kappa = 2 (1 + nu)/(4 + 3 nu)."""
         squared = (self.inner_radius / self.radius) ** 2
         solid = (7 + 6 * poisson) * (1 + squared) ** 2
         return 6 * (1 + poisson) * (1 + squared) ** 2 / (solid + (20 + 12 * poisson) * squared)
@@ -152,8 +151,7 @@ class Rectangle:
     @property
     def drag_radius(self) -> float:
         """(w + h)/4, in m: drag radius of an ellipse with the axes w and h in axial motion (Batchelor
-        1970).
-        """
+        1970)."""
         return (self.width + self.height) / 4
 
     def shear_coefficient(self, poisson: float) -> float:

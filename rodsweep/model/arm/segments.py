@@ -44,9 +44,7 @@ class WrittenSegment:
 
 def segment_texts(segments: Any) -> tuple[str, ...]:
     """Texts of all segments of an arm, the input of `segments_of`. segments: the user's value of `segments`.
-
-    Raises InputError, beginning with "segments", for an invalid segment.
-    """
+    Raises InputError, beginning with "segments", for an invalid segment."""
     if isinstance(segments, str | Mapping):
         segments = [segments]
     if hasattr(segments, "tolist"):  # an array of texts
@@ -74,10 +72,7 @@ def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
 
 def written_segment(number: int, segment: Any) -> WrittenSegment:
     """Quantities of a segment. segment: a text or a mapping. Raises InputError for an unknown or a missing
-    key.
-
-    number: position of the segment, counted from 1 at the base, for messages.
-    """
+    key. number: position of the segment, counted from 1 at the base, for messages."""
     place = f"segments, number {number}"
     quantities = dict(_quantities_by_name(place, segment))
     for name in quantities:
@@ -95,8 +90,7 @@ def written_segment(number: int, segment: Any) -> WrittenSegment:
 
 def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]:
     """Quantities of a segment by name. segment: a mapping or a text. Raises InputError, beginning with
-    `place`, if invalid.
-    """
+    `place`, if invalid."""
     if isinstance(segment, Mapping):
         return {str(name): value for name, value in segment.items()}
     length, colon, parts = str(segment).partition(":")
@@ -120,8 +114,7 @@ def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]
 
 def _segment_in_si(number: int, segment: WrittenSegment) -> ArmSegment:
     """The segment `segment` in SI units. number: its position, for messages. Raises InputError for a value
-    out of range, and BoreTooWide if the bore is too wide.
-    """
+    out of range, and BoreTooWide if the bore is too wide."""
     quantities = segment.quantities
     place = f"segments, number {number}"
     try:

@@ -107,10 +107,7 @@ class Shape:
 
     def _cone_profile(self, drag: int) -> Profile:
         """Profile of a cone: factors of gamma1 and gamma2. All other factors are 1, because the parameter
-        `taper` implies them.
-
-        drag: index of the drag estimate in DRAG_NAMES.
-        """
+        `taper` implies them. drag: index of the drag estimate in DRAG_NAMES."""
         count = max(2, ceil(abs(log(self.taper)) / log(MAX_RADIUS_RATIO)))
         # Neighbouring radii have equal ratios, since the drag depends on the logarithm of the radius.
         radii = self.taper ** (np.arange(count + 1) / count)
@@ -127,10 +124,8 @@ class Shape:
         return Profile((0.0, *u[1:-1].tolist(), 1.0), tuple(rows))
 
     def _factors_at_station(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
-        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base.
-
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
-        """
+        """k1, k2, k3, gamma1, gamma2, gamma3 at a station, each divided by the value at the base. poisson:
+        Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES."""
         values, base_values = (
             np.array(self._stiffnesses_and_drags(place, poisson, drag)) for place in (station, self.base)
         )
@@ -139,10 +134,7 @@ class Shape:
 
     def _stiffnesses_and_drags(self, station: Station, poisson: float, drag: int) -> tuple[float, ...]:
         """E A, kappa E A, E I at a station, and the axial, normal and rotational drag divided by the
-        viscosity.
-
-        poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES.
-        """
+        viscosity. poisson: Poisson's ratio. drag: index of the drag estimate in DRAG_NAMES."""
         section = station.section
         friction = self.drags_at(station, 1.0)[drag]
         stretch = station.young * section.area
@@ -182,8 +174,7 @@ class Shape:
 
     def _sections_at_midpoints(self) -> tuple[Array, Array, Array]:
         """Returns (length, A, E I) of the subintervals of the quadrature, (subintervals,) each, in m, m^2, N
-        m^2.
-        """
+        m^2."""
         if self.taper != 1:
             u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT
             radius = 1 - (1 - self.taper) * u
@@ -205,10 +196,8 @@ def shape_of_cone(length: float, radius: float, tip_radius: float, young: float)
 
 
 def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
-    """Shape of an arm made of segments.
-
-    segments: (length in m, section, Young's modulus in Pa) of each segment, from the base to the tip.
-    """
+    """Shape of an arm made of segments. segments: (length in m, section, Young's modulus in Pa) of each
+    segment, from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in segments])
     fractions = [*(ends[:-1] / ends[-1]).tolist(), 1.0]
     stations = [

@@ -41,10 +41,7 @@ def drag_phase_lag(s: ArrayLike, logarithm: float) -> Array:
 
 def frequency_of_phase_lag(phase: float, logarithm: float) -> float:
     """Frequency s at which `drag_phase_lag` equals `phase` < pi/2, by repeated subdivision of the interval of
-    ln s.
-
-    logarithm: Lambda = 4 pi eta/gamma2.
-    """
+    ln s. logarithm: Lambda = 4 pi eta/gamma2."""
     low_log = log(LOWEST_FREQUENCY)
     high_log = 2 * logarithm  # here the real part of the mobility is -1/2, so the phase is above pi/2
     for _ in range(REFINEMENT_COUNT):

@@ -62,8 +62,7 @@ def cache_directories() -> list[Path]:
 
 class KernelCache(_Cache):
     """Disk cache of one compiled function, with the interface that numba's dispatchers and C callbacks
-    expect.
-    """
+    expect."""
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
         """function: the function to compile. options: numba's compiler options. directories: directories of
@@ -91,11 +90,9 @@ class KernelCache(_Cache):
         return None
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Writes the compiled function `data` for the signature `sig` to disk.
-
-        Nothing is written if the code contains memory addresses, or if a global value that the code reads has
-        changed since the first use of the function. If no directory is writable, a warning is issued.
-        """
+        """Writes the compiled function `data` for the signature `sig` to disk. Nothing is written if the code
+        contains memory addresses, or if a global value that the code reads has changed since the first use of
+        the function. If no directory is writable, a warning is issued."""
         name = self._cache_file_name(sig, data.codegen, {})
         has_changed = name != self._cache_file_name(sig, data.codegen, _texts_at_first_use)
         if data.library.has_dynamic_globals or data.lifted or has_changed:
@@ -135,10 +132,8 @@ class KernelCache(_Cache):
 
 @cache
 def _warn_once(sentence: str) -> None:
-    """Issues the warning `sentence` once per process.
-
-    Python's own filter is not enough: numba resets the record of issued warnings at every compilation.
-    """
+    """Issues the warning `sentence` once per process. Python's own filter is not enough: numba resets the
+    record of issued warnings at every compilation."""
     warnings.warn(sentence, stacklevel=1)
 
 

@@ -17,10 +17,8 @@ R = TypeVar("R")
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """The function `function`, compiled by numba in nopython mode at its first call.
-
-    Real division by zero gives inf or nan; complex division by zero raises ZeroDivisionError.
-    """
+    """The function `function`, compiled by numba in nopython mode at its first call. Real division by zero
+    gives inf or nan; complex division by zero raises ZeroDivisionError."""
     return _compiled(function, fastmath=False)
 
 
@@ -35,10 +33,8 @@ def compiled_for_vectors(function: Callable[P, R]) -> Callable[P, R]:
 
 
 def c_callback(function: Callable, signature: Any) -> Any:
-    """A callback for C code: `function`, compiled at once for numba's signature `signature`.
-
-    The attribute `address` of the callback is the C function pointer.
-    """
+    """A callback for C code: `function`, compiled at once for numba's signature `signature`. The attribute
+    `address` of the callback is the C function pointer."""
     callback: Any = CFunc(function, numba.core.sigutils.normalize_signature(signature), locals={}, options={})
     callback._cache = KernelCache(function, {"signature": "C"}, cache_directories())
     callback.compile()

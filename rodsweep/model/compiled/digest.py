@@ -54,8 +54,7 @@ def kernel_of(function: Any, options: Mapping[str, Any]) -> Kernel:
 
 def kernel_digest(kernel: Kernel, cache: TextCache) -> str:
     """SHA-256 of a kernel and of all functions that it calls, directly or indirectly. cache: cache of the
-    texts of functions, which is filled.
-    """
+    texts of functions, which is filled."""
     texts: dict[FunctionType, str] = {}
     pending = [kernel]
     while pending:
@@ -70,10 +69,8 @@ def kernel_digest(kernel: Kernel, cache: TextCache) -> str:
 
 def type_text(numba_type: Any) -> str:
     """Text of the numba type of an argument, with the field names that numba's own name of the type omits.
-
     The text also contains the module of a NamedTuple, because compiled code refers to the class by its
-    module. Raises TypeError for a function type, which does not determine the code of the function.
-    """
+    module. Raises TypeError for a function type, which does not determine the code of the function."""
     if isinstance(numba_type, types.Callable):
         raise TypeError(f"kernels take no functions as arguments: {numba_type}")
     items = numba_type.types if isinstance(numba_type, types.BaseTuple) else ()
@@ -100,10 +97,7 @@ def _text_of_function(function: FunctionType, options: str) -> FunctionText:
 
 def _values_read(function: FunctionType, instructions: Iterable[dis.Instruction]) -> dict[str, Any]:
     """Global values of `function` that `instructions` read, by name; of a `KernelConstants` object only the
-    fields that are read.
-
-    Raises NameError for a name that is neither a global name nor a builtin.
-    """
+    fields that are read. Raises NameError for a name that is neither a global name nor a builtin."""
     values = {}
     for instruction, next_instruction in pairwise(instructions):
         if instruction.opname in GLOBAL_READ_INSTRUCTIONS and instruction.argval in function.__globals__:
@@ -130,10 +124,8 @@ def _code_objects(code: CodeType) -> Iterator[CodeType]:
 
 
 def _code_lines(code: CodeType, instructions: Iterable[dis.Instruction]) -> list[str]:
-    """Lines of text of the bytecode of a code object, with constants in place of their indices.
-
-    The indices are left out because an added docstring changes them.
-    """
+    """Lines of text of the bytecode of a code object, with constants in place of their indices. The indices
+    are left out because an added docstring changes them."""
     counts = code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags & VARIADIC_FLAGS
     lines = [code.co_name, repr((counts, code.co_varnames, code.co_freevars, code.co_cellvars))]
     lines.append(code.co_exceptiontable.hex())
@@ -150,10 +142,8 @@ def _in_fixed_order(value: Any) -> Any:
 
 
 class _ValueTextConverter:
-    """Converter of the values that one function refers to into text that is equal in every process.
-
-    function: the function. called_kernels: kernels found among the converted values.
-    """
+    """Converter of the values that one function refers to into text that is equal in every process. function:
+    the function. called_kernels: kernels found among the converted values."""
 
     def __init__(self, function: FunctionType) -> None:
         self.function = function

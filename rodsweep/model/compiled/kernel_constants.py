@@ -40,8 +40,7 @@ class _SettingsType(types.Type):
 
     def type_and_value(self, name: str) -> Any:
         """Returns (numba type, value) of the field `name`. An integer has a literal type, like a global
-        integer.
-        """
+        integer."""
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 

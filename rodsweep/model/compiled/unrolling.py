@@ -30,8 +30,7 @@ ALWAYS_KNOWN_VALUES = {"range": range}
 
 class UnrolledOverAlgebra(Generic[P, R]):
     """Decorator of a function whose first argument is a Lie algebra; `compiled_for` unrolls the loops over
-    this argument.
-    """
+    this argument."""
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
         self.function: Any = function
@@ -48,10 +47,8 @@ class UnrolledOverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def unrolled_for(self, g: Algebra) -> Callable[P, R]:
-        """The function unrolled for the algebra `g`, not compiled.
-
-        All called functions that have this decorator too are unrolled and compiled.
-        """
+        """The function unrolled for the algebra `g`, not compiled. All called functions that have this
+        decorator too are unrolled and compiled."""
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]
@@ -95,8 +92,7 @@ class _UnrollingState(NamedTuple):
 
 class _UnrollingTransformer(ast.NodeVisitor):
     """Copies a syntax tree. Names in `known_values` are replaced by their values, and loops over such values
-    are unrolled.
-    """
+    are unrolled."""
 
     def __init__(self, known_values: Mapping[str, Any], state: _UnrollingState) -> None:
         self.known_values = known_values
@@ -166,8 +162,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
     def _with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
         """The transformer for the body of one loop iteration, in which the loop variable `target` has the
-        value `item`.
-        """
+        value `item`."""
         return _UnrollingTransformer(
             {**self.known_values, **_loop_variable_values(target, item)}, self.shared_state
         )
@@ -206,8 +201,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
 def _loop_variable_values(target: ast.expr, item: Any) -> dict[str, Any]:
     """Values of the variables in the loop target `target`, by name, in the iteration with the value
-    `item`.
-    """
+    `item`."""
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {

@@ -105,10 +105,7 @@ class Build:
 
     def relative_crushing_force(self, taper: float) -> float:
         """Force that crushes the weakest section of an arm, divided by k1 at the base; inf if no force
-        crushes the arm.
-
-        taper: taper of the arm.
-        """
+        crushes the arm. taper: taper of the arm."""
         return self.constitutive_law.crushing_load * smallest_factor_along(self.profile, taper, "k1")
 
     def crushing_ratio(self, F: float, k1: float, taper: float) -> float:
@@ -118,8 +115,7 @@ class Build:
 
     def relative_least_rotational_drag(self, taper: float) -> float:
         """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
-        base.
-        """
+        base."""
         return smallest_factor_along(self.profile, taper, "gamma3")
 
     @cached_property
@@ -130,17 +126,14 @@ class Build:
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
         """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
-        shape.
-        """
+        shape."""
         forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(forces).reshape(tapers.shape)
 
     def local_coefficients(self, F: Any, at_base: Mapping[str, Any], u: Array) -> LocalCoefficients:
         """Coefficients at points u, (...,), under the force F. No point may be a break of the profile.
-
         at_base: stiffnesses and drags at u = 0, and taper, by name. F and at_base contain numbers, or arrays
-        for n arms, (n, 1, ...).
-        """
+        for n arms, (n, 1, ...)."""
         factors = factors_along(self.profile, at_base["taper"], u)
         law = self.constitutive_law
         # No load acts along the arm, so the force in every section is F.
@@ -154,11 +147,8 @@ class Build:
 
     def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
-        break of the profile.
-
-        The compliances are values of the undeformed arm. at_base: stiffnesses and drags at u = 0, and taper,
-        by name.
-        """
+        break of the profile. The compliances are values of the undeformed arm. at_base: stiffnesses and drags
+        at u = 0, and taper, by name."""
         factors = factors_along(self.profile, at_base["taper"], u)
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
@@ -167,11 +157,8 @@ class Build:
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
-        the base.
-
-        Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which has
-        compliances of 0.
-        """
+        the base. Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which
+        has compliances of 0."""
         factors = factors_along(self.profile, taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
@@ -179,10 +166,8 @@ class Build:
         self, sections: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
     ) -> Sections:
         """Derivatives of the cross-sections `sections` at points u, (points,), with respect to a parameter.
-
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
-        parameter, by name; the derivative of a missing name is 0.
-        """
+        parameter, by name; the derivative of a missing name is 0."""
         factors = factors_along(self.profile, taper, u)
         # d log(radius)/d taper.
         growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)

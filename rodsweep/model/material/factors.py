@@ -32,8 +32,7 @@ def factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, Ar
     """Stiffnesses and drags at points u, divided by their values at the base, by name: arrays of the shape of
     u. Callers must not write into these arrays, because they may be shared through the cache. taper: a
     number, or an array for n arms, (n, 1, ...), with which factors that depend on the taper have the shape
-    (n, *u.shape).
-    """
+    (n, *u.shape)."""
     if isinstance(taper, np.ndarray) or u.size > FACTOR_CACHE_SETTINGS.max_points:
         return _factors_along(profile, taper, u)
     return _cached_factors(profile, float(taper), u.tobytes(), u.shape)
@@ -67,8 +66,7 @@ def _factors_along(profile: Profile | None, taper: Any, u: Array) -> dict[str, A
 @lru_cache(maxsize=1024)
 def smallest_factor_along(profile: Profile | None, taper: float, name: str) -> float:
     """Smallest k1, gamma1 or gamma3 (`name`) along an arm with a profile and a taper, divided by the value at
-    the base.
-    """
+    the base."""
     exponent = RADIUS_POWERS.get(name, 0)
     # The power of the radius of a cone is monotone, so its minimum is at an end.
     ends = min(1.0, taper**exponent)

@@ -68,10 +68,7 @@ def _solve_tangent_system(T: Tangent, N: float, M: float) -> LawUnknowns:
 @compiled
 def _largest_step_fraction(material: LocalSection, q1: float, step: float) -> float:
     """Largest fraction, up to 1, of a step of q1 after which h1 >= MIN_STRETCH_RATIO times h1 before the
-    step.
-
-    material, q1: section and unknown before the step. step: increment of q1.
-    """
+    step. material, q1: section and unknown before the step. step: increment of q1."""
     h = material.nu + material.c1 * q1
     change = material.c1 * step
     if h + change >= MIN_STRETCH_RATIO * h:
@@ -90,10 +87,7 @@ def _is_negligible(step: LawUnknowns, unknowns: LawUnknowns) -> bool:
 @compiled
 def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
     """The unknowns a on the base side of a jump, from the mean unknowns q. law: number of the constitutive
-    law. sides: both sides, (2, 7).
-
-    Newton's method solves the equations of equal stresses on both sides.
-    """
+    law. sides: both sides, (2, 7). Newton's method solves the equations of equal stresses on both sides."""
     if law == LINEAR_LAW:
         return q
     base_side = _section_of_side(sides[0])
@@ -132,19 +126,16 @@ def unknowns_behind_jump(sides: Array, q: LawUnknowns, a: LawUnknowns) -> LawUnk
 @compiled
 def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
     """Stresses N and M at a jump, minus their values at rest, for the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: both sides, (2, 7).
-    """
+    the constitutive law. sides: both sides, (2, 7)."""
     a = unknowns_before_jump(law, sides, LawUnknowns(q1, q3))
     return stress_beyond_rest(law, _section_of_side(sides[0]), a.q1, a.q3)
 
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
-    """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM).
-
-    law: number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both
-    sides, (2, 7).
-    """
+    """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law:
+    number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides,
+    (2, 7)."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1
@@ -163,11 +154,8 @@ def side_increments_at_jump(
     law: int, sides: Array, q: LawUnknowns, change: LawUnknowns
 ) -> tuple[LawUnknowns, LawUnknowns]:
     """Returns (increment of a, increment of b): increments of the unknowns on the base side and the tip side
-    of a jump.
-
-    law: number of the constitutive law. q: mean unknowns. change: infinitesimal increment of q. sides: both
-    sides, (2, 7).
-    """
+    of a jump. law: number of the constitutive law. q: mean unknowns. change: infinitesimal increment of q.
+    sides: both sides, (2, 7)."""
     a = unknowns_before_jump(law, sides, q)
     b = unknowns_behind_jump(sides, q, a)
     stresses = _solve_tangent_system(_compliance_at_jump(law, sides, a, b), change.q1, change.q3)
@@ -181,8 +169,7 @@ def side_increments_at_jump(
 @compiled
 def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
-    the constitutive law. sides: both sides, (2, 7).
-    """
+    the constitutive law. sides: both sides, (2, 7)."""
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))

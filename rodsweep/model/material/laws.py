@@ -53,9 +53,7 @@ class Law:
 
 def _neo_hookean_shortening(x: Values) -> Values:
     """Shortening e = 1 - nu of neo-Hookean rubber under the load x = F/k1, (...,); nu^3 + 3 x nu^2 = 1.
-
-    Cardano's formula gives a start for Newton's method for e.
-    """
+    Cardano's formula gives a start for Newton's method for e."""
     x = np.asarray(x, dtype=float)
     square = 0.25 - x**3
     root = np.cbrt(0.5 + np.sqrt(np.maximum(square, 0.0)))

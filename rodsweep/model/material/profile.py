@@ -66,11 +66,9 @@ class Profile:
 
     @cached_property
     def _cubic_coefficients(self) -> Array:
-        """Coefficients of the cubic polynomials between neighbouring u, (4, factors, 2, intervals).
-
-        The first axis is the power of the distance from one end of the interval, cubes first; the distance is
-        1 at the opposite end. The third axis is this end: the lower u, the upper u.
-        """
+        """Coefficients of the cubic polynomials between neighbouring u, (4, factors, 2, intervals). The first
+        axis is the power of the distance from one end of the interval, cubes first; the distance is 1 at the
+        opposite end. The third axis is this end: the lower u, the upper u."""
         u = np.array(self.u)
         rows = np.array(self.rows)
         jumps = np.flatnonzero(np.diff(u) == 0) + 1
@@ -109,10 +107,8 @@ class Profile:
 
 
 def _cubic_coefficients(first: Array, last: Array, first_slope: Array, last_slope: Array) -> Array:
-    """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors).
-
-    first, last: values at 0 and at 1. first_slope, last_slope: slopes there. Each is (intervals, factors).
-    """
+    """Coefficients of cubic polynomials on [0, 1], cubes first, (4, intervals, factors). first, last: values
+    at 0 and at 1. first_slope, last_slope: slopes there. Each is (intervals, factors)."""
     increment = last - first
     return np.array(
         [
@@ -130,11 +126,8 @@ def _digits(u: float) -> str:
 
 
 def _monotone_slopes(u: Array, values: Array) -> Array:
-    """Slopes of the factors at the rows, (rows, factors), for monotone cubic polynomials
-    (Fritsch and Carlson, 1980).
-
-    u: (rows,). values: factors, (rows, factors).
-    """
+    """Slopes of the factors at the rows, (rows, factors), for monotone cubic polynomials (Fritsch and
+    Carlson, 1980). u: (rows,). values: factors, (rows, factors)."""
     h = np.diff(u)[:, None]
     chords = np.diff(values, axis=0) / h
     slopes = np.zeros_like(values)

@@ -46,8 +46,7 @@ class Tangent(NamedTuple):
 @compiled
 def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
     """Returns (B, B', B''): bending factor of the law with the number `law` at the stretch h, and its
-    derivatives.
-    """
+    derivatives."""
     if law == SWELLING_SECTION:
         a = 1 / h
         b = 1 / h**4
@@ -66,8 +65,7 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 @compiled
 def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
     """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
-    the law.
-    """
+    the law."""
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
@@ -78,8 +76,7 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
 @compiled
 def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Tangent:
     """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
-    the law.
-    """
+    the law."""
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
@@ -98,10 +95,8 @@ def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Ta
 def stress_parameter_derivative(
     law: int, material: LocalSection, change: LocalSection, q1: float, q3: float
 ) -> Stress:
-    """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3.
-
-    change: derivatives of the fields of `material` with respect to the parameter. law: number of the law.
-    """
+    """Derivatives of the stresses N and M with respect to a parameter, at fixed unknowns q1 and q3. change:
+    derivatives of the fields of `material` with respect to the parameter. law: number of the law."""
     if law == LINEAR_LAW:
         return Stress(0.0, 0.0)
     h = material.nu + material.c1 * q1

@@ -19,10 +19,8 @@ LIBRARIES = Path("/usr/lib")
 
 def add_debian_modules(libraries: Path = LIBRARIES) -> None:
     """Appends to `sys.path` the directories of Debian's newest petsc4py and slepc4py built for real numbers.
-
     Nothing is appended for a module that Python already finds, or whose environment variable, PETSC_DIR or
-    SLEPC_DIR, is set.
-    """
+    SLEPC_DIR, is set."""
     for name in ("petsc", "slepc"):
         if f"{name.upper()}_DIR" in os.environ or is_module_found(f"{name}4py"):
             continue

@@ -49,8 +49,7 @@ def c_function(*arguments: Any) -> Callable[[Callable], Any]:
 
 def petsc_function(name: str) -> Any:
     """The libpetsc function `int name(object, array*)` for compiled code. Compiled code that calls a function
-    of this type can be cached on disk; code that calls a ctypes function cannot.
-    """
+    of this type can be cached on disk; code that calls a ctypes function cannot."""
     return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 

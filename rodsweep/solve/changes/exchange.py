@@ -1,5 +1,4 @@
-"""Location of one exchange of the leading eigenvalue between two samples, by Newton's method on the
-determinant D."""
+"""Location of one exchange of the leading eigenvalue between two samples, by Newton's method on D."""
 
 import math
 from dataclasses import dataclass
@@ -18,8 +17,7 @@ class ExchangeSettings:
     following_steps: int = 8
     """Number of steps in which an eigenvalue is followed from a sample to the middle of the interval."""
     converged_step_in_errors: float = 4.0
-    """Newton's method for an overtaking stops when the step is smaller than this multiple of the error
-    estimate."""
+    """Newton's method for an overtaking stops when the step is smaller than this multiple of the error."""
     rounding_error: float = 4e-16
     """Relative rounding error of the path variable: two units in the last place."""
     accuracy: float = 1e-6

@@ -55,8 +55,7 @@ class LeadingEigenvalueSettings:
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
     smallest_interval_with_two_exchanges: float = 1e-9
-    """Like `smallest_interval`, for two samples between which the interpolation does not exclude two
-    exchanges."""
+    """Like `smallest_interval`, if the interpolation does not exclude two exchanges between the samples."""
     min_part_ratio: float = 0.05
     """An added sample divides its interval into parts that are at least this fraction of the interval: a
     minimum of the interpolant may coincide with a sample."""
@@ -88,8 +87,7 @@ class LeaderExchangeSearch:
         that no further eigenvalue lies to the right."""
 
     def sample_at(self, p: float) -> SpectrumSample:
-        """The sample at path variable p, solved at the first call; raises Unsolvable if the eigenvalues
-        cannot be computed."""
+        """The sample at path variable p, solved at the first call; raises Unsolvable."""
         if p not in self.samples:
             self.samples[p] = self._solve_sample(p)
         return self.samples[p]

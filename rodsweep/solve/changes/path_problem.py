@@ -19,8 +19,7 @@ class PathProblem(ABC):
         self._spectra: dict[tuple[float, SpectrumRequest], Spectrum] = {}
 
     def spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
-        """The spectrum of the rod at path variable p for `request`; each request is solved once and
-        stored."""
+        """The spectrum of the rod at path variable p for `request`, solved once and stored."""
         key = p, request
         if key not in self._spectra:
             self._spectra[key] = solve_spectrum(self.path.rod_at(p), request)
@@ -47,8 +46,7 @@ class PathProblem(ABC):
 
     def known_count_near_middle(self, low: float, high: float) -> int | None:
         """Number of unstable modes already proved at a path variable near the middle between `low` and
-        `high`; None if no such number is known.
-        """
+        `high`; None if no such number is known."""
         return None
 
     @abstractmethod
@@ -58,8 +56,7 @@ class PathProblem(ABC):
 
 
 class UniformPath(PathProblem):
-    """Eigenvalue problem along a path of uniform rods of linear material, whose determinant D has a closed
-    form."""
+    """Eigenvalue problem along a path of uniform rods of linear material, whose D has a closed form."""
 
     def interval_edges(self, low: float, high: float) -> list[float]:
         return [a for a, _ in path_intervals(self.path, low, high)] + [high]

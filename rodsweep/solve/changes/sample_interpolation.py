@@ -65,19 +65,15 @@ def next_sample_position(left: SpectrumSample, right: SpectrumSample) -> tuple[f
 
 def excludes_exchange(left: SpectrumSample, right: SpectrumSample, may_hold_two: bool) -> bool:
     """Whether the slopes at two close samples exclude an exchange of the leading eigenvalue, although
-    `next_sample_position` asks for a sample between them and returns `may_hold_two`.
-
-    The leading eigenvalue must be real at both samples, or a pair at both samples.
-    """
+    `next_sample_position` asks for a sample between them and returns `may_hold_two`. The leading eigenvalue
+    must be real at both samples, or a pair at both samples."""
     return two_pairs_exchange_lead(left, right) or (not may_hold_two and next_two_stay_below(left, right))
 
 
 def next_two_stay_below(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes exclude that the two eigenvalues after the leading eigenvalue or pair take the lead
-    between two samples, whether these two eigenvalues are real or a complex pair.
-
-    The leading eigenvalue must be real at both samples, or a pair at both samples.
-    """
+    between two samples, whether these two eigenvalues are real or a complex pair. The leading eigenvalue must
+    be real at both samples, or a pair at both samples."""
     left_gaps = left.gaps_to_next_two()
     right_gaps = right.gaps_to_next_two()
     if left_gaps is None or right_gaps is None:
@@ -112,8 +108,7 @@ def has_only_double_eigenvalue(left: SpectrumSample, right: SpectrumSample) -> b
 
 def has_only_leader_exchange(left: SpectrumSample, right: SpectrumSample) -> bool:
     """Whether the slopes show that, between two samples, a real eigenvalue and a pair exchange the lead once
-    and no other eigenvalue takes the lead. False if the first eigenvalues at a sample are not one real
-    eigenvalue and one pair."""
+    and no other eigenvalue takes the lead. False unless one real eigenvalue and one pair come first."""
     # Indices of the real eigenvalue and of one eigenvalue of the pair; index 3 is the next eigenvalue.
     indices = [(2, 0) if sample.oscillates else (0, 1) for sample in (left, right)]
     ((real_left, pair_left), (real_right, pair_right)) = indices

@@ -39,8 +39,7 @@ CRUSHING_END_SETTINGS = CrushingEndSettings()
 
 
 def end_below_crushing(rod: Rod, F: float) -> float:
-    """Largest force of a search up to F, in k3/L^2: the smaller of F and a force just below the crushing
-    force of `rod`."""
+    """Largest force of a search up to F, in k3/L^2: F, or a force just below the crushing force of `rod`."""
     return min(F, rod.crushing_force * (1 - CRUSHING_END_SETTINGS.crushing_margin))
 
 
@@ -53,11 +52,8 @@ class SearchEnd(NamedTuple):
 
 
 class IntervalQueue:
-    """Intervals of the path variable that are still to be searched, leftmost first.
-
-    end: end of the search. When the queue is empty, the range from the first of `edges` to `end.p` has
-    been searched.
-    """
+    """Intervals of the path variable that are still to be searched, leftmost first. end: end of the search.
+    When the queue is empty, the range from the first of `edges` to `end.p` has been searched."""
 
     def __init__(self, edges: list[float]):
         self.start_p = edges[0]
@@ -91,8 +87,7 @@ class IntervalQueue:
         self._queue += intervals[::-1]
 
     def stop_at(self, p: float, reason: str) -> None:
-        """Ends the search at path variable `p`, up to which the search is complete. reason: why the search
-        ends."""
+        """Ends the search at path variable `p`, up to which it is complete. reason: why the search ends."""
         self._queue.clear()
         self._halvings = SEARCH_RANGE_SETTINGS.max_halvings_after_failure
         self.end = SearchEnd(p, reason)

@@ -9,15 +9,13 @@ from ...arrays import Complex
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpectrumSampleSettings:
-    """Settings of the samples of the spectrum along a path of rods and of the interpolation between two
-    samples."""
+    """Settings of the samples of the spectrum along a path and of the interpolation between two samples."""
 
     min_computed_modes: int = 4
     """Minimum number of leading eigenvalues computed for one arm of a path (`arm.axis_modes`); at least two
     more than the number of unstable modes are computed."""
     arm_accuracy: float = 1e-6
-    """Relative accuracy of the eigenvalues of one arm of a path, before the refinement by Newton's method on
-    D."""
+    """Relative accuracy of the eigenvalues of one arm, before the refinement by Newton's method on D."""
     interpolation_tolerance: float = 0.25
     """Tolerance of the interpolation between two samples. The cubic must stay above this fraction of the
     smaller end value, so that no zero is missed. The difference of the end values must agree, within this

@@ -127,10 +127,8 @@ class BautinProblem:
         return StepResult(point, 0.0 if on_edge or len(previous) == 1 else prediction_error, 1.0)
 
     def _point_in_ranges(self, v: Array, change: Array) -> tuple[_CurvePoint, bool]:
-        """(point near v + change, (4,), or on the range end that the step crosses; whether on an end).
-
-        No point outside the ranges is solved: its parameters may not be allowed. Raises Unsolvable.
-        """
+        """(point near v + change, (4,), or on the range end that the step crosses; whether on an end). No
+        point outside the ranges is solved: its parameters may not be allowed. Raises Unsolvable."""
         predicted = (v + change)[:3]
         range_ends = np.where(predicted > 1, 1.0, np.where(predicted < 0, 0.0, np.nan))
         fractions = (range_ends - v[:3]) / np.where(change[:3] == 0, 1.0, change[:3])

@@ -30,11 +30,9 @@ class BautinPointSettings:
     """Settings for the location of generalised Hopf points on a Hopf curve."""
 
     coarsest_accuracy: float = 1e-10
-    """Coarsest relative accuracy of c for locating generalised Hopf points, whose relative accuracy is
-    1e-9."""
+    """Coarsest relative accuracy of c for locating generalised Hopf points, themselves accurate to 1e-9."""
     first_sign_accuracy: float = 1e-5
-    """Relative accuracy of c in the first computation; if the sign of Re c is undecided, c is recomputed with
-    the requested accuracy."""
+    """Relative accuracy of c at first; if the sign of Re c is undecided, c is recomputed as requested."""
     tolerance: float = 1e-13
     """Tolerance of Brent's method, as a fraction of the distance between two neighbours."""
     relative_difference_step: float = 1e-3
@@ -126,8 +124,7 @@ class HopfCurve:
     accuracy: float
 
     def criticality_at(self, i: int) -> float:
-        """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN if the normal form
-        fails."""
+        """Sign of Re c at the stored point with the index i: -1 or 1; 0 if undecided, NaN after a failure."""
         points = len(self.scaled)
         report(lambda: SolvePosition(f"criticality of a Hopf curve, point {i + 1} of {points}", i / points))
         try:
@@ -194,11 +191,8 @@ class HopfCurve:
     def as_bautin_point(
         self, hopf_point: _HopfNormalForm, index_before: int, position_error: Array
     ) -> BautinPoint:
-        """The generalised Hopf point at the Hopf point `hopf_point`, with errors of both parameters.
-
-        index_before: index of the curve's stored point before this point. position_error: position error
-        along the chord, (3,).
-        """
+        """The generalised Hopf point at `hopf_point`, with errors of both parameters. index_before: stored
+        point before it. position_error: position error along the chord, (3,)."""
         solution = hopf_point.boundary_point
         axes = self.boundary.plane.axes
         tangent = solution.tangent

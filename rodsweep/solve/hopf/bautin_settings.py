@@ -14,8 +14,7 @@ BAUTIN_STEP_CONTROL = StepControl(
     max_length_ratio=1.5,
     max_solutions=2000,
 )
-"""Step length control along a curve. Each parameter's range has length 1; the prediction error is divided by
-the step length."""
+"""Step length control along a curve. Each parameter's range has length 1; prediction errors are per step."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

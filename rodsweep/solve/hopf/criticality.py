@@ -20,11 +20,8 @@ from .status import CriticalityStatus
 
 @dataclass(frozen=True, slots=True)
 class CriticalityRequest:
-    """Request of task `criticality` for each rod.
-
-    F_max: largest force, in k3/L^2. accuracy: relative accuracy of the coefficients. certify: whether the
-    list of Hopf points must be proved complete.
-    """
+    """Request of task `criticality` for each rod. F_max: largest force, in k3/L^2. accuracy: relative
+    accuracy of the coefficients. certify: whether the list of Hopf points must be proved complete."""
 
     F_max: float
     accuracy: float
@@ -36,8 +33,7 @@ class CriticalityRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Criticality:
     """Result for one rod: all Hopf points up to the force `end`. search_result: result of the search for Hopf
-    points. coefficients: normal form coefficients of the first Hopf points, at most as many as requested.
-    seconds: computing time."""
+    points. coefficients: of the first Hopf points, at most as many as requested. seconds: computing time."""
 
     status: CriticalityStatus
     search_result: ThresholdSearchResult
@@ -89,8 +85,7 @@ def _hopf_points(path: ParameterPath, end: float, certify: bool, max_crossings: 
 
 
 def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> HopfCoefficients:
-    """Coefficients of the Hopf point `hopf`; if the computation fails they are NaN, with the cause as
-    message."""
+    """Coefficients of the Hopf point `hopf`; NaN after a failure, with the cause as message."""
     try:
         return hopf_coefficients(replace(rod, F=hopf.value), hopf, request.accuracy)
     except FAILURES as error:
@@ -113,8 +108,7 @@ def _status_and_message(
     request: CriticalityRequest,
 ) -> tuple[CriticalityStatus, str]:
     """Returns (status, message) from the Hopf points `hopf_points` and their coefficients. status: the most
-    serious problem, or ok. message: causes of failures, and the reason why the list of Hopf points is not
-    proved."""
+    serious problem, or ok. message: causes of failures, and why the list is not proved."""
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known_coefficients = [c for c in coefficients if c.are_known]
     is_inaccurate = any(c.error > request.accuracy * abs(c.value) for c in hopf_points.thresholds) or any(

@@ -32,8 +32,7 @@ class HopfCoefficientSettings:
     """Settings for the coefficients of a Hopf point and their errors, and for the cache of searches."""
 
     order_increase: int = 4
-    """Increase of the element order from the first mesh to the second, which reduces the error of c by a
-    factor of 10 to 10^4."""
+    """Increase of the element order from the first mesh to the second: the error of c falls by 10 to 10^4."""
     max_refinements: int = 4
     """Maximum number of meshes after the first."""
     coarsest_accuracy: float = 1e-2
@@ -100,11 +99,8 @@ class HopfCoefficients:
 
 def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoefficients:
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
-    Unsolvable.
-
-    rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds `accuracy`, or if
-    the finest mesh does not suffice.
-    """
+    Unsolvable. rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds
+    `accuracy`, or if the finest mesh does not suffice."""
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
     start = elements_for_landau_coefficient(

@@ -38,8 +38,7 @@ class NormalFormSettings:
     """Settings for the normal form of a Hopf point: mesh and inverse iteration."""
 
     shift_offset: float = 1e-10
-    """Relative offset of the shift from the eigenvalue estimate; without an offset the shifted matrix might
-    be singular."""
+    """Relative offset of the shift from the eigenvalue estimate; without it the matrix might be singular."""
     converged_distance: float = 1e-8
     """The inverse iteration stops when the relative distance of shift and eigenvalue is at most this number:
     two iterations with this shift reach rounding error."""
@@ -110,29 +109,22 @@ class NormalForm:
         return self.eigenvalue_slope.imag - self.landau.imag * self.eigenvalue_slope.real / self.landau.real
 
     def squared_y_and_frequency(self, F: float) -> tuple[float, float]:
-        """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`.
-
-        The eigenvalue at F is approximated by w + eigenvalue_slope (F - self.F). If the square is negative,
-        no cycle exists.
-        """
+        """(squared largest tip y in L^2, frequency in 1/tau2) of the cycle at a force F near `self.F`. The
+        eigenvalue at F is taken as w + eigenvalue_slope (F - self.F). A negative square: no cycle."""
         w = self.w + self.eigenvalue_slope * (F - self.F)
         squared = -w.real / self.landau.real
         return squared, w.imag + self.landau.imag * squared
 
     def cycle_states(self, amplitude: float, phases: Array) -> Array:
         """State X of a cycle, to second order in `amplitude`, at `phases`, (n,), in rad: shape (n, unknowns).
-
-        amplitude: the largest tip y, in L, which is reached at phase 0.
-        """
+        amplitude: the largest tip y, in L, which is reached at phase 0."""
         z = (amplitude * np.exp(1j * phases))[:, None]
         return 2 * (z * self.q).real + (z * z * self.h20).real + amplitude**2 * self.h11
 
 
 def normal_form(form: MixedForm, guess: complex) -> NormalForm:
-    """Normal form of the eigenvalue of (A, M) nearest to `guess`.
-
-    Raises Unsolvable if the eigenvalue is real or the inverse iteration does not converge.
-    """
+    """Normal form of the eigenvalue of (A, M) nearest to `guess`. Raises Unsolvable if the eigenvalue is real
+    or the inverse iteration does not converge."""
     transverse, longitudinal = (straight_matrices(form, part) for part in (TRANSVERSE, LONGITUDINAL))
     w, q, p = _eigenvalue_and_modes(transverse, guess)
     # The mode is transverse, so its quadratic fields are longitudinal: the opposite blocks are not needed.
@@ -149,9 +141,7 @@ def normal_form(form: MixedForm, guess: complex) -> NormalForm:
 
 def normal_form_by_mesh_rule(rod: Rod, w: complex, accuracy: float) -> NormalForm:
     """Normal form of the eigenvalue w of `rod`, on a mesh that gives c to the relative accuracy `accuracy`.
-
-    Raises Unsolvable for the reasons of `normal_form_on`.
-    """
+    Raises Unsolvable for the reasons of `normal_form_on`."""
     return normal_form_on(elements_for_landau_coefficient(rod, w, accuracy), rod, w, accuracy)
 
 
@@ -167,8 +157,7 @@ def elements_for_landau_coefficient(rod: Rod, w: complex, accuracy: float) -> El
 
 
 def with_odd_order(elements: Elements) -> Elements:
-    """The same elements, with their order increased by 1 if it is even; elements of even order cannot be
-    eliminated one by one."""
+    """The same elements, of an odd order: elements of even order cannot be eliminated one by one."""
     return Elements(elements.edges, elements.order | 1)
 
 
@@ -212,10 +201,7 @@ def _eigenvalue_and_modes(
     elements: StraightElements | WholeRodMatrices, guess: complex
 ) -> tuple[complex, Complex, Complex]:
     """(w, q, p): eigenvalue nearest to `guess`, and its transverse modes q and p, scaled as in the module
-    docstring.
-
-    Two-sided inverse iteration, with the two-sided Rayleigh quotient as the next shift. Raises Unsolvable.
-    """
+    docstring. Two-sided inverse iteration, shifted by the Rayleigh quotient. Raises Unsolvable."""
     w = complex(guess)
     for _ in range(NORMAL_FORM_SETTINGS.max_shifts):
         shift = w * (1 + NORMAL_FORM_SETTINGS.shift_offset)

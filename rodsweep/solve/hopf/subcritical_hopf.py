@@ -19,8 +19,7 @@ class SubcriticalHopfSettings:
     """Settings for the search for a subcritical Hopf point near the force of a rod."""
 
     max_force_ratio: float = 1.5
-    """Hopf points are searched at forces from F/`max_force_ratio` to F times `max_force_ratio`, where F is
-    the force of the rod."""
+    """Hopf points are searched from F/`max_force_ratio` to F times `max_force_ratio`, F: force of the rod."""
     accuracy: float = 1e-3
     """Relative accuracy of the coefficient c; only the sign and the first digits of c are needed."""
     max_unstable_y: float = 0.5

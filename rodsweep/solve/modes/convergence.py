@@ -81,9 +81,8 @@ def converged_modes(
 
 
 def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations: Array) -> ModeVectors:
-    """The modes `fine` with their differences from the modes `coarse` as errors; a rounding error is added to
-    the errors of the condition numbers. separations: distance from each eigenvalue to the nearest other
-    eigenvalue, (modes,)."""
+    """The modes `fine` with their differences from the modes `coarse` as errors; rounding is added to the
+    errors of the condition numbers. separations: distance to the nearest other eigenvalue, (modes,)."""
     error = np.zeros(len(fine.condition))
     pairs = (
         (coarse.right_modes, fine.right_modes),

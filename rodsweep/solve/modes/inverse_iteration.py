@@ -60,8 +60,7 @@ class ModeVectors:
     """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each divided by the largest value of the same field,
     (modes,)."""
     condition_error: Array
-    """Relative error of `condition`, (modes,). `condition_error` and `mode_error` are NaN until two meshes
-    are compared."""
+    """Relative error of `condition`, (modes,); NaN, like `mode_error`, until two meshes are compared."""
 
     def errors_by_name(self) -> dict[str, float]:
         """Largest relative errors over all modes, by name ("modes", "condition numbers"); inf if unknown."""
@@ -89,8 +88,7 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
 
 
 def nan_mode_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
-    """Placeholder for modes that were not computed: all entries NaN. modes, points: numbers of modes and
-    points."""
+    """Placeholder for modes that were not computed: all entries NaN. modes, points: their numbers."""
     shape = np.full((2, modes, points), COMPLEX_NAN)
     numbers = np.full(modes, np.nan)
     return ModeVectors(

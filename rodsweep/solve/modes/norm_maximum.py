@@ -49,11 +49,8 @@ def largest_propagator_norm(
     propagator: Propagator, span: tuple[float, float], abscissa: float, floor: float, tolerance: float
 ) -> tuple[tuple[float, float], float]:
     """Returns ((maximum of |exp(L t)|, time of the maximum), upper bound of |exp(L t)|) for times from
-    span[0] to span[1], in tau2.
-
-    tolerance: relative tolerance of the bound. floor: norms below this are not searched for. abscissa: upper
-    bound, at least 0, of the numerical abscissa.
-    """
+    span[0] to span[1], in tau2. tolerance: relative tolerance of the bound. floor: norms below this are not
+    searched for. abscissa: upper bound, at least 0, of the numerical abscissa."""
     low, high = span
     count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.first_grid_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)

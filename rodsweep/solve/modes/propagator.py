@@ -98,8 +98,7 @@ class Propagator:
         return k
 
     def propagators_at(self, times: Array) -> Array:
-        """The matrix exp(L_k t) (Z^T Q)^-1, whose norm is |exp(L t) P_k|, at each of `times`: (times, k,
-        k)."""
+        """The matrix exp(L_k t) (Z^T Q)^-1, of norm |exp(L t) P_k|, at each of `times`: (times, k, k)."""
         return matrix_exponential(self.generator * times[:, None, None]) @ np.linalg.inv(self.overlap)
 
     def norm_and_log_slope(self, time: float) -> tuple[float, float]:
@@ -109,10 +108,8 @@ class Propagator:
         return float(sizes[0]), float(u[:, 0] @ self.generator @ u[:, 0])
 
     def squared_norms_and_curvature_bounds(self, times: Array) -> tuple[Array, Array]:
-        """Returns (N^2, c), (times,) each, at each of `times`, in tau2.
-
-        N = |exp(L t)|. c bounds a curvature: f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1.
-        """
+        """Returns (N^2, c), (times,) each, at each of `times`, in tau2. N = |exp(L t)|. c bounds a curvature:
+        f'' >= -c for f = |exp(L t) v|^2 with any |v| = 1."""
         E = self.propagators_at(times)
         first = self.generator @ E
         half = np.swapaxes(E, 1, 2) @ (self.generator @ first) + np.swapaxes(first, 1, 2) @ first
@@ -120,8 +117,7 @@ class Propagator:
         return size, np.maximum(-np.linalg.eigvalsh(half + np.swapaxes(half, 1, 2))[:, 0], 0.0)
 
     def truncation_contribution(self, m: int, time: float) -> float:
-        """|exp(L t) (P_k - P_m)|, the contribution of the modes m + 1 to k at `time`; m < k must not split a
-        complex pair."""
+        """|exp(L t) (P_k - P_m)|, of the modes m + 1 to k at `time`; m < k must not split a complex pair."""
         E = self.propagators_at(np.array([time]))[0]
         E[:m, :m] -= matrix_exponential(self.generator[:m, :m] * time) @ np.linalg.inv(self.overlap[:m, :m])
         return float(np.linalg.norm(E, 2))
@@ -137,10 +133,8 @@ def _orthonormal_basis(vectors: NDArray, w: NDArray) -> Array:
 
 def matrix_exponential(matrices: Array) -> Array:
     """exp of one small matrix or a stack of matrices, (..., k, k), by Taylor series, scaling and squaring.
-
     The function squares exp - 1 instead of exp: in a block triangular matrix with slow and fast blocks, the
-    slow blocks then keep their digits, however many squarings the fast blocks need.
-    """
+    slow blocks then keep their digits, however many squarings the fast blocks need."""
     size = float(np.abs(matrices).sum(axis=-2).max())
     squarings = max(0, int(np.ceil(np.log2(size))) + 1) if size > 0 else 0
     scaled_matrices = matrices / 2.0**squarings

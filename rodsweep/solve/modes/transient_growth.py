@@ -40,13 +40,11 @@ class GrowthSettings:
     order_increase: int = 4
     """Increase of the element order from the first mesh to the second."""
     further_order_ratio: float = 1.4
-    """Element order of a further mesh, divided by the order of the mesh before; boundary layers at the tip
-    need high orders."""
+    """Element order of a further mesh over the order before; boundary layers at the tip need high orders."""
     max_meshes: int = 5
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 400
-    """Maximum number of unknowns of a further mesh; computing all modes of a larger mesh takes more than a
-    second."""
+    """Maximum number of unknowns of a further mesh; all modes of a larger mesh take more than a second."""
 
 
 GROWTH_SETTINGS = GrowthSettings()
@@ -81,19 +79,15 @@ GROWTH_BY_STABILITY = {
     False: TransientGrowth(transient_growth=inf, transient_time=inf, growth_error=0.0),
     None: TransientGrowth(growth_error=0.0),
 }
-"""`TransientGrowth` by stability (True, False, None if undecided); None for a stable rod, whose growth must
-be computed."""
+"""`TransientGrowth` by stability (True, False, None if undecided); None for a stable rod: to be computed."""
 UNKNOWN_GROWTH = TransientGrowth(growth_error=inf)
 """Growth after a failed computation: NaN with infinite error."""
 
 
 def growth_of(rod: Rod, mesh: AnyMesh, accuracy: float, stable: bool | None, rate: float) -> TransientGrowth:
     """Numerical abscissa and transient growth of a rod, from `mesh` and finer meshes. accuracy: requested
-    relative accuracy. rate: modulus of the leading eigenvalue, in 1/tau2.
-
-    stable: whether the rod is stable, None if undecided. The growth is inf for an unstable rod, NaN if
-    undecided.
-    """
+    relative accuracy. rate: modulus of the leading eigenvalue, in 1/tau2. stable: whether the rod is stable,
+    None if undecided. The growth is inf for an unstable rod, NaN if undecided."""
     best_growth = UNKNOWN_GROWTH
     min_error = inf
     abscissa = numerical_abscissa(rod, pencil_on(mesh))

@@ -80,11 +80,8 @@ def residual(ts: int, t: float, U: int, Udot: int, R: int, context: int) -> int:
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER)
 def no_explicit_part(ts: int, t: float, U: int, F: int, context: int) -> int:
-    """PETSc's explicit right-hand side F = 0: all of f is implicit.
-
-    Without a right-hand side, PETSc from 3.20 on treats the rod as a differential-algebraic system and
-    computes the first slope of each step by an additional Newton solve.
-    """
+    """PETSc's explicit right-hand side F = 0: all of f is implicit. Without it, PETSc from 3.20 on treats the
+    rod as a differential-algebraic system, with an additional Newton solve in each step."""
     c = record_at(context, CONTEXT_DTYPE)
     scratch = context + OUTPUTS_OFFSET
     write_array(F, scratch)
@@ -158,11 +155,8 @@ class CallbackWorkspace:
 
     def set_rod_and_tolerances(self, beam: Beam, error: float, floor: float) -> None:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
-        stage.
-
-        error: Newton's method stops when the estimated error of a stage is at most this. floor: if the Newton
-        steps stagnate below this size, the stagnation is attributed to rounding errors.
-        """
+        stage. error: Newton's method stops when the estimated error of a stage is at most this. floor: if the
+        Newton steps stagnate below this size, the stagnation is attributed to rounding errors."""
         self._rod_arrays = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
         self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
         self._set_context_fields(

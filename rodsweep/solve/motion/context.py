@@ -1,5 +1,4 @@
-"""Context record that PETSc passes to every callback of a TS: rod, mesh, steps, and state of Newton's
-method."""
+"""Context record that PETSc passes to every callback of a TS: rod, mesh, steps, Newton's method."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,8 +17,7 @@ from .time_scheme import EXTRAPOLATION_POINTS
 CONSTANTS_PER_JUMP_SIDE = len(SIDE_COLUMNS)
 """Number of material constants that are stored for each side of a jump of the material."""
 MAX_STAGES = 1 + max(max(stages) for stages in EXTRAPOLATION_POINTS.values())
-"""Maximum number of stages of a time step that are stored for extrapolation, including the state at the
-start."""
+"""Maximum number of stages of a time step stored for extrapolation, including the state at the start."""
 MAX_STAGE_POINTS = max(
     len(this) + len(last) for stages in EXTRAPOLATION_POINTS.values() for this, last in stages.values()
 )
@@ -93,8 +91,7 @@ OUTPUTS_OFFSET, MATRIX_STATE_OFFSET = (CONTEXT_FIELDS[name][1] for name in ("out
 """Offsets, in bytes, of the fields of `CONTEXT_DTYPE` into which PETSc's functions write."""
 
 UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
-"""Values of `matrix_due`: no new matrix is due, or a new matrix is due at the state `base` or at the current
-iterate of Newton's method."""
+"""Values of `matrix_due`: no new matrix, or one at the state `base` or at the current Newton iterate."""
 
 
 def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:

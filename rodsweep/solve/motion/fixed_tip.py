@@ -49,10 +49,9 @@ FIXED_TIP_SETTINGS = FixedTipSettings()
 
 
 def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
-    """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L.
-
-    A target beyond `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails
-    on the path of targets, the state for the last target reached is returned."""
+    """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L. A target beyond
+    `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails on the path of
+    targets, the state for the last target reached is returned."""
     bending = _BentRod(beam)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.

@@ -27,8 +27,7 @@ from .time_scheme import TimeScheme
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IntegratorSettings:
-    """Settings for runs of the time integration: tolerances, limits, and the run in
-    `relax_fast_components`."""
+    """Settings of the time integration: tolerances, limits, and the run in `relax_fast_components`."""
 
     stagnation_ratio: float = 1e-9
     """Newton's method for a stage stops, as converged, if it stagnates at steps whose rms size, divided by
@@ -45,11 +44,9 @@ class IntegratorSettings:
     relaxation_duration_ratio: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
     relaxation_steps_per_period: float = 1e5
-    """Period divided by the first time step in `relax_fast_components`; the fast components decay within ten
-    steps."""
+    """Period over the first time step in `relax_fast_components`; fast components decay within ten steps."""
     relaxation_tolerance: float = 1e-3
-    """Relative local error per time step of the run that relaxes the fast components (see
-    `relax_fast_components`)."""
+    """Relative local error per time step in `relax_fast_components`."""
     max_pooled_integrators: int = 8
     """Maximum number of integrators in the pool, which serve further runs with the same mesh and scheme."""
 
@@ -65,9 +62,8 @@ RELAXATION_SCHEME = TimeScheme(
 
 class EndReason(IntEnum):
     """Reason why a run of the time integration ended. reached: end of the duration. stopped: the condition
-    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps:
-    `RunLimit.max_steps`. failed: an error or a failed step of PETSc, or a state that is not
-    finite."""
+    `RunLimit.is_reached`. left_the_model: a stretch h1 <= 0. too_many_steps: `RunLimit.max_steps`. failed: an
+    error or a failed step of PETSc, or a state that is not finite."""
 
     reached = 0
     stopped = 1
@@ -205,8 +201,7 @@ class Integrator:
         return 3 * 8 * self.vector.size**2
 
     def destroy(self) -> None:
-        """Frees the PETSc objects. Garbage collection would not free them, because TS and integrator refer to
-        each other."""
+        """Frees the PETSc objects: TS and integrator refer to each other, so garbage collection would not."""
         for petsc_object in (self.ts, self.workspace, self.matrix, self.vector):
             petsc_object.destroy()
 
@@ -217,8 +212,7 @@ _integrators: LruPool[tuple[Mesh, TimeScheme], Integrator] = LruPool(
 
 
 def integrator(mesh: Mesh, scheme: TimeScheme) -> Integrator:
-    """The pooled integrator for `mesh` and `scheme`; replaced by a new integrator after an error inside
-    PETSc."""
+    """The pooled integrator for `mesh` and `scheme`; a new one after an error inside PETSc."""
     key = mesh, scheme
     if _integrators.get(key).is_broken:
         _integrators.destroy_object(key)

@@ -34,8 +34,7 @@ class LeadingMode:
 
 
 def leading_mode(beam: Beam) -> LeadingMode:
-    """The leading mode of the straight rod, from the transverse block of the Jacobian; the axial block is
-    decoupled."""
+    """The leading mode of the straight rod, from the transverse block of the Jacobian."""
     layout = beam.layout
     rest_state = np.zeros(layout.unknown_count)
     J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest_state)).T).T

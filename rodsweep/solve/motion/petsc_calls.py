@@ -17,8 +17,7 @@ PETSC_ENUM = types.int32
 
 def _int_function(name: str, *arguments: Any) -> Any:
     """The libpetsc function `int name(arguments)` for compiled code. Compiled code that calls a function of
-    this type can be cached on disk; code that calls a ctypes function cannot.
-    """
+    this type can be cached on disk; code that calls a ctypes function cannot."""
     return _compiled_symbol(name, typing.signature(types.int32, *arguments))
 
 

@@ -23,16 +23,14 @@ from .time_scheme import EXTRAPOLATION_POINTS
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StagePredictorSettings(KernelConstants):
-    """Settings for the prediction of Runge-Kutta stages and for the state at which Newton's matrix is
-    evaluated."""
+    """Settings for the prediction of Runge-Kutta stages and for the state of Newton's matrix."""
 
     max_extrapolated_step_ratio: float = 2.0
     """Stages are extrapolated only if this step is at most `max_extrapolated_step_ratio` times as long as the
     last step. With 1, no growing step would be extrapolated: Newton's method would stop too early at PETSc's
     prediction, with errors of a motion five times as large."""
     matrix_time_fraction: float = 0.5
-    """Time at which the state for Newton's matrix is predicted, as a fraction of the step; 0 (the start) for
-    methods of a single stage."""
+    """Time at which the state for Newton's matrix is predicted, in steps; 0 for methods of a single stage."""
     ranges: ClassVar = {"max_extrapolated_step_ratio": (1.0, inf)}
 
 
@@ -44,10 +42,8 @@ UNUSED_POINT = -1
 
 def extrapolation_points_of(variant: str) -> NDArray[np.int64]:
     """Indices of the stages through which each stage is extrapolated, for the ARKIMEX type `variant`,
-    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are UNUSED_POINT.
-
-    Stage k of this step has the index k, stage k of the last step the index MAX_STAGES + k.
-    """
+    (MAX_STAGES, MAX_STAGE_POINTS); unused entries are UNUSED_POINT. Stage k of this step has the index k,
+    stage k of the last step the index MAX_STAGES + k."""
     points = np.full((MAX_STAGES, MAX_STAGE_POINTS), UNUSED_POINT)
     for stage, (current_stages, last_stages) in EXTRAPOLATION_POINTS.get(variant, {}).items():
         known_points = [*current_stages, *(MAX_STAGES + k for k in last_stages)]

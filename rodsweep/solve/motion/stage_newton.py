@@ -49,8 +49,7 @@ from .predictor import predict_stage, store_stage
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StageNewtonSettings(KernelConstants):
-    """Settings of Newton's method for a stage of a time step. The contraction is the ratio of successive
-    Newton steps."""
+    """Settings of Newton's method for a stage. The contraction is the ratio of successive Newton steps."""
 
     new_matrix_contraction: float = 0.3
     """If the contraction exceeds this, a new matrix is computed at the current iterate."""
@@ -80,11 +79,8 @@ ITERATING, STEP_SMALL, NOT_FINITE, NOT_CONTRACTING = 0, 4, -4, -5
 @compiled
 def linearise_at_start(c: Any) -> None:
     """After a failed stage, requests that the matrix of the repeated, shorter step be evaluated at the start
-    of the step. c: context record (`CONTEXT_DTYPE`).
-
-    The last matrix may belong to a diverged iterate and have entries that are not finite; with such a matrix
-    all shorter steps would fail.
-    """
+    of the step. c: context record (`CONTEXT_DTYPE`). The last matrix may belong to a diverged iterate and
+    have entries that are not finite; with such a matrix all shorter steps would fail."""
     doubles_at(c.base, c.unknowns)[:] = states_of(c)[c.current * MAX_STAGES]
     c.matrix_due = AT_BASE
 
@@ -132,8 +128,7 @@ def test_newton_convergence(  # noqa: PLR0913, PLR0917 - PETSc's signature
     snes: int, iteration: int, x: float, dx: float, size: float, reason: int, context: int
 ) -> int:
     """Stopping test for PETSc's Newton method, called after every iteration: writes the SNESConvergedReason
-    to the address `reason`. iteration: number of iterations made. dx, size: 2-norms of the Newton step and of
-    the residual."""
+    to the address `reason`. iteration: their number. dx, size: 2-norms of Newton step and residual."""
     c = record_at(context, CONTEXT_DTYPE)
     reason_array = numba.carray(pointer(reason), (1,), np.int32)
     reason_array[0] = ITERATING
@@ -217,8 +212,7 @@ def newton_step(c: Any, scratch: int, X: int) -> float:
 
 @c_function(POINTER, POINTER)
 def solve_stage(snes: int, X: int) -> int:
-    """Solves for the stage X by Newton's method from its prediction; sets the converged reason and the number
-    of iterations in `snes`."""
+    """Solves for the stage X by Newton's method from its prediction; sets reason and iterations in `snes`."""
     address = np.empty(1, np.int64)
     context_of_snes(snes, address.ctypes.data)
     context = address[0]

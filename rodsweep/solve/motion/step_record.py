@@ -1,5 +1,4 @@
-"""Storage of the time steps of a run in compiled code: a Python call after each step would take 1/7 of the
-time."""
+"""Storage of the time steps of a run in compiled code: Python calls would take 1/7 of the time."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -43,8 +42,7 @@ CONVERGED_USER = int(PETSc.TS.ConvergedReason.CONVERGED_USER)
 @compiled
 def store_step(c: Any, scratch: int, ts: int) -> int:
     """Stores time and state of `ts` as a row of the record, and returns PETSc's error code; ends the run if
-    h1 <= 0 at a node, where the model is not valid. c: context record (`CONTEXT_DTYPE`). scratch: address for
-    outputs."""
+    h1 <= 0 at a node. c: context record (`CONTEXT_DTYPE`). scratch: address for outputs."""
     n = c.unknowns
     outputs = integers_at(scratch, 3)
     if c.stored == c.capacity:
@@ -93,8 +91,7 @@ def _free_address(address: int) -> None:
 
 
 def take_steps(context: Any) -> Array:
-    """Rows (time, state) of the time steps stored in `context`, (steps, 1 + unknowns); frees the memory of
-    the stored steps."""
+    """Rows (time, state) of the steps stored in `context`, (steps, 1 + unknowns); frees their memory."""
     address = int(context["rows"])
     row_count = int(context["stored"])
     columns = int(context["unknowns"]) + 1

@@ -24,8 +24,7 @@ from .problem import TransverseProblem
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(KernelConstants):
     """Settings for the eigenvalues of a mesh, and for the vertical lines to the right of which eigenvalues
-    are counted.
-    """
+    are counted."""
 
     max_waves_per_node: float = 2.0
     """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
@@ -59,11 +58,8 @@ CANDIDATE_SETTINGS = CandidateSettings()
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Outcome of one attempt on `mesh`: k roots of D, sorted as defined in `rodsweep.model`.
-
-    vectors: eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or
-    empty.
-    """
+    """Outcome of one attempt on `mesh`: k roots of D, sorted as defined in `rodsweep.model`. vectors:
+    eigenvectors on the mesh, (unknowns, k), or None. failure: error message of SLEPc or LAPACK, or empty."""
 
     mesh: AnyMesh
     roots: Roots
@@ -123,10 +119,8 @@ def candidates_on_mesh(
 
 def compare_with_count(problem: TransverseProblem, roots: Roots, modes: int) -> CountComparison:
     """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the
-    eigenvalues found.
-
-    The line lies to the left of the `modes` leading eigenvalues and of all unstable eigenvalues.
-    """
+    eigenvalues found. The line lies to the left of the `modes` leading eigenvalues and of all unstable
+    eigenvalues."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
     line = line_for_proof(w[modes - 1], errors[modes - 1])
@@ -143,10 +137,7 @@ def compare_with_count(problem: TransverseProblem, roots: Roots, modes: int) -> 
 
 def line_for_proof(last: complex, error: float) -> float:
     """Real part <= 0 of the line of a proof without a count, to the left of the last wanted eigenvalue and of
-    all unstable eigenvalues.
-
-    last, error: the last wanted eigenvalue and its absolute error.
-    """
+    all unstable eigenvalues. last, error: the last wanted eigenvalue and its absolute error."""
     return min(
         last.real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error

@@ -74,23 +74,18 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of a mesh, (n,).
-
-        max_q: largest wave number |q| that the mesh represents.
-        """
+        """Roots of D refined from the eigenvalues `mesh_eigenvalues` of a mesh, (n,). max_q: largest wave
+        number |q| that the mesh represents."""
 
     @abstractmethod
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
         """Proved number of eigenvalues with Re w > line. roots: known roots of D, which make the count of an
-        arm faster.
-        """
+        arm faster."""
 
     def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `roots` contains all eigenvalues
-        to the right of `line`. evaluations: number of evaluations of D.
-
-        The proof needs no count. For a uniform rod, whose count is fast, no proof is tried.
-        """
+        to the right of `line`. evaluations: number of evaluations of D. The proof needs no count. For a
+        uniform rod, whose count is fast, no proof is tried."""
         return False, 0
 
     @cached_property
@@ -130,10 +125,8 @@ class UniformProblem(TransverseProblem):
 
 
 class ArmProblem(TransverseProblem):
-    """The transverse eigenvalue problem of an arm that is not a uniform rod of linear material.
-
-    to_prove: number of leading modes to be proved complete; 0 if no proof is requested.
-    """
+    """The transverse eigenvalue problem of an arm that is not a uniform rod of linear material. to_prove:
+    number of leading modes to be proved complete; 0 if no proof is requested."""
 
     is_count_slow = True
 
@@ -167,8 +160,7 @@ class ArmProblem(TransverseProblem):
 
     def _eigenvalues_for_proof(self, mesh_eigenvalues: Complex) -> tuple[NDArray[np.bool_], float]:
         """Returns (mask, size). mask: which of the eigenvalues `mesh_eigenvalues` the proof will need, (n,).
-        size: largest |w| at which the proof needs D; 0 if unknown.
-        """
+        size: largest |w| at which the proof needs D; 0 if unknown."""
         needed_mask = np.isfinite(mesh_eigenvalues)
         if not self._modes_to_prove or not self.has_bound or needed_mask.sum() < self._modes_to_prove:
             return needed_mask, 0.0

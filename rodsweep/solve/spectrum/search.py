@@ -53,8 +53,7 @@ def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
 
 def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod, with rescaled
-    eigenvalues.
-    """
+    eigenvalues."""
     linear, rate = rod.equivalent_linear_rod
     scaled = solve_spectrum(linear, request)
     return replace(scaled, eigenvalues=rate * scaled.eigenvalues, error_estimate=rate * scaled.error_estimate)
@@ -67,8 +66,7 @@ def warm_up() -> None:
 
 class SpectrumSearch:
     """Search for the leading eigenvalues of one rod: the next mesh, the best candidates, the failures so far.
-    requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`.
-    """
+    requested: number of eigenvalues in the first request; default: modes plus `additional_eigenvalues`."""
 
     def __init__(self, rod: Rod, request: SpectrumRequest, requested: int | None = None):
         self.problem = transverse_problem(rod, request.modes if request.certify else 0)
@@ -142,8 +140,7 @@ class SpectrumSearch:
 
     def error_over_limit(self, candidates: Candidates, comparison: CountComparison | None) -> float:
         """The largest ratio of an error of the candidates to the allowed error. Eigenvectors, and eigenvalues
-        without a proof, also need a mesh whose eigenvalues are close to the roots of D.
-        """
+        without a proof, also need a mesh whose eigenvalues are close to the roots of D."""
         error = candidates.worst_error(self.modes) / self.request.accuracy
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error

@@ -112,8 +112,7 @@ class LoadedPencil(NamedTuple):
 class ShiftInvertSolver(ABC):
     """Krylov-Schur solver for pencils of one sparsity pattern; `solve` may be called any number of times.
     mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
-    A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver.
-    """
+    A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver."""
 
     def __init__(self, pattern: PencilPattern, mass: Array):
         self.node_count = pattern.node_count
@@ -215,10 +214,8 @@ class ShiftInvertSolver(ABC):
     @property
     def memory_bytes(self) -> int:
         """Estimated memory of a solver, in bytes: matrices with factors, Krylov space and projected matrices.
-
         Destroying a solver frees 0.5 to 0.9 of this estimate, measured with up to 640 Krylov vectors; pencils
-        stay in memory.
-        """
+        stay in memory."""
         n = len(self.row_starts) - 1
         krylov = self.eps.getDimensions()[1] + 1
         matrices = (

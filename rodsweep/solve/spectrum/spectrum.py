@@ -107,11 +107,8 @@ def modes_at_lobatto_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, vectors: Complex | None
 ) -> Complex | None:
     """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `vectors`
-    is None.
-
-    vectors: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1 and is
-    NaN.
-    """
+    is None. vectors: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1
+    and is NaN."""
     if vectors is None:
         return None
     solver = problem.solver(mesh)
@@ -122,10 +119,8 @@ def modes_at_lobatto_nodes(
 
 
 def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
-    """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w.
-
-    w, error: arrays of equal shape. rod: the rod, or any rod of the path of these eigenvalues.
-    """
+    """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w. w, error: arrays
+    of equal shape. rod: the rod, or any rod of the path of these eigenvalues."""
     rounding = (
         SPECTRUM_ERROR_SETTINGS.rounding
         if rod.is_uniform_and_linear

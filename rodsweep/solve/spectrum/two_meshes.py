@@ -54,10 +54,8 @@ TWO_MESH_SETTINGS = TwoMeshSettings()
 
 
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised.
-
-    No result is proved; `request.certify` is ignored.
-    """
+    """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised. No
+    result is proved; `request.certify` is ignored."""
 
     def failed(cause: str) -> Spectrum:
         destroy_pooled_solvers()
@@ -129,8 +127,7 @@ def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
 
 class _MeshEigenvalues(NamedTuple):
     """Eigenvalues w of a mesh, (k,), sorted as defined in `rodsweep.model`, and their indices in SLEPc's
-    list, (k,).
-    """
+    list, (k,)."""
 
     w: Complex
     indices: NDArray[np.intp]
@@ -138,10 +135,7 @@ class _MeshEigenvalues(NamedTuple):
 
 def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
     """Sorted eigenvalues of a mesh. The requested number is doubled until the `modes` leading eigenvalues no
-    longer change.
-
-    The result is empty if the mesh is too coarse for a doubled request.
-    """
+    longer change. The result is empty if the mesh is too coarse for a doubled request."""
     solver = problem.solver(mesh)
     requested = modes + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
@@ -195,8 +189,7 @@ def _spectrum_of_mesh(
     error: Array,
 ) -> Spectrum:
     """The spectrum of one mesh, with the status from the errors. error: absolute error of each found
-    eigenvalue, (k,).
-    """
+    eigenvalue, (k,)."""
     w = eigenvalues.w
     modes = request.modes
     is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())

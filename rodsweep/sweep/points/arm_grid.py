@@ -79,15 +79,13 @@ def grid_of_arms(
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
     """Values of `quantity` for all arms, (arms, 1, 1); nan for None, which stands for an arm outside the rod
-    model.
-    """
+    model."""
     return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
 def _arm_or_status(section: ArmConfig, values: Mapping[str, float]) -> tuple[SlenderArm | None, int]:
     """Returns (arm without load, status code). The arm is None if the rod model does not apply. values:
-    quantities of the arm in SI units, by name.
-    """
+    quantities of the arm in SI units, by name."""
     try:
         return section.arm_of(values), SLENDER
     except ArmOutsideModel as error:
@@ -97,10 +95,8 @@ def _arm_or_status(section: ArmConfig, values: Mapping[str, float]) -> tuple[Sle
 def _unit_load_forces(
     section: ArmConfig, arms: Sequence[SlenderArm | None], tapers: Array | None, flutter: FlutterSearch
 ) -> ForceArray:
-    """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm.
-
-    tapers: values, (n,), that replace the arms' taper; None for no replacement.
-    """
+    """Dimensionless force F of a unit load (see `_unit_load_force`) on each arm. tapers: values, (n,), that
+    replace the arms' taper; None for no replacement."""
     given_tapers = (
         [None] if tapers is None or section.load_key not in LOAD_OF_RATIO else tapers.ravel().tolist()
     )
@@ -114,11 +110,9 @@ def _unit_load_forces(
 def _unit_load_force(
     section: ArmConfig, arm: SlenderArm | None, taper: float | None, flutter: FlutterSearch
 ) -> FlutterForce:
-    """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load.
-
-    The unit load is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces
-    the arm's taper unless None.
-    """
+    """Dimensionless force F of a unit load on an arm; NO_FORCE if `arm` is None or has no load. The unit load
+    is 1 Pa or 1 N; for a load relative to flutter, the load at first flutter. taper: replaces the arm's taper
+    unless None."""
     if arm is None or not section.load:
         return NO_FORCE
     if section.load_key in LOAD_OF_RATIO:
@@ -127,21 +121,17 @@ def _unit_load_force(
 
 
 def _with_flutter_codes(codes: Array, flutter: Array) -> Array:
-    """Status codes `codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value.
-
-    flutter: F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms,
-    loads, n).
-    """
+    """Status codes `codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value. flutter:
+    F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms, loads,
+    n)."""
     rod_codes = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     result: Array = np.where(codes == SLENDER, rod_codes, codes)
     return result
 
 
 def _search_failures(codes: Array, forces: ForceArray) -> dict[int, str]:
-    """Reasons why the search for flutter failed, by flat index of the point.
-
-    codes: status codes, (arms, loads, combinations of replaced parameters).
-    """
+    """Reasons why the search for flutter failed, by flat index of the point. codes: status codes, (arms,
+    loads, combinations of replaced parameters)."""
     force_of_points = np.broadcast_to(forces, codes.shape).ravel()
     return {int(index): force_of_points[index].failure for index in np.flatnonzero(codes == FLUTTER_UNKNOWN)}
 
@@ -169,6 +159,5 @@ def _refuse_grid_without_rods(
 
 def _along_dimension(dimension: int, values: Any) -> Array:
     """`values`, (n,), as an array with three dimensions, along dimension 0 (arms), 1 (loads) or 2 (replaced
-    parameters).
-    """
+    parameters)."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -35,8 +35,7 @@ ChainStep = Callable[[int, Any], tuple[Any, Any]]
 
 class CheckpointStore(Protocol):
     """Store of checkpoints: (flat index of the last solved point, solver state after this point) of each
-    unfinished chain of points.
-    """
+    unfinished chain of points."""
 
     def write(self, chain: int, index: int, state: State) -> None: ...
 
@@ -74,18 +73,14 @@ class Chains:
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
         """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
-        points.
-        """
+        points."""
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 
 @dataclass(frozen=True, slots=True)
 class SweepChains:
-    """The chains of a sweep, and how to solve them.
-
-    solve_from: solves a point from a state. state_from_arrays: makes a state from the arrays of
-    `ChainState.arrays`.
-    """
+    """The chains of a sweep, and how to solve them. solve_from: solves a point from a state.
+    state_from_arrays: makes a state from the arrays of `ChainState.arrays`."""
 
     chains: Chains
     solve_from: ChainStep
@@ -127,11 +122,8 @@ class ChainSolver:
 
     def _resume(self, chain: int, order: list[int]) -> tuple[int, State]:
         """Returns (position in the chain of the first point to solve, its initial state). order: flat indices
-        of the points of the chain in the order of solution.
-
-        The checkpoint is used if no point up to the checkpoint is missing; otherwise the chain starts again
-        without an initial state.
-        """
+        of the points of the chain in the order of solution. The checkpoint is used if no point up to the
+        checkpoint is missing; otherwise the chain starts again without an initial state."""
         checkpoint = self.checkpoints.read(chain)
         if checkpoint is None or checkpoint[0] not in order:
             return 0, None

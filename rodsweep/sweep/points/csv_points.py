@@ -23,11 +23,9 @@ memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD) -> tuple[Array, ...]:
-    """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`.
-
-    The header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a
-    file without points, or parameter values outside the model.
-    """
+    """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`. The
+    header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a file
+    without points, or parameter values outside the model."""
     try:
         if path.exists() and not path.is_file():  # opening a pipe would wait for its other end
             raise InputError(f"parameters.points: {path} is not a file")
@@ -53,10 +51,8 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD
 
 
 def _header_fault(header: list[str]) -> str:
-    """Fault of a wrong header as a phrase.
-
-    A header without parameter names is not quoted: it may be anything.
-    """
+    """Fault of a wrong header as a phrase. A header without parameter names is not quoted: it may be
+    anything."""
     if "" in header and set(header) & set(PARAMETERS):
         return f"the header {short_repr(','.join(header))} has an empty name"
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):
@@ -77,8 +73,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
 
 def _row_numbers(row: list[str], header: list[str], row_text: str, build: Build) -> list[float]:
     """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
-    model. header: names of the columns. row_text: file and line, for the message.
-    """
+    model. header: names of the columns. row_text: file and line, for the message."""
     if len(row) != len(header):
         raise InputError(f"{row_text} has {len(row)} values, but the header names {len(header)}")
     numbers = []

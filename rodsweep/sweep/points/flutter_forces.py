@@ -22,10 +22,7 @@ from ...model.rod import Rod
 @dataclass(frozen=True, slots=True)
 class FlutterForce:
     """Force F of first flutter at the likeliest drag, in k3/L^2: inf if the rod does not flutter, nan if the
-    search fails.
-
-    failure: reason why the search failed, or empty.
-    """
+    search fails. failure: reason why the search failed, or empty."""
 
     F: float
     failure: str = ""
@@ -43,11 +40,8 @@ def rods_needing_flutter_force(
     section: ArmConfig | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
-    flutter.
-
-    build: constitutive law and profile from the config section `material`, None if the section is not given.
-    Raises InputError for an invalid arm.
-    """
+    flutter. build: constitutive law and profile from the config section `material`, None if the section is
+    not given. Raises InputError for an invalid arm."""
     if section is None or section.load_key not in LOAD_OF_RATIO:
         return []
     from ...verdict.relative_load import rods_by_plane
@@ -58,8 +52,7 @@ def rods_needing_flutter_force(
 
 def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
     """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
-    an invalid arm.
-    """
+    an invalid arm."""
     for values in section.values_of_arms():
         try:
             yield section.arm_of(values)
@@ -71,8 +64,7 @@ def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
 
 def flutter_force_of_rod(rod: Rod) -> FlutterForce:
     """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason; no
-    exception is raised.
-    """
+    exception is raised."""
     from ...verdict.relative_load import FlutterSearchFailed, first_hopf_force
 
     try:

@@ -30,8 +30,7 @@ from .points import Points
 
 def grid_size(config: Config) -> int:
     """Number of points of a grid of parameters, without computing the values on the axes; 0 for a list or a
-    grid over an arm's quantities.
-    """
+    grid over an arm's quantities."""
     if config.parameters.is_list or config.parameters.arm_axes:
         return 0
     return math.prod(config.parameters.axes[name].size for name in config.parameter_names)
@@ -39,11 +38,8 @@ def grid_size(config: Config) -> int:
 
 def points_of(config: Config, directory: Path, flutter: FlutterForces | None = None) -> Points:
     """Points of the sweep that a config describes; raises InputError for a parameter value outside the model,
-    and for an invalid file of points.
-
-    directory: folder of relative file names. flutter: flutter forces of all rods of
-    `rods_for_flutter_forces`; if None, the forces are computed here.
-    """
+    and for an invalid file of points. directory: folder of relative file names. flutter: flutter forces of
+    all rods of `rods_for_flutter_forces`; if None, the forces are computed here."""
     parameters = config.parameters
     for name, value in parameters.constant_parameters.items():
         require_in_range(PARAMETERS[name].allowed, name, (value,))
@@ -68,11 +64,8 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
 
 def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
     """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
-    rods.
-
-    None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
-    MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,).
-    """
+    rods. None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
+    MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,)."""
     count = math.prod(map(len, axes.values()))
     if not set(CRUSHING_PARAMETERS) <= axes.keys() or count > MAX_ARM_GRID_POINTS:
         return None
@@ -99,10 +92,8 @@ def rods_for_flutter_forces(config: Config) -> list[Rod]:
 def require_in_range(
     allowed: Range, name: str, values: Iterable[float], place: str = "", reason: str = ""
 ) -> None:
-    """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`.
-
-    place, reason: phrases inserted into the message after the value and at the end.
-    """
+    """Raises InputError for the first of `values` outside the range `allowed` of the parameter `name`. place,
+    reason: phrases inserted into the message after the value and at the end."""
     invalid = allowed.first_outside(values)
     if invalid is not None:
         described = allowed.description_for(invalid)
@@ -115,10 +106,8 @@ def refuse_invalid_axes(
     axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = DEFAULT_BUILD
 ) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
-
     axes: values, (n,), by name of the parameter. allows_crushed_rods: whether some rods, but not all rods, of
-    the grid may be crushed.
-    """
+    the grid may be crushed."""
     for name, column in axes.items():
         require_in_range(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING_PARAMETERS) <= axes.keys():
@@ -139,10 +128,8 @@ def refuse_invalid_axes(
 
 
 def _refuse_crushed(F: Array, k1: Array, is_partial: bool) -> None:
-    """Raises InputError if any rod of a grid is crushed or, with `is_partial`, if all rods are crushed.
-
-    F, k1: values on the axes, (n,). is_partial: whether some rods may be crushed.
-    """
+    """Raises InputError if any rod of a grid is crushed or, with `is_partial`, if all rods are crushed. F,
+    k1: values on the axes, (n,). is_partial: whether some rods may be crushed."""
     if is_partial and F.min() >= k1.max():
         raise InputError(
             f"parameters.F starts at {F.min():.15g} and parameters.k1 ends at {k1.max():.15g}; the rod is "

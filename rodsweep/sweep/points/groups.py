@@ -61,11 +61,9 @@ class PointGroups:
 
     @property
     def count(self) -> int:
-        """Number of groups in the grid.
-
-        PointGroups are ordered by position along the axis, and at equal positions in row-major order of the
-        remaining axes. Consecutive groups are therefore neighbours in the file.
-        """
+        """Number of groups in the grid. PointGroups are ordered by position along the axis, and at equal
+        positions in row-major order of the remaining axes. Consecutive groups are therefore neighbours in the
+        file."""
         return self.line_count * -(-self.shape[self.axis] // GROUP_POINTS)
 
     def indices(self, group: int) -> NDArray[np.int64]:
@@ -98,8 +96,7 @@ class PointGroups:
 
     def missing_total(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
         """Number of missing points in the given groups. groups: ranges of group numbers. missing:
-        ranges of flat indices.
-        """
+        ranges of flat indices."""
         missing_points = IndexSet(missing)
         number = 0
         for start, end in groups:
@@ -111,11 +108,8 @@ class PointGroups:
 
 def groups_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) -> PointGroups | None:
     """Groups of a grid along the first of its longest usable axes; None if no usable axis has
-    MIN_GROUP_AXIS_VALUES values.
-
-    shape: shape of the grid. varied: the only parameter that varies along each axis; "" for an axis of
-    several parameters, which is not usable.
-    """
+    MIN_GROUP_AXIS_VALUES values. shape: shape of the grid. varied: the only parameter that varies along each
+    axis; "" for an axis of several parameters, which is not usable."""
     followable_axes = [axis for axis, name in enumerate(varied) if name]
     axis = max(followable_axes, key=lambda i: shape[i], default=None)
     return PointGroups(shape, axis) if axis is not None and shape[axis] >= MIN_GROUP_AXIS_VALUES else None
@@ -136,11 +130,9 @@ class GroupSolver:
     missing: IndexSet
 
     def __call__(self, group: int) -> Iterator[tuple[NDArray[np.int64] | int, Any]]:
-        """Solves a group of points; yields (flat indices, (m,), `GroupResult`) of all missing points that
-        are solved together, then (flat index, outcome) of each further missing point.
-
-        A run that ends between two points loses no point that was yielded before.
-        """
+        """Solves a group of points; yields (flat indices, (m,), `GroupResult`) of all missing points that are
+        solved together, then (flat index, outcome) of each further missing point. A run that ends between two
+        points loses no point that was yielded before."""
         indices = self.groups.indices(group)
         result = self.solve_group(indices)
         missing = self.missing[indices]

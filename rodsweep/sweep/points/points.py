@@ -26,9 +26,7 @@ in combination with neutral values are invalid in every combination."""
 @dataclass(frozen=True, slots=True)
 class Points:
     """Points of a sweep: a grid of parameters (row-major, the last axis fastest), or columns of equal length.
-
-    Columns describe a list of points, or a grid over the quantities of an arm.
-    """
+    Columns describe a list of points, or a grid over the quantities of an arm."""
 
     names: tuple[str, ...]
     """Name of the parameter in each element of `columns`."""
@@ -65,22 +63,19 @@ class Points:
     @property
     def varying_parameters(self) -> tuple[str, ...]:
         """Name of the only parameter that varies along each axis; "" for an axis along which several
-        parameters or no parameters vary.
-        """
+        parameters or no parameters vary."""
         return self.names if self.is_grid else tuple(map(parameter_of_axis, self.arm_axes))
 
     @property
     def identifying_arrays(self) -> list[Array]:
         """The arrays in `arm_axes` and `columns`, (n,) each. Two sweeps have the same points if all these
-        arrays are equal.
-        """
+        arrays are equal."""
         return [*self.arm_axes.values(), *self.columns]
 
     @property
     def rod_values(self) -> dict[str, Array]:
         """Values of each parameter by name, (n,) each, as in `columns`, without the points that have no
-        rod.
-        """
+        rod."""
         if self.arm_statuses is None:
             return self.columns_by_name
         return self.values_of(np.flatnonzero(self.arm_statuses == SLENDER))
@@ -118,19 +113,15 @@ class Points:
         return {name: column[index_on_axis] for name, column, index_on_axis in columns_and_indices}
 
     def rod(self, index: int, **F: float) -> Rod:
-        """Rod of the point at a flat index; raises Crushed.
-
-        The values in `F` replace the values of the point. A parameter with neither value has the value in
-        NEUTRAL_VALUES.
-        """
+        """Rod of the point at a flat index; raises Crushed. The values in `F` replace the values of the
+        point. A parameter with neither value has the value in NEUTRAL_VALUES."""
         parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **F}
         return Rod(**parameters, build=self.build_of(index))
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
         """Returns (distinct builds, indices). indices: for each point of `rod_values`, the index of its
-        build, (rods,).
-        """
+        build, (rods,)."""
         distinct_builds = list(dict.fromkeys(self.builds)) or [self.build]
         build_of_arm = np.array([distinct_builds.index(build) for build in self.builds] or [0])
         numbers = build_of_arm[np.arange(self.count) * len(build_of_arm) // self.count]
@@ -158,11 +149,8 @@ class ParameterLine:
 
 
 def lines_along(columns: Mapping[str, Array], name: str) -> Iterator[ParameterLine]:
-    """Yields the lines of points along the parameter `name`, in the order of their first points.
-
-    Points at which the parameter is inf or NaN are left out. columns: each parameter at every point,
-    (points,).
-    """
+    """Yields the lines of points along the parameter `name`, in the order of their first points. Points at
+    which the parameter is inf or NaN are left out. columns: each parameter at every point, (points,)."""
     x = columns[name]
     others = [other for other in columns if other != name]
     table = np.stack([columns[other] for other in others], axis=-1)

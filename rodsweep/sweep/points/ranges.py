@@ -1,6 +1,5 @@
 """Ranges (first, end) of flat indices of points or of numbers of work items, sets of such indices, and shards
-of a sweep.
-"""
+of a sweep."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -34,11 +33,8 @@ def merged_ranges(ranges: Iterable[IndexRange]) -> list[IndexRange]:
 
 def indices_along(shape: tuple[int, ...], axis: int, line: Any, position: Any) -> Any:
     """Flat indices of the grid points at position `position` on axis number `axis`, on the grid line number
-    `line`.
-
-    Lines along the axis are numbered in row-major order of the remaining axes. line, position: integers or
-    arrays, which broadcast to the shape of the result, (...,).
-    """
+    `line`. Lines along the axis are numbered in row-major order of the remaining axes. line, position:
+    integers or arrays, which broadcast to the shape of the result, (...,)."""
     stride = math.prod(shape[axis + 1 :])
     block, offset = np.divmod(line, stride)
     return (block * shape[axis] + position) * stride + offset
@@ -60,8 +56,7 @@ class IndexSet:
 @dataclass(frozen=True, slots=True)
 class Shard:
     """Shard `number` of `shard_count` shards of a sweep, each solved by a separate run; shard 1/1 is the
-    complete sweep.
-    """
+    complete sweep."""
 
     number: int = 1
     shard_count: int = 1
@@ -70,10 +65,8 @@ class Shard:
         return f"{self.number}/{self.shard_count}"
 
     def ranges_of_shard(self, ranges: Sequence[IndexRange], items: int) -> list[IndexRange]:
-        """Ranges of the items in `ranges` that belong to this shard.
-
-        Blocks of the sweep's `items` items are assigned to the shards in turn.
-        """
+        """Ranges of the items in `ranges` that belong to this shard. Blocks of the sweep's `items` items are
+        assigned to the shards in turn."""
         if self.shard_count == 1:
             return list(ranges)
         block = max(1, items // (self.shard_count * BLOCKS_PER_SHARD))

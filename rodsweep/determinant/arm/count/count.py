@@ -71,11 +71,9 @@ def count_right_of(
     known_w: Complex = NO_KNOWN_EIGENVALUES,
     errors: Array | float = 0.0,
 ) -> EigenvalueCount:
-    """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2.
-
-    known_w, errors: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed
-    count raises no exception: `number` is then None and `failure_reason` the reason.
-    """
+    """Number of transverse eigenvalues of an arm with Re w > line, for any real `line`, in 1/tau2. known_w,
+    errors: some eigenvalues, (n,), and their errors, (n,), which make the count faster. A failed count raises
+    no exception: `number` is then None and `failure_reason` the reason."""
     if not math.isfinite(hull.a):
         place = f"at F = {determinant.rod.F:g}"
         return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")
@@ -99,8 +97,7 @@ def count_right_of(
 
 def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     """Whether eigenvalues right of a line at Re w <= 0 can be counted: the hull is bounded, and elements
-    resolve D.
-    """
+    resolve D."""
     if not math.isfinite(hull.a):
         return False
     try:
@@ -125,9 +122,7 @@ def _phase_change(
     line: float, determinant: ArmDeterminant, hull: EigenvalueHull, known_w: Complex
 ) -> tuple[float, int]:
     """Returns (change along the upper half of the box of arg D with `known_w` divided out; number of nodes).
-
-    Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed.
-    """
+    Raises `PhaseLost` if a node's valid radius is too small, or too many nodes are needed."""
     corner = _upper_right_corner(line, hull)
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
@@ -159,12 +154,9 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
     samples: tuple[ArmSamples, ArmSamples],
     level: PropagatorsUpToW,
 ) -> ContourTraversal:
-    """Continues a traversal of the box to the end, or until propagators for another |w| are needed.
-
-    box: (corners, largest |w| for which propagators are known to exist). level: (W,
-    propagators) in use. samples: samples of the arm's coefficients, which give the lengths over which D
-    changes and the dominant wave.
-    """
+    """Continues a traversal of the box to the end, or until propagators for another |w| are needed. box:
+    (corners, largest |w| for which propagators are known to exist). level: (W, propagators) in use. samples:
+    samples of the arm's coefficients, which give the lengths over which D changes and the dominant wave."""
     corners, largest_w = box
     side, t, change, nodes, node, growth, step, _ = traversal
     while side < len(corners) - 1:
@@ -217,8 +209,7 @@ def _serves_efficiently(W: float, required_W: float) -> bool:
 def _overlapping_distance(reach: float, growth: float) -> float:
     """Distance to the next node: `radius_overlap` times the sum of the current valid radius and of the valid
     radius expected there. growth: expected change of the valid radius per distance, clipped to between -1 and
-    `max_radius_growth`.
-    """
+    `max_radius_growth`."""
     overlap = CONTOUR_SETTINGS.radius_overlap
     return 2 * overlap * reach / (1 - overlap * min(max(growth, -1.0), CONTOUR_SETTINGS.max_radius_growth))
 

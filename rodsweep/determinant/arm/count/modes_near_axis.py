@@ -46,10 +46,8 @@ NEAR_AXIS_SETTINGS = NearAxisSettings()
 
 def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: Complex) -> Complex:
     """The known eigenvalues, followed by further eigenvalues close to the imaginary axis with Im w up to
-    `max_frequency`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`.
-
-    known_w: eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm.
-    """
+    `max_frequency`, one of each conjugate pair, (n,); at most `NEAR_AXIS_SETTINGS.max_modes`. known_w:
+    eigenvalues found before, (m,). Raises FloatingPointError if no elements resolve the arm."""
     eigenvalues = known_w[: NEAR_AXIS_SETTINGS.max_modes]
     height = NEAR_AXIS_SETTINGS.first_height
     while height < max_frequency:

@@ -134,10 +134,7 @@ def covered_height(
 ) -> tuple[float, float]:
     """Returns (height, radius). height: no unknown eigenvalue lies on the line between Im w = `start` and
     `height`, at any arm; at least `top` if discs cover the line up to `top`. radius: radius of the next disc;
-    0 if a disc failed.
-
-    radii: radius of the first disc, and radius below which a disc fails.
-    """
+    0 if a disc failed. radii: radius of the first disc, and radius below which a disc fails."""
     height = start
     radius, smallest = radii
     while height < top:

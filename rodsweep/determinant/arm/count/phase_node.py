@@ -65,11 +65,9 @@ def phase_node(
     hull: EigenvalueHull,
     arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
-    """The node at w, inside or outside the hull.
-
-    known_w: eigenvalues to divide out of D, (n,). trial_radii: (length over which D changes, largest radius
-    of a circle). arm: samples of the arm, and the propagators for |v| <= W on the largest circle about w.
-    """
+    """The node at w, inside or outside the hull. known_w: eigenvalues to divide out of D, (n,). trial_radii:
+    (length over which D changes, largest radius of a circle). arm: samples of the arm, and the propagators
+    for |v| <= W on the largest circle about w."""
     value = determinant_along_chain(w, arm[1][0], arm[1][1])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
@@ -97,11 +95,8 @@ def _node_inside(
     arm: tuple[ArmSamples, PropagatorsUpToW],
 ) -> PhaseNode:
     """The node at w inside the hull, with the circle whose bound of |f| gives the largest valid radius.
-
-    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D
-    changes, largest radius of a circle).
-    arm: (samples of the arm's coefficients, propagators for |w| <= W).
-    """
+    value: D at the node. known_w: known eigenvalues, divided out of D. trial: (length over which D changes,
+    largest radius of a circle). arm: (samples of the arm's coefficients, propagators for |w| <= W)."""
     w = node.w
     samples, (W, propagators) = arm
     unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
@@ -141,8 +136,7 @@ def _node_inside(
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
     """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| on the circle of
-    radius rho.
-    """
+    radius rho."""
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 

@@ -78,11 +78,9 @@ class ContourSettings(KernelConstants):
 
     @property
     def directions(self) -> tuple[complex, ...]:
-        """Unit vectors to the points of a circle, in the order of evaluation.
-
-        Successive points differ much in (v - w)^2, so that circles on which |f| is too large are mostly
-        rejected after one or two points.
-        """
+        """Unit vectors to the points of a circle, in the order of evaluation. Successive points differ much
+        in (v - w)^2, so that circles on which |f| is too large are mostly rejected after one or two
+        points."""
         order = np.arange(self.circle_points).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())
 

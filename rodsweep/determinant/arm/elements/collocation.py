@@ -53,8 +53,7 @@ from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 class IntegrationMatrices(NamedTuple):
     """Matrix of the integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights,
-    (STAGES,).
-    """
+    (STAGES,)."""
 
     integrals: Array
     weights: Array
@@ -63,11 +62,8 @@ class IntegrationMatrices(NamedTuple):
 @compiled
 def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: IntegrationMatrices) -> Array:
     """Coefficients of the propagators in powers of w/W, (n, elements, terms, PADDED); the array is empty,
-    terms = 0, if MAX_TERMS powers do not suffice.
-
-    F: forces, (n,). W: bound of |w|. local: `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths
-    of the elements, in L, (elements,).
-    """
+    terms = 0, if MAX_TERMS powers do not suffice. F: forces, (n,). W: bound of |w|. local:
+    `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths of the elements, in L, (elements,)."""
     n, elements = local.shape[1:3]
     batches = -(-elements // ARM_ELEMENT_SETTINGS.lane_count)
     coefficients = np.empty((n, batches, 6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.lane_count))
@@ -199,9 +195,7 @@ def _integrate(Q: Array, rates: Array, out: Array) -> None:
 @compiled_for_vectors
 def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
     """Writes M Q rates into out, both (STAGES, WIDTH): rates integrated after the elimination of a minor.
-
-    matrices: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH).
-    """
+    matrices: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH)."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             out[i, c] = 0.0
@@ -214,10 +208,8 @@ def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
 @compiled
 def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool:
     """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
-    negligible.
-
-    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,).
-    """
+    negligible. terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights:
+    (STAGES,)."""
     integrals = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
     _add_end_integrals(weights, rates, integrals)
     is_negligible = True

@@ -1,6 +1,5 @@
 """Boundaries between the elements of arms: elements so short that they resolve the waves and the
-coefficients.
-"""
+coefficients."""
 
 import math
 from functools import cache
@@ -54,11 +53,8 @@ def element_edges(W: float, squares: Array, tapers: Array, points: Array, breaks
 @compiled
 def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array) -> Array:
     """Number of elements per length that the local exponents and the taper require, at the points of n arms,
-    (points,).
-
-    At each point the result is the largest number of all arms. squares: products of coefficients,
-    (4, n, points). tapers: (n,). points: (points,).
-    """
+    (points,). At each point the result is the largest number of all arms. squares: products of coefficients,
+    (4, n, points). tapers: (n,). points: (points,)."""
     density = np.empty(len(points))
     for i in range(len(points)):
         waves = 0.0  # an upper bound of |q| for all |w| <= W
@@ -78,10 +74,8 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
 
 def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
     """Boundaries after halving every element that does not resolve the coefficients of an arm; the object
-    `edges` itself if no element is halved.
-
-    coefficients: coefficients of n arms at the Gauss points, (6, n, elements, stages).
-    """
+    `edges` itself if no element is halved. coefficients: coefficients of n arms at the Gauss points, (6, n,
+    elements, stages)."""
     is_coarse = _is_coarse(coefficients, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
     if not is_coarse.any():
         return edges

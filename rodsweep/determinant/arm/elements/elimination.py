@@ -33,8 +33,7 @@ def elimination_matrix(F: float, c3: Array, g: Array, Q: Array) -> Array:
 @compiled_for_vectors
 def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array) -> None:
     """Adds F Q c3 Q g to the leading (STAGES, STAGES) part of `system`, (STAGES, columns). c3, Q: as in
-    `elimination_matrix`. g: (STAGES or more,), of which the first STAGES entries are used.
-    """
+    `elimination_matrix`. g: (STAGES or more,), of which the first STAGES entries are used."""
     stages = Q.shape[0]  # no constant: the compiler would unroll the inner loop instead of vectorizing it
     for i in range(stages):
         for k in range(stages):
@@ -46,9 +45,7 @@ def _add_twice_integrated(F: float, c3: Array, g: Array, Q: Array, system: Array
 @compiled_for_vectors
 def _solve_linear_system(system: Array, row_copy: Array) -> None:
     """Solves A x = right in place for a system (A, right), (STAGES, columns), by elimination with pivoting.
-
-    row_copy: (columns,), overwritten.
-    """
+    row_copy: (columns,), overwritten."""
     columns = system.shape[1]
     for column in range(ARM_ELEMENT_SETTINGS.stages):
         pivot_row = column

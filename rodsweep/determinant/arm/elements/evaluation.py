@@ -30,11 +30,8 @@ def _needed_power_count(size: float, terms: int) -> int:
 
 @compiled
 def powers_and_derivatives(z: complex, terms: int) -> Array:
-    """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts,
-    (n, 4).
-
-    terms: number of powers in the polynomials.
-    """
+    """The powers z^n that are not negligible, and their derivatives n z^(n-1): real and imaginary parts, (n,
+    4). terms: number of powers in the polynomials."""
     powers = np.zeros((_needed_power_count(abs(z), terms), 4))
     powers[0, RE] = 1.0
     for n in range(1, len(powers)):
@@ -116,8 +113,7 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
 @compiled_for_vectors
 def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
     """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see the module
-    docstring.
-    """
+    docstring."""
     for k in range(PADDED):
         out[k] = polynomial[0, k]
     for n in range(1, len(powers)):
@@ -154,11 +150,9 @@ def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
-    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED), and vectors a and x,
-    (2, MINORS).
-
-    |real part| + |imaginary part| replaces each modulus, so that the sum is up to 2 sqrt(2) times too large.
-    """
+    """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED), and vectors a and x, (2,
+    MINORS). |real part| + |imaginary part| replaces each modulus, so that the sum is up to 2 sqrt(2) times
+    too large."""
     total = 0.0
     for j in range(MINORS):
         column = 0.0
@@ -172,8 +166,7 @@ def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
 @compiled_for_vectors
 def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> float:
     """The sum of |a_i| (sizes_0 + t sizes_1)_ij |x_j| for sizes of propagator entries, (2, PADDED), and
-    vectors a and x, (2, MINORS). |real part| +
-    |imaginary part| replaces the moduli of a_i and x_j."""
+    vectors a and x, (2, MINORS). |real part| + |imaginary part| replaces the moduli of a_i and x_j."""
     total = 0.0
     for j in range(MINORS):
         column = 0.0
@@ -187,8 +180,7 @@ def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> floa
 @compiled_for_vectors
 def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
-    (2, MINORS).
-    """
+    (2, MINORS)."""
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINORS):
@@ -216,8 +208,7 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 @compiled_for_vectors
 def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
     """out = C t + change x for real propagators C and change, (PADDED,), and real minors t, x, out,
-    (MINORS,).
-    """
+    (MINORS,)."""
     for i in range(MINORS):
         out[i] = 0.0
     for j in range(MINORS):
@@ -229,11 +220,9 @@ def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Arra
 
 @compiled
 def modulus_sum_of_products(C: Array, x: Array) -> float:
-    """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element.
-
-    C: propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
-    rounding error of D is relative to their moduli, not to s^m.
-    """
+    """Sum of the moduli of all terms of C x that add up to the minor s^m at the end of an element. C:
+    propagator, (2 or more, PADDED). x: minors, (2, MINORS). Near a root of D the terms cancel, and the
+    rounding error of D is relative to their moduli, not to s^m."""
     total = 0.0
     for j in range(MINORS):
         entry = complex(C[RE, MINORS * j + SM], C[IM, MINORS * j + SM])

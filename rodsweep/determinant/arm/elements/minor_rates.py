@@ -23,8 +23,7 @@ NU, C2, C3, GAMMA2, GAMMA3, G = range(6)
 @compiled_for_vectors
 def add_start_value(minor: int, start: float, values: Array) -> None:
     """Adds `start` to the values, (MINORS, STAGES, WIDTH), of the minor with row index `minor`, in the lanes
-    of the solution whose start value is 1 for this minor and 0 for all other minors.
-    """
+    of the solution whose start value is 1 for this minor and 0 for all other minors."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             values[minor, i, minor * ARM_ELEMENT_SETTINGS.lane_count + lane] += start
@@ -34,8 +33,7 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 def add_eliminated_start_value(minor: int, start: float, eliminations: Array, values: Array) -> None:
     """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
     values: (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0
-    multiplies `start`.
-    """
+    multiplies `start`."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane
@@ -45,11 +43,8 @@ def add_eliminated_start_value(minor: int, start: float, eliminations: Array, va
 @compiled_for_vectors
 def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Writes the terms proportional to w in the rates of s^m, theta^s and y^m, from the values of the minors
-    at the previous power of w.
-
-    values, rates: (MINORS, STAGES, WIDTH). coefficients: coefficients, (6, STAGES, WIDTH). W: unit of
-    w.
-    """
+    at the previous power of w. values, rates: (MINORS, STAGES, WIDTH). coefficients: coefficients, (6,
+    STAGES, WIDTH). W: unit of w."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             transverse_drag = W * coefficients[GAMMA2, i, c]
@@ -62,8 +57,7 @@ def fill_drag_rates(W: float, coefficients: Array, values: Array, rates: Array) 
 @compiled_for_vectors
 def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of theta^s, (STAGES, WIDTH), the term -c3 s^m, and F c3 times the start value of
-    theta^m. coefficients, values: see the module docstring.
-    """
+    theta^m. coefficients, values: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TS, i, c] -= coefficients[C3, i, c] * values[SM, i, c]
@@ -75,8 +69,7 @@ def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array
 @compiled_for_vectors
 def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None:
     """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). coefficients, values: see the
-    module docstring.
-    """
+    module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TM, i, c] = -coefficients[G, i, c] * values[TS, i, c]
@@ -86,8 +79,7 @@ def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None
 def add_rates_by_theta_m(F: float, start: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of theta^s and y^m, (STAGES, WIDTH) each, the terms with theta^m, and to the rates of
     y^m the term c2 s^m. The start value of theta^m in theta^s, already added, is subtracted.
-    coefficients, values: see the module docstring.
-    """
+    coefficients, values: see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             turn = values[TM, i, c]
@@ -102,8 +94,7 @@ def add_rates_by_theta_m(F: float, start: float, coefficients: Array, values: Ar
 @compiled_for_vectors
 def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None:
     """Writes the rates c3 y^m - c2 theta^s of the minor y^theta, (STAGES, WIDTH). coefficients, values:
-    see the module docstring.
-    """
+    see the module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YT, i, c] = (
@@ -114,8 +105,7 @@ def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, coefficients: Array, values: Array, rates: Array) -> None:
     """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. coefficients, values: see the
-    module docstring.
-    """
+    module docstring."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YM, i, c] -= F * coefficients[G, i, c] * values[YT, i, c]

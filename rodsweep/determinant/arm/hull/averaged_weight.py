@@ -55,11 +55,9 @@ class GridPositions(NamedTuple):
 
 @compiled
 def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
-    """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound.
-
-    u: points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients`
-    at the points, (6, points), with c2 > 0 and g > 0. F: force.
-    """
+    """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
+    points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
+    points, (6, points), with c2 > 0 and g > 0. F: force."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
@@ -78,8 +76,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
 @compiled
 def _with_points_beside_jumps(u: Array, h: float) -> Array:
     """The points u of an arm, (points,), and two further points near each u at the distance h from a jump;
-    sorted.
-    """
+    sorted."""
     points = np.empty(5 * len(u))
     count = len(u)
     points[:count] = u
@@ -176,11 +173,9 @@ def _write_regions_of_trial(
 def _averaged_log_weight(
     u: Array, log_t: Array, integral: Array, window: tuple[GridPositions, GridPositions], h: float
 ) -> tuple[Array, Array, Array]:
-    """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,).
-
-    u: points of the arm. log_t: log t at u. integral: integral of log t from the first point to every point.
-    All (points,). window: positions of u - h and of u + h in u.
-    """
+    """Returns (log t at u - h, log t at u + h, integral of log t over [u - h, u + h]), all (points,). u:
+    points of the arm. log_t: log t at u. integral: integral of log t from the first point to every point. All
+    (points,). window: positions of u - h and of u + h in u."""
     log_t_left = _interpolate_at_positions(window[0], log_t)
     log_t_right = _interpolate_at_positions(window[1], log_t)
     # Beyond its ends the arm continues with its end values, so that every window has the same width.

@@ -45,7 +45,6 @@ def hull_of(rod: Rod) -> EigenvalueHull:
 
 def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
     """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
-
     Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement` allows for the
     arms between."""
     arms = _hull_samples(rods)
@@ -104,8 +103,7 @@ def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
 def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
     """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
     g > 0 everywhere. F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,).
-    coefficients: (6, n, pieces, points).
-    """
+    coefficients: (6, n, pieces, points)."""
     interval_starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
     u = (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
@@ -193,10 +191,7 @@ def _smaller_region(
     current: tuple[float, float], candidate: tuple[float, float], max_c: float
 ) -> tuple[float, float]:
     """The smaller of the regions (a, c) `current` and `candidate`, by the measure a^2 (1 +
-    (c/c_doubling_measure)^4).
-
-    `current` is returned if `candidate` has c >= `max_c`.
-    """
+    (c/c_doubling_measure)^4). `current` is returned if `candidate` has c >= `max_c`."""
     if not candidate[1] < max_c:
         return current
     current_size = current[0] ** 2 * (1 + (current[1] / HULL_SETTINGS.c_doubling_measure) ** 4)

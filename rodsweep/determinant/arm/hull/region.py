@@ -59,8 +59,7 @@ class EigenvalueHull(NamedTuple):
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
         """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf if no
-        bound exists.
-        """
+        bound exists."""
         a = self.a
         b = 1 - self.c
         if not isfinite(a):
@@ -79,9 +78,7 @@ UNBOUNDED_HULL = EigenvalueHull(inf, 0.0)
 def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]:
     """Returns (distance, normal) for w with Im w >= 0 and the hull with the constants a, c. distance: lower
     bound of the distance of w from the hull, at most 0 if w lies inside. normal: unit vector towards w.
-
-    <normal, w - v> >= distance for every v in the hull.
-    """
+    <normal, w - v> >= distance for every v in the hull."""
     b = 1 - c
     largest_distance = -inf
     normal = 1 + 0j
@@ -100,10 +97,8 @@ def distance_and_normal(w: complex, a: float, c: float) -> tuple[float, complex]
 
 
 class PathHulls(NamedTuple):
-    """Hulls of all arms of a path: hull number i is valid for every p between p[i] and p[i + 1].
-
-    p: increasing values of the path variable, (k,). a, c: constants of `EigenvalueHull`, (k - 1,).
-    """
+    """Hulls of all arms of a path: hull number i is valid for every p between p[i] and p[i + 1]. p:
+    increasing values of the path variable, (k,). a, c: constants of `EigenvalueHull`, (k - 1,)."""
 
     p: Array
     a: Array

@@ -1,6 +1,5 @@
 """Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smoothly varying weights
-alpha.
-"""
+alpha."""
 
 from math import exp, inf, log, sqrt
 
@@ -15,11 +14,8 @@ from .region import HULL_SETTINGS
 @compiled
 def least_squared_norm(alphas: Array, coefficients: Array, max_weighted_force: float) -> float:
     """The smallest a^2 of the constant weights `alphas`, (n,). a: largest norm, along all arms, of the matrix
-    given in `rodsweep.determinant.arm.hull.hull`.
-
-    coefficients: coefficients at all points, (6, points). max_weighted_force: the largest F^2
-    c3/gamma2.
-    """
+    given in `rodsweep.determinant.arm.hull.hull`. coefficients: coefficients at all points, (6, points).
+    max_weighted_force: the largest F^2 c3/gamma2."""
     smallest = inf
     for alpha in alphas:
         largest_norm = alpha * max_weighted_force
@@ -37,11 +33,9 @@ def least_squared_norm(alphas: Array, coefficients: Array, max_weighted_force: f
 
 @compiled
 def trial_constant_weights(coefficients: Array) -> Array:
-    """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): a geometric
-    progression from the smallest to the largest |g/nu| along the arms, none below `min_weight`, and 1.
-
-    coefficients: coefficients, (6, n, pieces, points).
-    """
+    """Constant weights alpha to try, (HULL_SETTINGS.constant_weight_count + 1,): a geometric progression from
+    the smallest to the largest |g/nu| along the arms, none below `min_weight`, and 1. coefficients:
+    coefficients, (6, n, pieces, points)."""
     ratio = np.abs(coefficients[5] / coefficients[0])
     start = log(max(ratio.min(), HULL_SETTINGS.min_weight))
     log_max = log(max(ratio.max(), 2 * HULL_SETTINGS.min_weight))

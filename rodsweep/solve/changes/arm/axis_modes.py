@@ -85,10 +85,8 @@ class CriticalModesOfPath:
 
     def modes_at(self, p: float, guesses: Complex | None = None) -> CriticalModes:
         """The modes at path variable p, or just outside an end p of the path where the count fails; raises
-        Unsolvable if the eigenvalues or the count cannot be computed.
-
-        guesses: approximate eigenvalues near the imaginary axis, (n,), one of each pair, if available.
-        """
+        Unsolvable if the eigenvalues or the count cannot be computed. guesses: approximate eigenvalues near
+        the imaginary axis, (n,), one of each pair, if available."""
         if p not in self.modes_by_p:
             try:
                 self.modes_by_p[p] = self._compute_modes(p, guesses)
@@ -121,10 +119,8 @@ class CriticalModesOfPath:
 
     def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
         """Eigenvalues near the imaginary axis at path variable p, with |Im w| up to `max_frequency`, (n,),
-        one of each pair. known_w: some of these eigenvalues, (k,), which come first.
-
-        Raises Unsolvable if no elements resolve the arm.
-        """
+        one of each pair. known_w: some of these eigenvalues, (k,), which come first. Raises Unsolvable if no
+        elements resolve the arm."""
         try:
             return self.problem.eigenvalues_near_axis(p, max_frequency, known_w)
         except FloatingPointError as unresolved:
@@ -177,8 +173,7 @@ class CriticalModesOfPath:
 
 
 def _needed_modes(spectrum: Spectrum) -> int:
-    """Number of modes to be computed: two more than the larger of two numbers, the counted unstable modes and
-    the growing modes found."""
+    """Number of modes to be computed: two more than the counted unstable modes or the growing modes found."""
     growing_count = int((spectrum.eigenvalues.real > 0).sum())
     return 2 + max(spectrum.unstable_count, growing_count)
 

@@ -30,8 +30,7 @@ class ArmCrossingSettings:
     """Where many modes grow, all crossings between two counted arms are searched at once if their counts
     differ by at most this many pairs."""
     max_frequency_ratio: float = 4.0
-    """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest known
-    |w|."""
+    """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
     max_distance_in_errors: float = 10.0
     """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
     their errors."""
@@ -57,10 +56,8 @@ ARM_CROSSING_SETTINGS = ArmCrossingSettings()
 
 
 class CrossingSearch:
-    """Search for crossings along a path.
-
-    crossings_by_p: crossings by path variable p. gaps: intervals of p that may contain two crossings.
-    """
+    """Search for crossings along a path. crossings_by_p: crossings by path variable p. gaps: intervals of p
+    that may contain two crossings."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -145,8 +142,7 @@ class CrossingSearch:
         self, crossings: list[Threshold], left: CriticalModes, right: CriticalModes, length: float
     ) -> list[tuple[float, float]] | None:
         """The intervals between crossings, in increasing order of p; None if the counts just before and just
-        after a crossing do not confirm the crossing. length: length of the path.
-        """
+        after a crossing do not confirm the crossing. length: length of the path."""
         parts: list[tuple[float, float]] = []
         start = left.p
         max_frequency = ARM_CROSSING_SETTINGS.max_frequency_ratio * max(

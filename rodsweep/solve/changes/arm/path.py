@@ -1,5 +1,4 @@
-"""The transverse eigenvalue problem along a path of nonuniform arms, and the choice of the problem for any
-path."""
+"""The transverse eigenvalue problem along a path of nonuniform arms, and the choice for any path."""
 
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -32,17 +31,14 @@ class ArmPathSettings:
     """Number of intervals into which a path of arms is first divided."""
     edge_shift: float = 0.0618
     """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
-    an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice or three times the
-    force of the Hopf point."""
+    an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
     steps_per_interval: int = 4
     """Number of steps in which eigenvalues are followed through each of the `first_interval_count`
     intervals."""
     followed_modes: int = 4
-    """Number of leading eigenvalues that are proved complete at each step, together with all unstable
-    eigenvalues."""
+    """Number of leading eigenvalues, besides all unstable ones, that are proved complete at each step."""
     spare_modes: int = 2
-    """Number of modes computed in addition to the requested modes, if more than `followed_modes` modes are
-    requested."""
+    """Number of modes computed in addition, if more than `followed_modes` modes are requested."""
     max_growing_modes: float = 16.0
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
@@ -143,10 +139,8 @@ class ArmPath(PathProblem):
 
     def _solved_spectrum(self, p: float, request: SpectrumRequest) -> Spectrum:
         """The leading eigenvalues at p, from an earlier solve at p with enough modes, or from a new solve.
-
         Near a crossing a request for many modes is followed by a request for one more pair; this pair is
-        therefore included in the first solve.
-        """
+        therefore included in the first solve."""
         stored_spectrum = self._solved_spectra.get(p)
         # A few modes more at first save a second solve where the next request needs one pair more.
         if (
@@ -204,10 +198,8 @@ class ArmPath(PathProblem):
 
     def counted_unstable_modes(self, p: float, known_w: Complex, error: Array) -> int | None:
         """Number of unstable modes at p, known already or by a count; None if the count is undecided.
-
         known_w: eigenvalues near the imaginary axis, (n,), one of each pair, which make the count faster.
-        error: errors of these eigenvalues, (n,).
-        """
+        error: errors of these eigenvalues, (n,)."""
         if p not in self._unstable_counts:
             roots = KnownRoots(np.append(known_w, known_w.conj()), np.append(error, error))
             number = ArmProblem(self.path.rod_at(p)).count(0.0, roots).number
@@ -218,10 +210,8 @@ class ArmPath(PathProblem):
 
     def eigenvalues_near_axis(self, p: float, max_frequency: float, known_w: Complex) -> Complex:
         """Eigenvalues at p near the imaginary axis with |Im w| up to `max_frequency`, (n,), one of each pair.
-
         known_w: some of these eigenvalues, (k,), which come first. Raises FloatingPointError if no elements
-        resolve the arm.
-        """
+        resolve the arm."""
         rod = self.path.rod_at(p)
         return modes_near_axis(arm_determinant(rod), min(max_frequency, hull_of(rod).box()[1]), known_w)
 
@@ -230,6 +220,5 @@ class ArmPath(PathProblem):
 
 
 def path_problem(path: ParameterPath) -> PathProblem:
-    """The eigenvalue problem along `path`: `UniformPath` for uniform rods of linear material, else
-    `ArmPath`."""
+    """The eigenvalue problem along `path`: `UniformPath` for uniform linear rods, else `ArmPath`."""
     return UniformPath(path) if path.rod.is_uniform_and_linear else ArmPath(path)

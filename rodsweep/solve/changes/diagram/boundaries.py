@@ -66,8 +66,7 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 
 @dataclass(frozen=True, slots=True)
 class _StabilityBoundaries:
-    """The boundary curves through the thresholds of all rows of a plane, as a problem for
-    `trace_all_curves`."""
+    """The boundary curves through the thresholds of all rows, as a problem for `trace_all_curves`."""
 
     plane: Plane
     seeds: list[Seed]
@@ -147,11 +146,8 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
 
 def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
     """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
-    None if not found.
-
-    Newton's method starts from the chord. If this guess is too far from the curve, secant steps along the
-    curve follow.
-    """
+    None if not found. Newton's method starts from the chord. If this guess is too far from the curve, secant
+    steps along the curve follow."""
     fraction = (y - a[1]) / (b[1] - a[1]) if a[1] != b[1] else 0.0
     for _ in range(BOUNDARY_ASSIGNMENT_SETTINGS.max_secant_steps):
         guess = a + fraction * (b - a)

@@ -122,8 +122,7 @@ def _curve_with_folds(
 
 
 def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoint, axis: int) -> Fold | None:
-    """The fold between the points a and b, where the tangent has no component along `axis`; None if not
-    found."""
+    """The fold between the points a and b, where the tangent is normal to `axis`; None if not found."""
     boundary = curve.boundary
     rounding = _tangent_error(curve.boundary)
     chord = b.v - a.v
@@ -162,8 +161,7 @@ def _tangent_error(boundary: Boundary) -> float:
 
 
 def _fold_at(boundary: Boundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
-    """The fold of coordinate `axis` at a point of a boundary. curve_error: error of the point along the
-    curve."""
+    """The fold of coordinate `axis` at a point of a boundary. curve_error: its error along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))
     units = [abs(a.parameter_per_coordinate(x)) for a, x in zip(axes, (first, second), strict=True)]

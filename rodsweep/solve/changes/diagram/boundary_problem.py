@@ -45,8 +45,7 @@ class BoundaryCurveSettings:
     hopf_tangent_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
     double_tangent_error: float = 1e-11
-    """Error of the unit tangent to a curve of double eigenvalues, from finite differences in the Jacobian of
-    D_w."""
+    """Error of the unit tangent to a curve of double eigenvalues, from differences in the Jacobian of D_w."""
     arm_tangent_error: float = 3e-10
     """Error of the unit tangent to a curve of arms, from differences of D, which deviate from the closed form
     by up to 8e-11 for uniform rods."""
@@ -81,8 +80,7 @@ class BoundaryPoint(NamedTuple):
 
     @classmethod
     def oriented(cls, solution: BoundarySolution, direction: Array) -> "BoundaryPoint":
-        """The point `solution` of a boundary; the tangent is oriented so that its product with `direction`,
-        (3,), is positive."""
+        """The point `solution` of a boundary; its tangent points along `direction`, (3,)."""
         tangent = solution.tangent
         return cls(solution.v, tangent if tangent @ direction > 0 else -tangent)
 
@@ -110,8 +108,7 @@ class BoundaryCurveProblem:
         return solution
 
     def margins(self, point: BoundaryPoint) -> Array:
-        """Distances of a point from the four edges of the plane, and -1 for a crushed rod in the plane, else
-        1; (5,)."""
+        """Distances of a point from the four edges, and -1 for a crushed rod in the plane, else 1; (5,)."""
         x, y = map(float, point.v[:2])
         is_in_plane = 0 <= x <= 1 and 0 <= y <= 1
         # Outside the plane the parameters may be outside their allowed ranges.
@@ -148,11 +145,9 @@ class BoundaryCurveProblem:
         )
 
     def end_reason_of(self, curve: Curve[BoundaryPoint]) -> BoundaryEndReason:
-        """The reason for the end of a followed curve.
-
-        If no further solution was found, the reason is `edge` if the last point lies on an edge, such as
-        gamma3 = 0, `crushed` if a rod just beyond the last point is crushed, otherwise `not_followed`.
-        """
+        """The reason for the end of a followed curve. If no further solution was found, the reason is `edge`
+        if the last point lies on an edge, such as gamma3 = 0, `crushed` if a rod just beyond the last point
+        is crushed, otherwise `not_followed`."""
         if curve.end_reason is StopReason.closed:
             return BoundaryEndReason.closed
         if curve.end_reason is StopReason.max_solutions:

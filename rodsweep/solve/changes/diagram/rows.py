@@ -56,8 +56,7 @@ class RowRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DiagramRow:
     """One row: class (`RodClass`) and number of unstable modes at each value, (values,), and all thresholds
-    along the row. unstable_count: -1 where the number is unknown or the rod is crushed. seconds: time spent
-    on the row."""
+    along the row. unstable_count: -1 where unknown or crushed. seconds: time of the row."""
 
     rod_class: NDArray[np.int8]
     unstable_count: NDArray[np.int32]

@@ -20,10 +20,8 @@ def confirmed_count_at(
     path: ParameterPath, interval: ArmInterval, p: float, modes: int, point_track: FollowedEigenvalues
 ) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
-    right of a line; 0 if no count confirms this.
-
-    interval: an interval that contains p. point_track: a track with the eigenvalues at p only.
-    """
+    right of a line; 0 if no count confirms this. interval: an interval that contains p. point_track: a track
+    with the eigenvalues at p only."""
     w, error = leading_eigenvalues(point_track, point_track.w.shape[1])
     line = confirmed_line(path, interval, p, (w[0], error[0]), modes)
     return 0 if line is None else int((w[0].real > line).sum())

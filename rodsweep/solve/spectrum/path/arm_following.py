@@ -88,11 +88,9 @@ def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) 
 def _refine_all_eigenvalues(
     track: FollowedEigenvalues, i: int, guess: Complex, modes: int, level: PropagatorsWithSlopes
 ) -> bool:
-    """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track.
-
-    guess: (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm.
-    Returns True if all eigenvalues converged, no two coincide, and every complex pair stayed complex.
-    """
+    """Refines the guesses for all eigenvalues of point i and writes the eigenvalues to the track. guess:
+    (m,). The `modes` leading eigenvalues converge to rounding error. level: propagators of the arm. Returns
+    True if all eigenvalues converged, no two coincide, and every complex pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
     order = track.descending_order[i]

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmFollowingSettings:
     """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of
-    spectra.
-    """
+    spectra."""
 
     further_modes: tuple[int, ...] = (3, 9)
     """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the

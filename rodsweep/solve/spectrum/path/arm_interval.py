@@ -105,8 +105,7 @@ def _follows_too_few_modes(interval: ArmInterval) -> bool:
 
 def _is_better_interval(interval: ArmInterval, other: ArmInterval, modes: int) -> bool:
     """Whether `interval` has more proved points than `other`, or equally many while `other` follows too few
-    modes.
-    """
+    modes."""
     proved = interval.proved_points(modes)
     other_proved = other.proved_points(modes)
     return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
@@ -184,10 +183,8 @@ def family_and_hulls(
     path: ParameterPath, p: Array, first_eigenvalues: Complex, modes: int
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
-    equal, if the arms are not smooth in p, or if no elements resolve an arm.
-
-    first_eigenvalues: eigenvalues at the first point, (m,), in descending order. modes: requested number.
-    """
+    equal, if the arms are not smooth in p, or if no elements resolve an arm. first_eigenvalues: eigenvalues
+    at the first point, (m,), in descending order. modes: requested number."""
     low = float(p.min())
     high = float(p.max())
     if not low < high:
@@ -216,8 +213,7 @@ def _eigenvalues_of_previous_interval(
     previous: ArmInterval | None, p: float, request: SpectrumRequest, added_modes: int
 ) -> Complex | None:
     """Eigenvalues, (m,), at p, from the previous interval `previous`; None unless p is the last point of this
-    interval, `added_modes` modes were followed there, and all its points are proved complete.
-    """
+    interval, `added_modes` modes were followed there, and all its points are proved complete."""
     if previous is None or previous.further_modes != added_modes or previous.p[-1] != p:
         return None
     if previous.proved_points(request.modes) < len(previous.p):
@@ -229,16 +225,14 @@ def first_eigenvalues(
     path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int
 ) -> Complex | None:
     """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
-    solve fails.
-    """
+    solve fails."""
     roots = _leading_roots(path, p, request, added_modes)
     return None if roots is None else roots.w[has_conjugate(roots.w)]
 
 
 def _leading_roots(path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:
     """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_modes` more
-    modes; None if the solve fails.
-    """
+    modes; None if the solve fails."""
     try:
         modes = request.modes + added_modes
         search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)

@@ -33,10 +33,8 @@ CARRIED_ARM_COUNT_SETTINGS = CarriedArmCountSettings()
 
 
 class SortedEigenvalues(NamedTuple):
-    """Followed eigenvalues of an interval by descending real part, and their errors, (points, m) each.
-
-    lines: real part of the rightmost line that lies left of all requested eigenvalues, (points,).
-    """
+    """Followed eigenvalues of an interval by descending real part, and their errors, (points, m) each. lines:
+    real part of the rightmost line that lies left of all requested eigenvalues, (points,)."""
 
     w: Complex
     error: Array
@@ -45,8 +43,7 @@ class SortedEigenvalues(NamedTuple):
 
 class CarriedCountChain(NamedTuple):
     """Successive points of an interval, by index, between which no unknown eigenvalue crosses a line:
-    `lines[k]` between `points[k]` and `points[k + 1]`.
-    """
+    `lines[k]` between `points[k]` and `points[k + 1]`."""
 
     points: list[int]
     lines: list[float]
@@ -54,9 +51,7 @@ class CarriedCountChain(NamedTuple):
 
 def carry_counts(path: ParameterPath, interval: ArmInterval, modes: int) -> None:
     """Fills `interval.proved_modes` at points without a proof, wherever a count can be carried to them.
-
-    modes: number of requested modes.
-    """
+    modes: number of requested modes."""
     w, error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
     last_requested_w = w[:, modes - 1]
     lines = np.minimum(last_requested_w.real, 0.0) - CARRIED_ARM_COUNT_SETTINGS.line_distance * np.abs(

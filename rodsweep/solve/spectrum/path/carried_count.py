@@ -45,8 +45,7 @@ CARRIED_COUNT_SETTINGS = CarriedCountSettings()
 def line_in_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, float]:
     """(real part of the line in the middle of a gap at point i, half-width of the gap divided by the modulus
     of this real part). The half-width is at most `wide_gap`, and 0 if the line is not to the left of the
-    imaginary axis. gap: number of eigenvalues to the right of the gap.
-    """
+    imaginary axis. gap: number of eigenvalues to the right of the gap."""
     right = track.w[i, track.descending_order[i, gap - 1]].real
     left = track.w[i, track.descending_order[i, gap]].real
     line = (right + left) / 2
@@ -57,10 +56,8 @@ def line_in_gap(track: FollowedEigenvalues, i: int, gap: int) -> tuple[float, fl
 
 @compiled
 def widest_gap(track: FollowedEigenvalues, i: int, modes: int) -> int:
-    """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough.
-
-    The gap lies to the left of the leading `modes` and of the imaginary axis.
-    """
+    """Number of eigenvalues to the right of the widest gap at point i; 0 if no gap is wide enough. The gap
+    lies to the left of the leading `modes` and of the imaginary axis."""
     best_gap = 0
     max_width = CARRIED_COUNT_SETTINGS.min_gap
     for gap in range(modes, track.w.shape[1]):
@@ -76,11 +73,8 @@ def _stays_open(
     track: FollowedEigenvalues, ends: tuple[int, int], gap: int, lines: tuple[float, float], p: Array
 ) -> bool:
     """Whether exactly the leading `gap` eigenvalues lie to the right of a moving line at every point between
-    two points.
-
-    ends: indices of the two points. lines: real parts of the line at the two points. The distance of each
-    eigenvalue from the line must exceed twice the eigenvalue's error.
-    """
+    two points. ends: indices of the two points. lines: real parts of the line at the two points. The distance
+    of each eigenvalue from the line must exceed twice the eigenvalue's error."""
     i, j = ends
     for s in range(i, j + 1):
         fraction = (p[s] - p[i]) / (p[j] - p[i])
@@ -98,10 +92,7 @@ def _widest_open_gap(
     track: FollowedEigenvalues, ends: tuple[int, int], modes: int, proved_count: int, p: Array
 ) -> int:
     """Number of eigenvalues to the right of the widest gap that stays open between the points `ends`; 0 if no
-    gap stays open.
-
-    The number is at least `modes` and at most `proved_count`.
-    """
+    gap stays open. The number is at least `modes` and at most `proved_count`."""
     best_gap = 0
     max_width = CARRIED_COUNT_SETTINGS.min_gap
     for gap in range(modes, min(proved_count, track.w.shape[1] - 1) + 1):
@@ -118,8 +109,7 @@ def _widest_open_gap(
 @compiled
 def _interval_end(track: FollowedEigenvalues, i: int, gap: int, p: Array, coefficients: Array) -> IntervalEnd:
     """Point i of a path as an end of a moving line, which lies in the middle of a gap there.
-    gap: number of eigenvalues to the right of the gap. p: (points,). coefficients: (points, 4).
-    """
+    gap: number of eigenvalues to the right of the gap. p: (points,). coefficients: (points, 4)."""
     F, nu, c2, gamma3 = coefficients[i]
     return IntervalEnd(p[i], Coefficients(F, nu, c2, gamma3), line_in_gap(track, i, gap)[0])
 

@@ -29,8 +29,7 @@ class FollowedArms:
 
     def __init__(self, path: ParameterPath, p: Array, modes: int):
         """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to be proved
-        complete at each point.
-        """
+        complete at each point."""
         self.path = path
         self.request = SpectrumRequest(modes, ARM_FOLLOWING_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
@@ -77,8 +76,7 @@ class FollowedArms:
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The leading `modes` eigenvalues at p; None unless they were followed, are accurate and are proved
-        complete.
-        """
+        complete."""
         self._follow_to(p)
         proved = self._proved_by_p.setdefault(p, [])
         if not any(modes <= eigenvalues.max_tried_modes for eigenvalues in proved):
@@ -98,10 +96,8 @@ class FollowedArms:
 
     def _proved_eigenvalues_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
-        for `modes`.
-
-        All growing modes and two more modes are proved at once, because the next requests need these modes.
-        """
+        for `modes`. All growing modes and two more modes are proved at once, because the next requests need
+        these modes."""
         for interval in self.intervals:
             followed_count = interval.track.w.shape[1]
             if not interval.p.min() <= p <= interval.p.max() or followed_count < modes:
@@ -135,10 +131,7 @@ class FollowedArms:
     ) -> tuple[FollowedEigenvalues | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
         point nearest to p. interval: an interval that contains p. modes: number of leading modes to be
-        proved.
-
-        The track is None if following fails.
-        """
+        proved. The track is None if following fails."""
         i = int(np.argmin(np.abs(interval.p - p)))
         start = float(interval.p[i])
         if p == start and modes <= self.request.modes:
@@ -157,9 +150,7 @@ class FollowedArms:
 
 class ProvedEigenvalues(NamedTuple):
     """Eigenvalues at one path variable p; the leading `proved_modes` eigenvalues are proved complete.
-
-    max_tried_modes: largest number of modes whose proof was tried.
-    """
+    max_tried_modes: largest number of modes whose proof was tried."""
 
     max_tried_modes: int
     track: FollowedEigenvalues

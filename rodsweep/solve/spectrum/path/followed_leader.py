@@ -27,10 +27,8 @@ from .prediction import KnownRoots
 
 
 class LeadingEigenvalue(NamedTuple):
-    """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error.
-
-    eigenvalues: all followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first.
-    """
+    """The leading eigenvalue w of a rod, in 1/tau2, with Im w >= 0, and its absolute error. eigenvalues: all
+    followed eigenvalues of the rod with Im w >= 0, (n,), the leading eigenvalue first."""
 
     w: complex
     error: float
@@ -61,10 +59,8 @@ def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> Le
 
 
 def _follow_leader_of_uniform(rod: Rod, guess: complex, accuracy: float) -> LeadingEigenvalue | None:
-    """The result of `follow_leading_eigenvalue` for a uniform rod of linear material.
-
-    guess: leading eigenvalue of the neighbouring rod. accuracy: largest relative error.
-    """
+    """The result of `follow_leading_eigenvalue` for a uniform rod of linear material. guess: leading
+    eigenvalue of the neighbouring rod. accuracy: largest relative error."""
     w = refine_eigenvalue(guess, rod.coefficients)
     error, _, _ = root_error_and_scales(w, rod.coefficients)
     if not _matches_neighbour(w, error, guess, accuracy):
@@ -76,11 +72,8 @@ def _follow_leader_of_uniform(rod: Rod, guess: complex, accuracy: float) -> Lead
 
 def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The result of `follow_leading_eigenvalue` for an arm that is not uniform; raises FloatingPointError if
-    D needs too many elements.
-
-    guesses: eigenvalues of the neighbouring arm, (n,), the leading eigenvalue first. accuracy: largest
-    relative error.
-    """
+    D needs too many elements. guesses: eigenvalues of the neighbouring arm, (n,), the leading eigenvalue
+    first. accuracy: largest relative error."""
     hull = hull_of(rod)
     if not isfinite(hull.a) or not np.isfinite(guesses).all():
         return None

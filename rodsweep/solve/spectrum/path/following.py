@@ -44,9 +44,7 @@ FOLLOWING_SETTINGS = FollowingSettings()
 
 class CorrectedEigenvalue(NamedTuple):
     """An eigenvalue w after one Newton step: slope dw/dp, length of the step, and rounding error of w.
-
-    D_slope: |dD/dw| exp(-S) before the step, S = `log_scale`.
-    """
+    D_slope: |dD/dw| exp(-S) before the step, S = `log_scale`."""
 
     w: complex
     slope: complex
@@ -61,8 +59,7 @@ def correct_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
-    gamma3)/dp.
-    """
+    gamma3)/dp."""
     value = determinant_along_path(w, coefficients, direction)
     return newton_step(w, value, DETERMINANT_SETTINGS.typical_rounding_fraction * value.rounding_error)
 
@@ -70,10 +67,8 @@ def correct_eigenvalue(
 @compiled
 def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> CorrectedEigenvalue:
     """One Newton step from w, given D and its derivatives with respect to w and p; a real w stays real.
-
     rounding: rounding error of D, on the same scale as D. If D_w vanishes, w is returned unchanged, with step
-    and rounding error inf.
-    """
+    and rounding error inf."""
     size = abs(value.D_w)
     if not size > 0:
         return CorrectedEigenvalue(w, 0j, math.inf, math.inf, 0.0, value.log_scale)
@@ -88,8 +83,7 @@ def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> Cor
 @compiled
 def curvature_estimate(w: Complex, k: int) -> float:
     """Upper estimate of |D''/(2 D')| at root w[k], from the distances to 0 and to the other followed roots w,
-    (m,).
-    """
+    (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:
@@ -100,11 +94,8 @@ def curvature_estimate(w: Complex, k: int) -> float:
 @compiled
 def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> float:
     """Absolute error of an eigenvalue after a Newton step; inf until the remainder crowding step^2 is small
-    enough.
-
-    crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be below the
-    rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|.
-    """
+    enough. crowding: upper estimate of |D''/(2 D')| at the eigenvalue. exact: whether the remainder must be
+    below the rounding error, instead of `FOLLOWING_SETTINGS.accuracy` |w|."""
     remainder = crowding * step.step_length * step.step_length
     allowed = (
         max(step.rounding_error, ROUND_OFF * abs(step.w))
@@ -122,10 +113,8 @@ def converged_error(step: CorrectedEigenvalue, crowding: float, exact: bool) -> 
 @compiled
 def store_root(track: FollowedEigenvalues, i: int, k: int, conjugate: int, step: CorrectedEigenvalue) -> bool:
     """Writes the eigenvalue with index k of point i to the track, and its conjugate to index `conjugate`
-    unless `conjugate` is negative. step: the last Newton step of the eigenvalue.
-
-    Returns False if a complex pair has become real. The error of eigenvalue k must already be in the track.
-    """
+    unless `conjugate` is negative. step: the last Newton step of the eigenvalue. Returns False if a complex
+    pair has become real. The error of eigenvalue k must already be in the track."""
     w = track.w[i]
     slope = track.slope[i]
     error = track.error[i]
@@ -163,11 +152,8 @@ def _iterate_to_convergence(
 @compiled
 def are_distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all eigenvalues w and their absolute errors `error`, (m,) each, are finite, and no two
-    eigenvalues can be the same root.
-
-    A residual may be small by chance, and the error with it: eigenvalues within `double_root_correction`
-    times |w| can be the same root, too.
-    """
+    eigenvalues can be the same root. A residual may be small by chance, and the error with it: eigenvalues
+    within `double_root_correction` times |w| can be the same root, too."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
@@ -186,8 +172,7 @@ def _refine_all_eigenvalues(
 ) -> bool:
     """Refines the guesses `guess` for all eigenvalues of point i, (m,), and writes the eigenvalues to the
     track; the `modes` leading eigenvalues converge to rounding error. Returns True if all eigenvalues
-    converged, no two coincide, and every complex pair stayed complex.
-    """
+    converged, no two coincide, and every complex pair stayed complex."""
     w = track.w[i]
     error = track.error[i]
     order = track.descending_order[i]

@@ -43,8 +43,7 @@ NEIGHBOURING_RODS_SETTINGS = NeighbouringRodsSettings()
 @dataclass(frozen=True, slots=True)
 class NeighbouringRods:
     """Neighbouring rods of a sweep that differ in one parameter: `path` names the parameter, `values`, (n,),
-    are its values.
-    """
+    are its values."""
 
     path: ParameterPath
     values: Array
@@ -74,8 +73,7 @@ class NeighbouringRods:
 @dataclass(frozen=True, slots=True)
 class FollowedSpectra:
     """Spectra of `NeighbouringRods`. is_solved: whether the spectrum of each rod is known, (n,); the
-    remaining rods must be solved one by one.
-    """
+    remaining rods must be solved one by one."""
 
     spectra: Spectrum
     is_solved: NDArray[np.bool_]
@@ -83,8 +81,7 @@ class FollowedSpectra:
 
 def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> FollowedSpectra:
     """The leading `request.modes` eigenvalues of all rods, as far as eigenvalues can be followed from rod to
-    rod and proved complete; `is_solved` is False for every other rod.
-    """
+    rod and proved complete; `is_solved` is False for every other rod."""
     start_time = time.perf_counter()
     n = len(rods)
     columns = _unsolved_fields(n, request.modes)
@@ -191,8 +188,7 @@ def _proved_counts_along(
 def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
     """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: eigenvalues
     to follow, (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved
-    complete.
-    """
+    complete."""
     try:
         modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
         search = SpectrumSearch(rod, replace(request, modes=modes - 1, certify=True), requested=modes)

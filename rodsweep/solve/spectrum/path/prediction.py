@@ -55,8 +55,7 @@ class KnownRoots(NamedTuple):
 
 def start_track(first: Complex, points: int) -> FollowedEigenvalues:
     """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,), in
-    descending order.
-    """
+    descending order."""
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
@@ -76,8 +75,7 @@ def slice_track(track: FollowedEigenvalues, start: int, stop: int) -> FollowedEi
 @compiled
 def find_conjugates(w: Complex, conjugate: NDArray) -> None:
     """Writes the index of the complex conjugate of each eigenvalue w into `conjugate`, (m,); -1 for real
-    eigenvalues.
-    """
+    eigenvalues."""
     for k in range(len(w)):
         conjugate[k] = -1
         if w[k].imag != 0:
@@ -90,8 +88,7 @@ def find_conjugates(w: Complex, conjugate: NDArray) -> None:
 def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: NDArray) -> None:
     """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of the
     partner of each paired eigenvalue into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step:
-    change of p.
-    """
+    change of p."""
     while True:
         min_steps = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1
@@ -115,10 +112,8 @@ def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: 
 def extrapolate_hermite(
     values: tuple[float, float], slopes: tuple[float, float], steps: tuple[float, float]
 ) -> float:
-    """Cubic Hermite extrapolation to a third point, from the values and slopes at two points.
-
-    steps: distance from the first to the second point, and from the second to the third point.
-    """
+    """Cubic Hermite extrapolation to a third point, from the values and slopes at two points. steps: distance
+    from the first to the second point, and from the second to the third point."""
     h, next_step = steps
     t = next_step / h
     difference = values[1] - values[0]
@@ -174,10 +169,7 @@ def set_two_guesses(
     w: Complex, pair: tuple[int, int], roots: tuple[complex, complex], guess: Complex
 ) -> None:
     """Writes `roots` as the guesses for two eigenvalues, in the order of these eigenvalues in w: real part,
-    then frequency.
-
-    pair: indices of the two eigenvalues in w and `guess`, (m,) each.
-    """
+    then frequency. pair: indices of the two eigenvalues in w and `guess`, (m,) each."""
     k, j = pair
     first_root, second_root = roots
     if (first_root - second_root).real < 0 or (first_root - second_root).imag < 0:
@@ -191,11 +183,8 @@ def predict_eigenvalues(
     track: FollowedEigenvalues, i: int, p: Array, guess: Complex, partner: NDArray
 ) -> None:
     """Writes the predicted eigenvalues of point i >= 1 into `guess`, (m,). p: path variable of every point,
-    (points,).
-
-    partner: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real, partner[k] = j,
-    and both guesses are half the sum.
-    """
+    (points,). partner: (m,), filled with -1. If D must show whether eigenvalues k and j > k are real,
+    partner[k] = j, and both guesses are half the sum."""
     w = track.w[i - 1]
     slope = track.slope[i - 1]
     conjugate = np.empty(len(w), np.int64)
