@@ -148,10 +148,6 @@ class ThresholdsOverDrags:
         drag has such a threshold."""
         return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
 
-    def is_unstable_by_drag(self, F: float) -> list[bool]:
-        """For each drag: whether the straight arm is unstable at the force F."""
-        return [f.is_unstable_at(F) for f in self.by_drag]
-
 
 def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
     """Smallest and largest number in `values`, which may contain None; None if there is no number."""

@@ -62,7 +62,11 @@ def shape_rows(arm: SlenderArm) -> list[NumberRow]:
             rows.append(NumberRow(f"segment {number}", interval, station_phrase(station), source))
             start = station.end
     if arm.law != LINEAR.law:
-        rows.append(NumberRow("law", law_phrase(arm), LAW_FORMULA, "E is the modulus at small strain"))
+        rows.append(
+            NumberRow(
+                "law", f"neo-Hookean, {arm.section} section", LAW_FORMULA, "E is the modulus at small strain"
+            )
+        )
     return rows
 
 
@@ -165,12 +169,6 @@ def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
         ),
         *([force] if force else []),
     ]
-
-
-def law_phrase(arm: SlenderArm) -> str:
-    """Phrase for the constitutive law of an arm: "linear", or "neo-Hookean" and the kind of section."""
-    law = "linear" if arm.law == LINEAR.law else "neo-Hookean"
-    return f"{law}, {arm.section} section" if arm.law != LINEAR.law else law
 
 
 def station_phrase(station: Station) -> str:

@@ -1,7 +1,6 @@
 """Sentences for an arm to which the model does not apply: violated limit, excess over the limit,
 and remedy."""
 
-from collections.abc import Iterable
 from math import isnan
 
 from ..model.arm.arm import SlenderArm
@@ -19,23 +18,20 @@ MAX_FOUR_DIGIT_RATIO = 1.1
 def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
     """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
     limit first."""
-    first, *others = _first_effect_of_each_kind(assessment.effects_with(Validity.does_not_apply))
+    effects = assessment.effects_with(Validity.does_not_apply)
+    # The first effect of each kind stays.
+    *others, first = {effect_kind(effect): effect for effect in reversed(effects)}.values()
     remedy = _remedy(first, arm, assessment)
     is_valid = assessment.validity_at_flutter != Validity.does_not_apply
     load = f" at {LoadFormatter(arm).typed_text}" if is_valid else ""
     excess = f"{first.name} is {excess_text(first)} what the model allows"
     sentences = [f"The model does not apply{load}: {excess}; {remedy}."]
-    for effect in others:
+    for effect in reversed(others):
         name = effect.name.capitalize()
         sentences.append(
             f"{name} is {excess_text(effect)} what the model allows, too; {_remedy(effect, arm, assessment)}."
         )
     return sentences
-
-
-def effect_kinds_text(effects: Iterable[Effect]) -> str:
-    """Distinct kinds of the neglected effects, joined by "and": "inertia and weight"."""
-    return " and ".join(dict.fromkeys(map(effect_kind, effects)))
 
 
 def effect_kind(effect: Effect) -> str:
@@ -49,11 +45,6 @@ def excess_text(effect: Effect) -> str:
     MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
     return f"{float(f'{ratio:.2g}'):g} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
-
-
-def _first_effect_of_each_kind(effects: list[Effect]) -> list[Effect]:
-    """The first effect of each kind. effects: in decreasing order of the ratio to the limit."""
-    return list({effect_kind(effect): effect for effect in reversed(effects)}.values())[::-1]
 
 
 def _remedy(effect: Effect, arm: SlenderArm, assessment: Assessment) -> str:

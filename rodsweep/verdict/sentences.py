@@ -10,7 +10,7 @@ from .assessment import Assessment
 from .flutter import RangeOverDrags, ThresholdsOverDrags
 from .load import LoadFormatter
 from .planes import PlaneOfMotion, Planes
-from .remedies import effect_kinds_text, not_applicable_sentences
+from .remedies import effect_kind, not_applicable_sentences
 from .rounded_numbers import percent_range_text, range_text
 
 
@@ -44,9 +44,10 @@ def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
         return [*_valid_arm_sentences(plane), *_second_plane_sentences(planes, "is")]
     headline = not_applicable_sentences(plane.arm, assessment)
     if assessment.validity_at_flutter == Validity.does_not_apply:
+        kinds = " and ".join(dict.fromkeys(map(effect_kind, invalid_effects)))
         return [
             *headline,
-            *_flutter_without_effects(plane, effect_kinds_text(invalid_effects)),
+            *_flutter_without_effects(plane, kinds),
             *_second_plane_sentences(planes, "would be"),
         ]
     flutter = plane.thresholds.first_forces(ChangeKind.hopf)
@@ -124,7 +125,7 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
         end = load.range_of_forces_text(RangeOverDrags(thresholds.end, thresholds.end))
         unknown = f"whether the arm beats at {load.typed_text} is not known"
         return f"Flutter is at {load_text}; {unknown}: changes were sought up to {end}."
-    unstable = thresholds.is_unstable_by_drag(F)
+    unstable = [drag.is_unstable_at(F) for drag in thresholds.by_drag]
     if flutter.high < F and not any(unstable):
         return f"{load.typed_text} is beyond flutter, at {load_text}: the straight arm is stable again."
     if not all(unstable):

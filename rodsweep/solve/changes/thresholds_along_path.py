@@ -127,8 +127,7 @@ def find_thresholds(
         counts.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
     if certify and not tracer.leading_eigenvalues_proved:
         counts.doubts.append("it is not proved everywhere in the range which eigenvalue leads")
-    result = _with_counts(counts, count, crossings, end_count)
-    result = _with_interval(result, found, (start, stop))
+    result = _search_result(found, (start, stop), counts, crossings, (count, end_count))
     return replace(result, oscillates_at_start=oscillates, solve_count=problem.solve_count)
 
 
@@ -147,39 +146,33 @@ def find_axis_crossings(
     ordered = sorted(found.crossings, key=lambda c: c.value)
     count = 0 if path.name == "F" and start == 0 else counts.count_at_start(*ends, ordered)
     crossings, end_count = counts.crossings_with_counts(ordered, ends, count)
-    return _with_interval(_with_counts(counts, count, crossings, end_count), found, (start, stop))
+    return _search_result(found, (start, stop), counts, crossings, (count, end_count))
 
 
-def _with_counts(
-    counts: ModeCounter, start_count: int, crossings: tuple[Threshold, ...], end_count: int
+def _search_result(
+    found: PathCrossings,
+    interval: tuple[float, float],
+    counts: ModeCounter,
+    thresholds: tuple[Threshold, ...],
+    end_counts: tuple[int, int],
 ) -> ThresholdSearchResult:
-    """`ThresholdSearchResult` of the thresholds `crossings`. counts: gaps and doubts of the search.
-    start_count, end_count: numbers of unstable modes at the two ends."""
-    known = all(number >= 0 for number in (start_count, end_count, *(c.unstable_after for c in crossings)))
+    """`ThresholdSearchResult` of `thresholds` in the searched part of the requested `interval`, and why the
+    search ended early. counts: gaps and doubts of the search. end_counts: numbers of unstable modes at both
+    ends."""
+    known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
+    reason = found.search_end.reason
+    end = found.path.parameter.value(found.search_end.p)
+    message = f"the search ends at {found.path.name} = {end:.12g}: {reason}" if reason else ""
     return ThresholdSearchResult(
-        thresholds=crossings,
-        open_range=_hull_of_gaps(counts.gaps),
-        unstable_at_start=start_count,
-        unstable_at_end=end_count,
-        proved=counts.certify and not counts.gaps and not counts.doubts and known,
-        doubt_text="; ".join(counts.doubts),
-    )
-
-
-def _with_interval(
-    result: ThresholdSearchResult, crossings: PathCrossings, interval: tuple[float, float]
-) -> ThresholdSearchResult:
-    """`result` with the searched part of the requested `interval`, and why the search ended early."""
-    searched = crossings.searched_interval(*interval)
-    reason = crossings.search_end.reason
-    end = crossings.path.parameter.value(crossings.search_end.p)
-    message = f"the search ends at {crossings.path.name} = {end:.12g}: {reason}" if reason else ""
-    return replace(
-        result,
-        searched_interval=searched,
+        thresholds=thresholds,
+        searched_interval=found.searched_interval(*interval),
         ended_early=bool(reason),
-        evaluation_count=crossings.evaluation_count,
-        doubt_text="; ".join(filter(None, (message, result.doubt_text))),
+        open_range=_hull_of_gaps(counts.gaps),
+        unstable_at_start=end_counts[0],
+        unstable_at_end=end_counts[1],
+        proved=counts.certify and not counts.gaps and not counts.doubts and known,
+        evaluation_count=found.evaluation_count,
+        doubt_text="; ".join(filter(None, (message, *counts.doubts))),
     )
 
 

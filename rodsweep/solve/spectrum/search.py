@@ -11,12 +11,17 @@ from typing import Any
 
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...model.rod import Rod
-from ..backend.solver_pools import destroy_pooled_solvers
-from ..point_outcome import outcome_or_failure
 from .candidates import Candidates, CountComparison, candidates_on_mesh, compare_with_count
 from .problem import TransverseProblem, meshes_text, transverse_problem
 from .search_settings import SEARCH_SETTINGS
-from .spectrum import Spectrum, SpectrumRequest, errors_with_rounding, failed_spectrum, modes_at_lobatto_nodes
+from .spectrum import (
+    Spectrum,
+    SpectrumRequest,
+    errors_with_rounding,
+    failed_spectrum,
+    modes_at_lobatto_nodes,
+    spectrum_or_failure,
+)
 from .status import SpectrumStatus
 
 __all__ = ["SpectrumSearch", "Spectrum", "SpectrumRequest", "solve_spectrum", "warm_up"]
@@ -41,19 +46,8 @@ class CheckedCandidates:
 
 def solve_spectrum(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised."""
-
-    def failed(cause: str) -> Spectrum:
-        destroy_pooled_solvers()
-        return failed_spectrum(SpectrumStatus.failed, request, cause)
-
-    if rod.is_uniform and not rod.is_uniform_and_linear:
-        return _spectrum_by_equivalent_rod(rod, request)
-    return outcome_or_failure(lambda: SpectrumSearch(rod, request).outcome(), failed)
-
-
-def _spectrum_by_equivalent_rod(rod: Rod, request: SpectrumRequest) -> Spectrum:
-    """Spectrum of a uniform rod of nonlinear material, from the equivalent linear rod, with rescaled
-    eigenvalues."""
+    if not rod.is_uniform or rod.is_uniform_and_linear:
+        return spectrum_or_failure(lambda: SpectrumSearch(rod, request).outcome(), request)
     linear, rate = rod.equivalent_linear_rod
     scaled = solve_spectrum(linear, request)
     return replace(scaled, eigenvalues=rate * scaled.eigenvalues, error_estimate=rate * scaled.error_estimate)

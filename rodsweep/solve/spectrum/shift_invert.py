@@ -9,12 +9,13 @@ package with pivoting, otherwise the sparse LU.
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array, Complex
+from ...discretization.straight.arm_pencil import ArmPencil
+from ...discretization.straight.pencil import Pencil
 from ...model.rod import Rod
 from ...solve_progress import report
 from ..backend.petsc import PETSc, SLEPc, sparse_package
@@ -72,30 +73,6 @@ SPECTRUM_OPTIONS_PREFIX = "spectrum_"
 """Prefix of the PETSc options that override the settings of this eigensolver, as in -spectrum_eps_ncv 32."""
 
 
-class PencilPattern(Protocol):
-    """Sparsity pattern and nodes of a pencil, for `ShiftInvertSolver`."""
-
-    @property
-    def rows(self) -> NDArray[np.int32]:
-        """Row of each nonzero entry, (nnz,)."""
-
-    @property
-    def columns(self) -> NDArray[np.int32]:
-        """Column of each nonzero entry, (nnz,)."""
-
-    @property
-    def node_positions(self) -> Array:
-        """Material coordinate u of all nodes, including the clamp, (nodes + 1,)."""
-
-    @property
-    def node_count(self) -> int:
-        """Number of nodes without the clamp."""
-
-    @property
-    def unknown_count(self) -> int:
-        """Number of rows of the pencil."""
-
-
 class LoadedPencil(NamedTuple):
     """Data of the rod whose matrices a solver contains.
 
@@ -114,7 +91,7 @@ class ShiftInvertSolver(ABC):
     mass: mass at the nodes without the clamp, (nodes,), for the first Krylov vector. A, B: PETSc's matrices
     A - shift B and B of the rod in `loaded_pencil`. eps: SLEPc's solver."""
 
-    def __init__(self, pattern: PencilPattern, mass: Array):
+    def __init__(self, pattern: Pencil | ArmPencil, mass: Array):
         self.node_count = pattern.node_count
         n = pattern.unknown_count
         package = sparse_package()

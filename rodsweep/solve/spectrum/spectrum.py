@@ -1,5 +1,6 @@
 """Leading eigenvalues of one rod or of several rods: the request and the outcome."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +13,8 @@ from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.straight.pencil import factors_to_unit_tip
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
+from ..backend.solver_pools import destroy_pooled_solvers
+from ..point_outcome import outcome_or_failure
 from .problem import TransverseProblem
 from .status import SpectrumStatus
 
@@ -127,6 +130,16 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
         else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
     )
     return error + rounding * ROUND_OFF * np.abs(w)
+
+
+def spectrum_or_failure(solve: Callable[[], Spectrum], request: SpectrumRequest) -> Spectrum:
+    """The spectrum that `solve` returns; a failure is returned as a status, never raised."""
+
+    def failed(cause: str) -> Spectrum:
+        destroy_pooled_solvers()
+        return failed_spectrum(SpectrumStatus.failed, request, cause)
+
+    return outcome_or_failure(solve, failed)
 
 
 def failed_spectrum(status: SpectrumStatus, request: SpectrumRequest, message: str) -> Spectrum:

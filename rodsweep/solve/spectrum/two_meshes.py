@@ -16,11 +16,9 @@ from ...arrays import Array, Complex
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS, mesh_accuracy
 from ...discretization.straight.transverse_mesh import AnyMesh
 from ...model.rod import Rod
-from ..backend.solver_pools import destroy_pooled_solvers
-from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
 from .problem import TransverseProblem, meshes_text, transverse_problem
-from .spectrum import Spectrum, SpectrumRequest, failed_spectrum, modes_at_lobatto_nodes
+from .spectrum import Spectrum, SpectrumRequest, modes_at_lobatto_nodes, spectrum_or_failure
 from .status import SpectrumStatus
 
 
@@ -56,12 +54,7 @@ TWO_MESH_SETTINGS = TwoMeshSettings()
 def solve_on_two_meshes(rod: Rod, request: SpectrumRequest) -> Spectrum:
     """The leading `request.modes` eigenvalues of a rod; a failure is returned as a status, never raised. No
     result is proved; `request.certify` is ignored."""
-
-    def failed(cause: str) -> Spectrum:
-        destroy_pooled_solvers()
-        return failed_spectrum(SpectrumStatus.failed, request, cause)
-
-    return outcome_or_failure(lambda: _spectrum_or_raise(rod, request), failed)
+    return spectrum_or_failure(lambda: _spectrum_or_raise(rod, request), request)
 
 
 def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:

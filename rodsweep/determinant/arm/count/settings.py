@@ -94,6 +94,9 @@ class NoCrossingSettings(KernelConstants):
 
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
+    line_distance: float = 0.05
+    """Distance of the line to the left of the last requested eigenvalue w, or of the imaginary axis if w
+    grows, divided by |w|."""
     arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0

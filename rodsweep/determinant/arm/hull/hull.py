@@ -33,6 +33,7 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ....model.material.build import Build
 from ....model.rod import Rod
+from ...parameter_path import ParameterPath
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
 from .region import HULL_SETTINGS, UNBOUNDED_HULL, EigenvalueHull, PathHulls
 from .weights import clamp_integrals, least_squared_norm, trial_constant_weights, varying_weight_norms
@@ -43,12 +44,13 @@ def hull_of(rod: Rod) -> EigenvalueHull:
     return _hull_of_sampled_arms(_hull_samples([rod]))
 
 
-def hulls_along(rods: Sequence[Rod], p: Array) -> PathHulls:
-    """The hulls of all arms of a path between neighbouring values of p, (k,); rods: the arms at these values.
-    Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement` allows for the
-    arms between."""
-    arms = _hull_samples(rods)
-    hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(len(rods) - 1)]
+def hulls_along(path: ParameterPath, low: float, high: float, count: int) -> PathHulls:
+    """The hulls of all arms of a path between neighbouring ones of `count` equally spaced values of p, from
+    `low` to `high`. Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement`
+    allows for the arms between."""
+    p = np.linspace(low, high, count)
+    arms = _hull_samples([path.rod_at(x) for x in p.tolist()])
+    hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(count - 1)]
     return PathHulls(p, np.array([hull.a for hull in hulls]), np.array([hull.c for hull in hulls]))
 
 

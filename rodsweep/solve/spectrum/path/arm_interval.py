@@ -72,26 +72,21 @@ def follow_interval(
     family is used again if it contains enough of the points p.
     """
     best: ArmInterval | None = None
-    for added_modes in (
-        number
-        for number in ARM_FOLLOWING_SETTINGS.further_modes
-        if previous is None or number >= previous.further_modes
-    ):
+    if len(p) < ARM_FOLLOWING_SETTINGS.min_points:
+        return None
+    for added_modes in ARM_FOLLOWING_SETTINGS.further_modes:
+        if previous is not None and added_modes < previous.further_modes:
+            continue
         if best is not None and not (
             _follows_too_few_modes(best)
             or (not counts_follow and _proves_middle(path, best, request, added_modes))
         ):
             break
-        interval = (
-            _follow_with_further_modes(path, p, request, added_modes, previous)
-            if len(p) >= ARM_FOLLOWING_SETTINGS.min_points
-            else None
-        )
+        interval = _follow_with_further_modes(path, p, request, added_modes, previous)
         if interval is not None and (best is None or _is_better_interval(interval, best, request.modes)):
             best = interval
-        is_proved = best is not None and best.proved_points(
-            request.modes
-        ) >= ARM_FOLLOWING_SETTINGS.min_proved_fraction * len(best.p)
+        min_proved = 0.0 if best is None else ARM_FOLLOWING_SETTINGS.min_proved_fraction * len(best.p)
+        is_proved = best is not None and best.proved_points(request.modes) >= min_proved
         if best is not None and is_proved and not _follows_too_few_modes(best):
             break
     return best
@@ -115,16 +110,8 @@ def _proves_middle(path: ParameterPath, interval: ArmInterval, request: Spectrum
     """Whether following `added` additional modes would prove completeness at the middle point among the
     points without a proof."""
     unproved = np.flatnonzero(interval.proved_modes < request.modes)
-    middle = float(interval.p[unproved[len(unproved) // 2]])
-    return _more_modes_prove_point(path, interval, middle, request, added)
-
-
-def _more_modes_prove_point(
-    path: ParameterPath, interval: ArmInterval, p: float, request: SpectrumRequest, added_modes: int
-) -> bool:
-    """Whether the wanted modes at path variable p, inside the interval `interval`, would be proved complete
-    if `added_modes` modes were followed in addition."""
-    roots = _leading_roots(path, p, request, added_modes)
+    p = float(interval.p[unproved[len(unproved) // 2]])
+    roots = _leading_roots(path, p, request, added)
     if roots is None or len(roots.w) < request.modes:
         return False
     arm = arm_determinant(path.rod_at(p))
@@ -142,7 +129,9 @@ def _follow_with_further_modes(
     followed in addition to the wanted modes; None if the first point fails or no family is found."""
     first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_modes)
     if first is None:
-        first = first_eigenvalues(path, float(p[0]), request, added_modes)
+        roots = _leading_roots(path, float(p[0]), request, added_modes)
+        # Following takes no unpaired complex eigenvalues.
+        first = None if roots is None else roots.w[has_conjugate(roots.w)]
     n = len(p)
     family_data = None
     if first is not None and previous is not None:
@@ -154,13 +143,8 @@ def _follow_with_further_modes(
             family_data = (previous.family, previous.hulls)
             n = inside_count
         else:
-            n = min(
-                n,
-                max(
-                    ARM_FOLLOWING_SETTINGS.max_points_growth * len(previous.p),
-                    ARM_FOLLOWING_SETTINGS.min_points,
-                ),
-            )
+            max_points = ARM_FOLLOWING_SETTINGS.max_points_growth * len(previous.p)
+            n = min(n, max(max_points, ARM_FOLLOWING_SETTINGS.min_points))
     while first is not None and family_data is None and n >= ARM_FOLLOWING_SETTINGS.min_points:
         family_data = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
@@ -192,8 +176,7 @@ def family_and_hulls(
     try:
         if not has_smooth_coefficients(path, low, high):
             return None
-        hull_positions = np.linspace(low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
-        hulls = hulls_along([path.rod_at(x) for x in hull_positions.tolist()], hull_positions)
+        hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first_eigenvalues).max())
         line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first_eigenvalues[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
@@ -219,15 +202,6 @@ def _eigenvalues_of_previous_interval(
     if previous.proved_points(request.modes) < len(previous.p):
         return None
     return previous.track.w[-1][previous.track.descending_order[-1]]
-
-
-def first_eigenvalues(
-    path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int
-) -> Complex | None:
-    """Eigenvalues at p from which following starts, (m,), without unpaired complex eigenvalues; None if the
-    solve fails."""
-    roots = _leading_roots(path, p, request, added_modes)
-    return None if roots is None else roots.w[has_conjugate(roots.w)]
 
 
 def _leading_roots(path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:

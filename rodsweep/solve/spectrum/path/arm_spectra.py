@@ -12,8 +12,8 @@ from ....determinant.parameter_path import ParameterPath
 from ..spectrum import FollowedPoints, SpectrumRequest
 from .arm_count import confirmed_count_at
 from .arm_following_settings import ARM_FOLLOWING_SETTINGS
-from .arm_interval import ArmInterval, follow_interval
-from .carried_arm_count import carry_counts
+from .arm_interval import follow_interval
+from .carried_arm_count import ArmCountCarrier
 from .carried_count import assess_points, leading_eigenvalues
 from .prediction import slice_track
 
@@ -25,8 +25,10 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
     if interval is None:
         return None
     if (interval.proved_modes < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
-        interval = _with_finer_hulls(path, interval)
-    carry_counts(path, interval, request.modes)
+        number = ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
+        hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, number)
+        interval = interval._replace(hulls=hulls)
+    ArmCountCarrier(path, interval, request.modes).carry_counts()
     for i in np.flatnonzero(interval.proved_modes < request.modes).tolist():
         point_track = slice_track(interval.track, i, i + 1)
         interval.proved_modes[i] = confirmed_count_at(
@@ -36,13 +38,3 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
         interval.track, interval.proved_modes, request.modes, request.accuracy
     )
     return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
-
-
-def _with_finer_hulls(path: ParameterPath, interval: ArmInterval) -> ArmInterval:
-    """The interval `interval` with hulls at more arms, hence closer to the hull of each arm."""
-    hull_positions = np.linspace(
-        interval.family.p_low, interval.family.p_high, ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
-    )
-    return interval._replace(
-        hulls=hulls_along([path.rod_at(x) for x in hull_positions.tolist()], hull_positions)
-    )
