@@ -25,8 +25,7 @@ class ExponentSettings(KernelConstants):
     max_exponent: float = 600.0
     """In exp(x), an x above this number is replaced by this number, since exp overflows at 709."""
     cosh_series_below: float = 0.1
-    """For |z| below this number, E(z) and dE/dz are computed by series, because the closed form of dE/dz
-    would cancel."""
+    """For |z| below this number, E(z) and dE/dz are computed by series: the closed form of dE/dz cancels."""
     sinh_series_below: float = 0.25
     """For |q^2| below this number, sinh(q)/q and its slope are computed by series, because the closed form of
     the slope would cancel."""

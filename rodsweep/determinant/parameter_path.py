@@ -60,8 +60,7 @@ class ParameterPath:
 
     @property
     def is_compliance_path(self) -> bool:
-        """Whether the path variable p is the compliance 1/k of a varying stiffness k, instead of the
-        parameter itself."""
+        """Whether the path variable p is the compliance 1/k of a varying stiffness k, not the parameter."""
         return self.parameter.has_inverse_coordinate
 
     @property

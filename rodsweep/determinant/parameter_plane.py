@@ -32,14 +32,12 @@ PLANE_DIFFERENCE_SETTINGS = PlaneDifferenceSettings()
 CENTRAL_STENCIL = ((-2, 1 / 12), (-1, -8 / 12), (1, 8 / 12), (2, -1 / 12))
 """Central difference of fourth order for a first derivative: pairs (offset in steps, weight times step)."""
 ONE_SIDED_STENCIL = ((0, -25 / 12), (1, 4.0), (2, -3.0), (3, 4 / 3), (4, -1 / 4))
-"""One-sided difference of fourth order for a first derivative, as pairs (offset in steps, weight times
-step)."""
+"""One-sided difference of fourth order for a derivative, as pairs (offset in steps, weight times step)."""
 
 
 @dataclass(frozen=True, slots=True)
 class PlaneAxis:
-    """One axis of a plane: the parameter `name` from `start` to `stop`, both finite, linear or
-    logarithmic."""
+    """One axis of a plane: the parameter `name` from `start` to `stop`, finite, linear or logarithmic."""
 
     name: str
     start: float
@@ -47,8 +45,7 @@ class PlaneAxis:
     logarithmic: bool = False
 
     def value(self, x: float) -> float:
-        """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`. x just beyond an end is moved
-        to the end."""
+        """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`; clipped just beyond an end."""
         if (
             -PLANE_DIFFERENCE_SETTINGS.end_tolerance < x < 0
             or 1 < x < 1 + PLANE_DIFFERENCE_SETTINGS.end_tolerance
@@ -69,8 +66,7 @@ class PlaneAxis:
         return value * (log(self.stop) - log(self.start)) if self.logarithmic else self.stop - self.start
 
     def path_variable_per_coordinate(self, value: float) -> float:
-        """dp/dx where the parameter has `value`, with the path variable p: 1/k for a stiffness k, else the
-        parameter."""
+        """dp/dx where the parameter has `value`, p: 1/k for a stiffness k, else the parameter."""
         parameter_rate = self.parameter_per_coordinate(value)
         return -parameter_rate / value**2 if PARAMETERS[self.name].has_inverse_coordinate else parameter_rate
 

@@ -79,9 +79,8 @@ class Boundary:
         return BoundarySolution(v, jacobian, error).tangent
 
     def point_near(self, guess: Array, normal: NDArray[np.floating]) -> BoundarySolution | None:
-        """The point of the boundary on the plane through `guess`, (3,), perpendicular to `normal`, (3,); None
-        if Newton's method fails. guess: start of Newton's method, coordinates as in
-        `residual_and_jacobian`."""
+        """The point of the boundary on the plane through `guess`, (3,), normal to `normal`, (3,); None if
+        Newton's method fails. guess: start of Newton's method, coordinates as in `residual_and_jacobian`."""
         v = guess.copy()
         previous_size = math.inf
         for _ in range(BOUNDARY_POINT_SETTINGS.max_steps):

@@ -49,8 +49,7 @@ DETERMINANT_SETTINGS = DeterminantSettings()
 
 
 class DeterminantValue(NamedTuple):
-    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`. rounding_error: bound of the rounding error of
-    D exp(-S)."""
+    """D and D_w = dD/dw, both times exp(-S), S = `log_scale`. rounding_error: bound for D exp(-S)."""
 
     D: complex
     D_w: complex
@@ -112,8 +111,7 @@ def determinant_from_parts(w: complex, coefficients: Coefficients, parts: EvenSu
 def second_difference(
     value_after: DeterminantValue, value_before: DeterminantValue, S: float, h: float
 ) -> complex:
-    """D'' exp(-S) by the central difference of D' between w + h (`value_after`) and w - h
-    (`value_before`)."""
+    """D'' exp(-S) by a central difference of D' between w + h (`value_after`) and w - h (`value_before`)."""
     # Each value has its own scale exp(-S); the difference needs one common scale.
     return (
         value_after.D_w * math.exp(value_after.log_scale - S)

@@ -78,8 +78,7 @@ class Beam(RodOnMesh):
         return out
 
     def jacobian(self, z: Array) -> Array:
-        """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns), with time in
-        tau2."""
+        """Jacobians d(dz/dt)/dz, (..., unknowns, unknowns), of states z, (..., unknowns); time in tau2."""
         size = self.unknown_count
         out = np.empty((*z.shape, size))
         states = z.reshape(-1, size)

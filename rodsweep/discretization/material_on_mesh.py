@@ -48,16 +48,14 @@ def material_derivative_at_nodes(rod: Rod, name: str, mesh: Mesh) -> Material:
 
 def relative_bending_compliance_at_nodes(build: Build, mesh: Mesh) -> Array:
     """Bending compliance c3(u)/c3(0) at all nodes, (nodes + 1,), of an arm without taper and with the build
-    `build`. At a jump the value is the mean of both sides, so that its product with m3 is the mean bending
-    strain."""
+    `build`. At a jump the value is the mean of both sides, so that times m3 it is the mean bending strain."""
     if build.profile is None:
         return np.ones(mesh.node_count + 1)
     return _mean_at_nodes(build.relative_compliances(1.0, mesh.points_inside_elements)[2:], mesh)[0]
 
 
 def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
-    """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of these
-    nodes."""
+    """The nodes of a mesh at which the material of a rod jumps, and the material on both sides of them."""
     indices, nodes = _indices_beside_jumps(rod.build, mesh)
     if not len(nodes):
         return NO_JUMPS

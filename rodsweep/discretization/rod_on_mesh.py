@@ -67,8 +67,7 @@ class RodOnMesh(ABC):
 
     @property
     def has_continuous_stresses(self) -> bool:
-        """Whether S is continuous along the rod. S is continuous if the material does not jump or the law is
-        linear."""
+        """Whether S is continuous along the rod: the material does not jump, or the law is linear."""
         return self.rod.build.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:

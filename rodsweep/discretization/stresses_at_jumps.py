@@ -30,8 +30,7 @@ discontinuous at a jump."""
 JUMPING_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
 """The components of S that are discontinuous at a jump."""
 SHARE_COLUMNS = 3, 4
-"""Columns of the material on both sides of a jump with the weights of the sides in the means of
-JUMPING_COMPONENTS."""
+"""Columns of the material on both sides of a jump with their weights in the means of JUMPING_COMPONENTS."""
 
 
 @compiled

@@ -19,8 +19,7 @@ from .material.build import Build, LocalCoefficients
 from .rod import Rod
 
 SAMPLE_COUNT = 64
-"""Number of samples of K = kappa^2, with equal ratios of successive samples. A ratio of 1.15 suffices for an
-estimate."""
+"""Number of samples of K = kappa^2, with equal ratios. A ratio of 1.15 suffices for an estimate."""
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
@@ -63,8 +62,7 @@ def sampled_arm(rod: Rod) -> SampledArm:
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def _interval_midpoints(build: Build) -> tuple[Array, Array]:
-    """Returns (midpoints, lengths) of short intervals of u between the breaks of a profile, (points,)
-    each."""
+    """Returns (midpoints, lengths) of short intervals of u between breaks of a profile, (points,) each."""
     lengths = np.diff(build.breaks)
     fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
     points = (build.breaks[:-1, None] + lengths[:, None] * fractions).ravel()

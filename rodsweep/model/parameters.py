@@ -21,8 +21,7 @@ class Range:
     contains: Callable[[float], bool]
     description: str
     schema_bounds: Mapping[str, float] = field(default_factory=dict)
-    """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every finite number is
-    allowed."""
+    """Bounds of the range by JSON schema keyword, like {"minimum": 0}; empty if every number is allowed."""
     remark: str = ""
     """Why some finite numbers above 0 lie outside the range, in parentheses, for messages."""
 
@@ -63,8 +62,7 @@ class Parameter:
     optional: bool = False
     """Whether a result file contains the parameter only if the config contains it."""
     default: float | None = None
-    """Value of the parameter if a config does not contain it; None for a parameter that every grid must
-    contain."""
+    """Value of the parameter if a config does not contain it; None if every grid must contain it."""
     scaled_names: tuple[str, ...] = ()
     """Names of the stiffnesses or drags that the value multiplies; empty for a load, a stiffness or a drag. A
     parameter may multiply either stiffnesses or drags, not both, because the covering of a path requires
@@ -97,8 +95,7 @@ class Parameter:
 
     @property
     def neutral_value(self) -> float:
-        """The default of the parameter; without a default, the value at coordinate 0, which is valid for
-        every rod."""
+        """The default of the parameter; without one, the value at coordinate 0, valid for every rod."""
         return self.value(0.0) if self.default is None else self.default
 
     @property
@@ -114,8 +111,7 @@ class Parameter:
 
 SMALLEST_TAPER = 0.01
 LARGEST_TAPER = 100.0
-"""SMALLEST_TAPER, LARGEST_TAPER: range of the taper. Taper 0 is excluded, because a pointed tip has no
-stiffness."""
+"""SMALLEST_TAPER, LARGEST_TAPER: range of the taper. Taper 0 is excluded: a point has no stiffness."""
 
 
 def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
@@ -210,8 +206,7 @@ def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAME
 
 
 def with_parameter_fields(cls: type[Decorated]) -> type[Decorated]:
-    """Class decorator that adds every parameter of `PARAMETERS`, in this order, as a field with its
-    default."""
+    """Class decorator that adds every parameter of `PARAMETERS`, in order, as a field with its default."""
     own_annotations = dict(cls.__annotations__)
     cls.__annotations__ = dict.fromkeys(PARAMETERS, float) | {
         n: a for n, a in own_annotations.items() if n not in PARAMETERS

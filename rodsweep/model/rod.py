@@ -148,8 +148,7 @@ class Rod:
 
     @property
     def without_nonlinear_parameters(self) -> "Rod":
-        """The rod with the same parameters of the transverse linear problem, and defaults of all other
-        parameters."""
+        """The rod with the same parameters of the transverse linear problem, and defaults of all others."""
         return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
 
     def coordinate(self, name: str) -> float:

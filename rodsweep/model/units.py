@@ -40,8 +40,7 @@ KINEMATIC_VISCOSITY_MESSAGE = "is a kinematic viscosity; multiply it by the dens
 
 @cache
 def unit_registry() -> "UnitRegistry":
-    """pint's registry of units, loaded at first use. Raises EnvironmentIncomplete if pint is not
-    installed."""
+    """pint's registry of units, loaded at first use. Raises EnvironmentIncomplete without pint."""
     try:
         from pint import UnitRegistry
     except ModuleNotFoundError:
@@ -51,8 +50,7 @@ def unit_registry() -> "UnitRegistry":
 
 def split_quantity(text: str) -> tuple[float, str]:
     """Returns (number, unit) of a text like "10 cm"; (nan, "") for a text that does not start with a number.
-    In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit is "" if the text has none, and not
-    checked."""
+    In the unit, "." and "·", as in "Pa·s", are replaced by "*". The unit may be "", and is not checked."""
     match = NUMBER_AND_UNIT_PATTERN.fullmatch(text)
     if not match:
         return math.nan, ""
@@ -97,8 +95,7 @@ def _number_in_si(name: str, quantity: Any, unit: str, allowed: str) -> float:
 
 def conversion_factor(beginning: str, unit_text: str, unit: str, allowed: str) -> float:
     """Number by which a value in the unit `unit_text` is multiplied to get the value in `unit`. beginning,
-    allowed: beginning and end of messages. Raises InputError for an unknown unit and for a unit of another
-    dimension."""
+    allowed: beginning and end of messages. Raises InputError for an unknown unit or another dimension."""
     if unit_text.startswith(","):
         raise InputError(f"{beginning} has a decimal comma; write a point")
     if (

@@ -28,8 +28,7 @@ MEASURED_TAPERS = (0.5, 1.5)
 """Smallest and largest taper of the cones in the measurement of BRANCH_SECONDS_PER_FORCE. A cone of taper
 0.19 takes some hundred times as long as the formula says, swelling rubber thirty times."""
 MAX_MEASURED_LOAD = 0.9
-"""Largest force, divided by the crushing force (zero stretch), for which the formula of
-BRANCH_SECONDS_PER_FORCE holds."""
+"""Largest force, divided by the crushing force, for which the formula of BRANCH_SECONDS_PER_FORCE holds."""
 
 
 def branches_cost(points: Points, name: str, limits: tuple[float, float], accuracy: float) -> CostEstimate:
@@ -56,9 +55,8 @@ def branches_cost(points: Points, name: str, limits: tuple[float, float], accura
 
 
 def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
-    """Kind of rods among the sampled rods whose branches may take many times as long as estimated; empty if
-    there are none. builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or
-    (rods,)."""
+    """Kind of rods among the sampled rods whose branches may take many times as long as estimated, or empty.
+    builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,)."""
     min_taper, max_taper = MEASURED_TAPERS
     if any(build.constitutive_law is not LINEAR for build in builds):
         return "branches of rubber"

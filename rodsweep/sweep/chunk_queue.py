@@ -16,14 +16,12 @@ from typing import Any, Protocol
 from .points.ranges import IndexRange, index_count
 
 CHUNK_SECONDS = 0.1
-"""Planned solve time of a chunk, in s: long compared with the time of a message, short compared with a
-run."""
+"""Planned solve time of a chunk, in s: long compared with a message, short compared with a run."""
 CHUNK_SECONDS_PER_RANK = 1e-3
 """Planned time of a chunk in a run with many ranks, in s per rank. The first rank answers a request in 50
 microseconds and so spends a twentieth of its time on answers."""
 MAX_CHUNK_TIME_RATIO = 3.0
-"""Time after which a rank returns the unsolved items of a chunk to the queue, divided by the planned time of
-the chunk."""
+"""Time after which a rank returns the unsolved items of a chunk to the queue, over the planned time."""
 MAX_CHUNK_ITEMS = 1 << 16
 """Maximum number of items in a chunk."""
 MIN_ITEMS_AHEAD = 4
@@ -55,8 +53,7 @@ class RankReport:
     """Name of the stop signal that the rank received, or empty. Items returned after a stop signal are left
     for another run."""
     results: dict[int, Any] = field(default_factory=dict)
-    """Results of finished items, by number of the item; empty if no item depends on the results of other
-    items."""
+    """Results of finished items, by number of the item; empty if no item depends on other items."""
 
 
 class ChunkQueue:

@@ -31,8 +31,7 @@ SPARSE_MS_PER_UNKNOWN = 8e-3
 CERTIFICATE_MS = 0.15
 """Time to certify one spectrum by winding numbers, in ms."""
 ARM_SPECTRUM_MS = 4.0
-"""Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median over 40 random
-arms."""
+"""Time to evaluate D and certify one spectrum of an arm that is not uniform, in ms: median of 40 arms."""
 MS_PER_SQUARED_UNSTABLE_MODE = 0.08
 """Time to find all unstable modes of an arm that is not uniform, divided by the squared number of these
 modes, in ms: within a factor of two for 25 arms with up to 62 unstable modes; 82 and 110 modes took 1.3 and
@@ -48,8 +47,7 @@ FIRST_POINT_COST = 2.0
 FOLLOWED_POINT_MS = 0.006
 """Time per point of a group, in which eigenvalues are continued from a neighbouring point, in ms."""
 FOLLOWED_ARM_POINT_MS = 0.15
-"""Time per point, including the first point, of a group of arms that are not uniform, in ms: median over 30
-random arms."""
+"""Time per point, including the first point, of a group of arms that are not uniform, in ms: median of 30."""
 MS_PER_SQUARED_UNSTABLE_MODE_OF_ROD = 0.02
 """Time of a spectrum of a uniform rod with N unstable modes, divided by N^2 (1 + (N/
 MODES_OF_SLOW_SPECTRUM)^2), in ms: 0.014 to 0.025 for eight soft rods with 64 to 1000 unstable modes, up to
@@ -63,8 +61,7 @@ compliances under 1e3."""
 MIN_WAVE_NUMBER_OF_LAYERS = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
 MAX_SQUARED_WAVE_NUMBER = 1e8
-"""Squared wave number, in 1/L^2, above which a spectrum takes no longer, because no mesh of allowed size
-resolves it."""
+"""Squared wave number, in 1/L^2, above which a spectrum takes no longer: no allowed mesh resolves it."""
 COST_OF_TWO_MESHES = 8.0
 """Time of a spectrum by Krylov-Schur on two meshes, divided by the time by roots of D: mean over 800 rods."""
 UNCOUNTED_SHARE = 0.05
@@ -109,8 +106,7 @@ class CostEstimate:
     memory_bytes: int = BASE_MEMORY
     """Memory of a rank, in bytes."""
     unknowns: tuple[int, int] | None = None
-    """Smallest and largest number of unknowns of the sampled points' meshes; None if the numbers are not
-    estimated."""
+    """Smallest and largest number of unknowns of the sampled points' meshes; None if not estimated."""
     too_large_mesh_count: int = 0
     """Number of sampled points whose mesh would need more than RESOLUTION_SETTINGS.max_unknowns unknowns."""
     doubt: str = ""

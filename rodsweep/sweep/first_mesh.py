@@ -45,8 +45,7 @@ def largest_first_mesh(
 
 def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:
     """Yields the rod with every combination of the parameter values in `parameter_ends`, by name, (n,) each.
-    A force is lowered to just below the crushing force. Combinations outside the range of the model are
-    omitted."""
+    A force is lowered to just below the crushing force. Combinations outside the model are omitted."""
     for values in product(*(column.tolist() for column in parameter_ends.values())):
         end_values = dict(zip(parameter_ends, values, strict=True))
         if "F" in end_values:
@@ -61,8 +60,7 @@ def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> It
 
 
 def _corners(points: Points) -> Iterator[int]:
-    """Yields the flat indices of the corners of a grid at which the rod model applies; nothing for a list of
-    points."""
+    """Yields the flat indices of the corners of a grid at which the rod model applies; none for a list."""
     if not points.axes:
         return
     ends = [sorted({0, size - 1}) for size in points.shape]

@@ -156,8 +156,7 @@ class _RankLoop:
         return item
 
     def _solve(self, item: int, points_before: int) -> None:
-        """Solves an item and stores its points. points_before: number of points stored before the current
-        chunk."""
+        """Solves an item and stores its points. points_before: number of points stored before the chunk."""
         for index, result in self.callbacks.solve(item):
             self.callbacks.store(index, result)
             self.points += 1 if isinstance(index, int) else len(index)

@@ -21,8 +21,7 @@ BAR_SECONDS = 0.1
 
 
 def on_terminal() -> bool:
-    """Whether standard error is a terminal; under an MPI launcher, standard error of the launcher is tested
-    as well."""
+    """Whether standard error is a terminal; under an MPI launcher, that of the launcher is tested as well."""
     if sys.stderr.isatty():
         return True
     launcher = f"/proc/{os.getppid()}/fd/2"
@@ -64,8 +63,7 @@ class ProgressReporter:
         self.noun = noun
         self.remaining_time = None if total is None else RemainingTimeEstimator(total)
         self.began = self.next_display = 0.0
-        """Start of the sweep and earliest time of the next display, on the monotonic clock, in s; 0 before
-        the start."""
+        """Start of the sweep and time of the next display, on the monotonic clock, in s; 0 before."""
         self.done = 0
         self.begun = 0.0
         self.where = ""

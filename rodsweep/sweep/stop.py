@@ -19,8 +19,7 @@ POLL_SECONDS = 0.05
 POSITION_SECONDS = 0.5
 """Seconds from the start of a solve to the first report of its progress, and between two reports."""
 STOP_SIGNALS = (signal.SIGTERM, signal.SIGUSR1, signal.SIGINT)
-"""Signals that request a stop: from `kill` or a scheduler at the time limit, from a scheduler's warning, from
-Ctrl-C."""
+"""Signals that request a stop: from `kill`, a scheduler's time limit or warning, or Ctrl-C."""
 GRACE_SECONDS = 0.3
 """Time, in seconds, to finish the current point after a stop request. A longer point is abandoned and solved
 again on resuming: a run has to end within two seconds, and Open MPI's launcher kills after one."""
@@ -61,8 +60,7 @@ class StopRequest:
 
     @staticmethod
     def ignore() -> None:
-        """Makes the process ignore stop signals, even while Python and MPI shut down; only for the main
-        thread."""
+        """Makes the process ignore stop signals, even while Python and MPI shut down; main thread only."""
         for number in STOP_SIGNALS:
             signal.signal(number, signal.SIG_IGN)
 
@@ -86,8 +84,7 @@ class RankCommunication(Protocol):
 
 
 class SingleRankCommunication:
-    """`RankCommunication` of a run with a single rank; `show_position` receives the progress of a long
-    solve."""
+    """`RankCommunication` of a run with a single rank; `show_position` gets the progress of a long solve."""
 
     def __init__(self, show_position: Callable[[SolvePosition], object] | None = None):
         self.show_position = show_position
@@ -115,8 +112,7 @@ class RankListener:
         self.next_report = time.monotonic() + POSITION_SECONDS
 
     def __call__(self, make_position: PositionMaker) -> None:
-        """Handles a solver's report at the position `make_position()`; raises SolveStopped if the solve must
-        end."""
+        """Handles a solver's report at `make_position()`; raises SolveStopped if the solve must end."""
         now = time.monotonic()
         if now >= self.next_report and (position := make_position()).text:
             self.next_report = now + POSITION_SECONDS

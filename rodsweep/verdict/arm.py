@@ -93,6 +93,5 @@ def arm_report(arm: SlenderArm) -> ArmReport:
 
 
 def _wrapped(text: str, first_indent: str = "", other_indent: str = "  ") -> str:
-    """`text` wrapped to LINE_WIDTH. first_indent, other_indent: indents of the first line and of the
-    following lines."""
+    """`text` wrapped to LINE_WIDTH. first_indent, other_indent: indents of first and following lines."""
     return textwrap.fill(text, LINE_WIDTH, initial_indent=first_indent, subsequent_indent=other_indent)

@@ -88,8 +88,7 @@ class Assessment:
 
 
 def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
-    """First Hopf point for the most likely drag for which the arm flutters; None if the arm flutters for no
-    drag."""
+    """First Hopf point for the most likely drag for which the arm flutters; None if it does not flutter."""
     return next((change for c in thresholds.by_drag if (change := c.first_threshold(ChangeKind.hopf))), None)
 
 

@@ -197,8 +197,7 @@ def tube_wall_check(effect: Effect) -> Check:
 
 
 def weight_check(effect: Effect | None, arm: SlenderArm) -> Check:
-    """Check of weight minus buoyancy against bending stiffness. effect: None if the density difference is
-    unknown."""
+    """Check of weight minus buoyancy against bending stiffness. effect: None without a density difference."""
     if effect is None:
         text = "Weight: left out, as if the arm floated; give a density difference to have it checked."
         return Check(Validity.applies, text)

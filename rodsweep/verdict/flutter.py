@@ -117,8 +117,7 @@ class ThresholdsOverDrags:
 
     @property
     def failures(self) -> list[str]:
-        """Distinct error messages of failed searches. A search that stopped before the requested force did
-        not fail."""
+        """Distinct error messages of failed searches; to stop before the requested force is no failure."""
         failed = [f.thresholds for f in self.by_drag if not f.is_usable]
         return sorted({thresholds.message or thresholds.status.sentence for thresholds in failed})
 
@@ -168,8 +167,7 @@ def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -
 @exclusive_solve
 def thresholds_over_drags(arm: SlenderArm) -> ThresholdsOverDrags:
     """All thresholds of the straight arm for each drag, up to a force common to all drags. The search with
-    the most likely drag sets this force. If a search stops at a smaller force, this smaller force is used for
-    all drags."""
+    the most likely drag sets this force. If a search stops at a smaller force, this is used for all drags."""
     likeliest_drag, *others = arm.drags
     end, first_result = _first_search(arm, likeliest_drag)
     results = (first_result, *(thresholds_with_drag(arm, drag, end) for drag in others))

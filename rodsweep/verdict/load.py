@@ -27,13 +27,11 @@ class LoadFormatter:
             if typed is not None
             else with_si_prefix(TYPICAL_FLUTTER_FORCE * arm.load_scale, si)[1]
         )
-        """Unit in which loads are printed: the user's unit, or a prefixed SI unit if the user gave no load.
-        """
+        """Unit in which loads are printed: the user's unit, or a prefixed SI unit without a load."""
         self.typed_text = (
             "" if typed is None else _shortened_load(typed, float(getattr(arm.si, self.name)), si)
         )
-        """The load as the user typed it, rounded by `_shortened_load` if long; empty if the arm has no
-        load."""
+        """The load as the user typed it, rounded by `_shortened_load` if long; empty without a load."""
         self.load_at_unit_force = value_in_unit(arm.load_scale, self.unit, si)
         """The load that corresponds to F = 1, in `unit`."""
 

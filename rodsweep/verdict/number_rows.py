@@ -25,8 +25,7 @@ class NumberRow(NamedTuple):
 
 
 def number_rows(plane: PlaneOfMotion) -> list[NumberRow]:
-    """Rows with all numbers of an arm, dimensional numbers first. plane: plane in which the arm flutters
-    first."""
+    """Rows with all numbers of an arm, dimensional numbers first. plane: where the arm flutters first."""
     arm = plane.arm
     return [
         *plane_row(plane),

@@ -20,8 +20,7 @@ class PlaneOfMotion:
     """Motion of an arm in one plane, with its thresholds for every drag."""
 
     arm: SlenderArm
-    """The arm, with its cross-section turned so that the height of the section lies in the plane of
-    motion."""
+    """The arm, with its cross-section turned so that the section's height lies in the plane of motion."""
     thresholds: ThresholdsOverDrags
     """Thresholds for bending in this plane."""
     name: str = ""

@@ -37,18 +37,15 @@ linear material. The first search that finds flutter is the last: far beyond flu
 unstable, a search takes up to half a minute for each drag."""
 REFERENCE_DIGITS = 10
 """Significant digits to which the reference force is rounded. Ten digits are more than the data of an arm
-have, and few enough to be equal on all machines. A run resumed on another machine then has the same points.
-"""
+have, and few enough to be equal on all machines. A run resumed elsewhere then has the same points."""
 
 
 class FlutterSearchFailed(InputError):
-    """Raised if the search for the flutter load to which a relative load refers fails; the message states
-    the reason."""
+    """Raised if the search for the flutter load of a relative load fails; the message states the reason."""
 
 
 def with_exchanged_sides(arm: A) -> A:
-    """The arm turned by 90 degrees about its axis: width and height of its rectangular section
-    are exchanged."""
+    """The arm turned by 90 degrees about its axis: width and height of its section are exchanged."""
     return replace(arm, width=arm.height, height=arm.width)
 
 

@@ -1,5 +1,4 @@
-"""Sentences for an arm to which the model does not apply: violated limit, excess over the limit,
-and remedy."""
+"""Sentences for an arm to which the model does not apply: violated limit, excess, and remedy."""
 
 from math import isnan
 
@@ -11,13 +10,11 @@ from .assessment import Assessment, rounded_down, rounded_up, thickness_factor, 
 from .load import LoadFormatter
 
 MAX_FOUR_DIGIT_RATIO = 1.1
-"""Ratios of an effect to its limit below this number are printed with four digits; two digits could read
-1.0."""
+"""Ratios of an effect to its limit below this number are printed with four digits; two could read 1.0."""
 
 
 def not_applicable_sentences(arm: SlenderArm, assessment: Assessment) -> list[str]:
-    """One sentence per kind of neglected effect beyond its limit, the effect with the largest ratio to its
-    limit first."""
+    """One sentence per kind of neglected effect beyond its limit, the largest ratio to the limit first."""
     effects = assessment.effects_with(Validity.does_not_apply)
     # The first effect of each kind stays.
     *others, first = {effect_kind(effect): effect for effect in reversed(effects)}.values()
@@ -41,8 +38,7 @@ def effect_kind(effect: Effect) -> str:
 
 
 def excess_text(effect: Effect) -> str:
-    """Ratio of an effect to its limit, as text: "2.5 times", with two digits, or four below
-    MAX_FOUR_DIGIT_RATIO."""
+    """Ratio of an effect to its limit: "2.5 times", with two digits, or four below MAX_FOUR_DIGIT_RATIO."""
     ratio = float(effect.value_over_limit)
     return f"{float(f'{ratio:.2g}'):g} times" if ratio >= MAX_FOUR_DIGIT_RATIO else f"{ratio:.4g} times"
 

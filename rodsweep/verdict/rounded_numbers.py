@@ -7,8 +7,7 @@ ROUNDING_TOLERANCE = 1e-12
 
 
 def three_digits(value: float) -> str:
-    """`value` as text with three significant digits; with an exponent only from a million on and below
-    1e-4."""
+    """`value` as text with three significant digits; with an exponent only from a million and below 1e-4."""
     rounded = float(f"{value:.3g}")
     return f"{rounded:.0f}" if 1000 <= abs(rounded) < 1e6 else f"{rounded:g}"
 

@@ -29,8 +29,7 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
 
 
 def _doubt_sentences(planes: Planes) -> list[str]:
-    """List of one sentence on why the thresholds of some plane of motion are uncertain; empty if they are
-    certain."""
+    """List of one sentence on why the thresholds of some plane are uncertain; empty if they are certain."""
     thresholds_of_planes = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
     doubts = sorted({doubt for thresholds in thresholds_of_planes for doubt in thresholds.doubts})
     return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
@@ -194,8 +193,7 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
 
 
 def _oscillation_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
-    """Sentence on the load above which a decaying disturbance oscillates; an empty list if no such load was
-    found."""
+    """Sentence on the load above which a decaying disturbance oscillates; empty if no such load was found."""
     onset = thresholds.first_forces(ChangeKind.onset)
     if onset is None:
         return []

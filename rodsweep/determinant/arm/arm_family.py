@@ -120,8 +120,7 @@ def _interpolation_points(low: float, high: float, scale: float, count: int) -> 
 
 
 def _has_small_coefficient_tail(values: Array, tolerance: float) -> bool:
-    """Whether the last two Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:,
-    i]|."""
+    """Whether the last Chebyshev coefficients of each values[:, i] are <= tolerance * max|values[:, i]|."""
     other_dimensions = tuple(range(2, values.ndim))
     last_coefficients = np.tensordot(_chebyshev_coefficient_matrix(len(values))[-2:], values, 1)
     size = np.abs(values).max(axis=(0, *other_dimensions))

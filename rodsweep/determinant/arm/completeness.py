@@ -150,9 +150,8 @@ def proves_completeness(remainder: Remainder) -> bool:
 
 @compiled
 def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
-    """Points x_1 < ... < x_k, (k,), so far right that every term of R has a real part >= 0; empty if such
-    points would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the
-    hull."""
+    """Points x_1 < ... < x_k, (k,), so far right that each term of R has real part >= 0; empty if such points
+    would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the hull."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
     x = max(a * a, COMPLETENESS_SETTINGS.min_first_point * abs(line))
     x = max(x, COMPLETENESS_SETTINGS.min_first_distance)

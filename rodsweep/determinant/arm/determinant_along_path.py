@@ -102,8 +102,7 @@ class ArmAlongPath:
         return w, -self.derivative_by_p(w, p, value.log_scale) / value.D_w, error
 
     def derivative_by_p(self, w: complex, p: float, S: float) -> complex:
-        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: logarithm of the scale of
-        the result."""
+        """dD/dp exp(-S) at w and p, by a difference between neighbouring arms. S: logarithm of the scale."""
         stencil, h = self._difference_stencil(p, math.inf)
         slope = 0j
         for offset, weight in stencil:

@@ -88,8 +88,7 @@ def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float
 
 @compiled
 def mean_wave_numbers_and_w_scales(w: Complex, samples: ArmSamples) -> Array:
-    """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as an array, (2,
-    n)."""
+    """Wave numbers and scales of w of `mean_wave_number_and_w_scale` at every w, (n,), as (2, n)."""
     results = np.empty((2, len(w)))
     for n in range(len(w)):
         # Conjugates, which stand next to each other, have the same scales.

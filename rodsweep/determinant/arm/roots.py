@@ -109,8 +109,7 @@ def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
     """Returns (w, valid_radius), with every two eigenvalues closer than their errors moved to two roots of D.
-    error: errors of w. half_distance: half the distance of an eigenvalue from its partner; inf if it was not
-    moved."""
+    error: errors of w. half_distance: half the distance from the partner; inf if not moved."""
     w = w.copy()
     half_distance = [math.inf] * len(w)
     eigenvalues_and_errors = zip(w, error, strict=True)

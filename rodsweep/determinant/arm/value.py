@@ -148,8 +148,7 @@ def _multiply_along_real_chain(
 
 @compiled
 def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
-    """(D exp(-S), S) at w, without derivatives. polynomials: propagators for |w| <= W, (elements, terms,
-    PADDED)."""
+    """(D exp(-S), S) at w, alone. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
     minors = np.zeros((2, MINORS))
@@ -190,7 +189,6 @@ def path_value_by_chain(
 
 @compiled
 def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
-    """D and dD/dw at w, times exp(-S). polynomials: propagators valid for |w| <= W, (elements, terms,
-    PADDED)."""
+    """D and dD/dw at w, times exp(-S). polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
     D, D_w, _, S, rounding_error = path_value_by_chain(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, rounding_error)

@@ -1,2 +1,1 @@
-"""Proofs about the spectrum of a uniform rod: a-priori box, counts of eigenvalues, covering of all
-crossings."""
+"""Proofs about the spectrum of a uniform rod: a-priori box, counts of eigenvalues, covering of crossings."""

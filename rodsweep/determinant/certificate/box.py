@@ -33,8 +33,7 @@ class BoxSettings(KernelConstants):
     padding: float = 0.01
     """This fraction of the depth is added to both bounds of the box."""
     least_padding: float = 1e-6
-    """Length added to both bounds of the box, in 1/tau2; far below |w| of the first eigenvalue of a rod at
-    rest, 12."""
+    """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
     bound_excess: float = 0.01
     """Relative excess of every bound, for the rounding errors of the bound itself."""
 
@@ -61,8 +60,7 @@ def eigenvalue_box(rod: Rod, depth: float = 0.0) -> tuple[float, float]:
 
 @compiled
 def box_from_sqrt_bound(a: float, depth: float) -> tuple[float, float]:
-    """Bounds (max Re w, max |Im w|) of all eigenvalues with Re w >= -depth; a: square root of
-    `frequency_bound`."""
+    """Bounds (max Re w, max |Im w|) of eigenvalues with Re w >= -depth; a: sqrt of `frequency_bound`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
     padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
@@ -141,8 +139,7 @@ def zero_free_radius(path: ParameterPath, start: float, stop: float, max_radius:
 
 
 def zero_free_radius_of_rod(coefficients: Coefficients, max_radius: float) -> float:
-    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r, for one uniform rod; 0 if r
-    underflows."""
+    """A radius r <= max_radius with |D(i eta) - 1| < 1/2 for |eta| <= r, one uniform rod; 0 on underflow."""
     F, nu, c2, gamma3 = coefficients
     g = nu + F * c2
     return _zero_free_radius(max_radius, c2 + gamma3, c2 * gamma3, abs(g * nu), max(-F * g, 0.0))

@@ -44,8 +44,7 @@ class BoxProofSettings(KernelConstants):
     max_radius_ratios: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
     min_half_width: float = 1e-9
-    """An undecided box is left open, not divided, if its half-widths are below this number times eta and
-    |p|."""
+    """An undecided box is left open, undivided, if half-widths are below this number times eta and |p|."""
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
     same_zero_distance: float = 1.5

@@ -46,8 +46,7 @@ class WindingSettings(KernelConstants):
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""
     safe_step: float = 0.999
-    """If the first step fails, the step is this number times the zero-free radius: below 1, because of
-    rounding."""
+    """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
     min_zero_free_radius: float = 1e-13
     """The count fails if the zero-free radius of a node is below this number times |w|: a zero of D is too
     close."""

@@ -50,8 +50,7 @@ class RootNewtonSettings(KernelConstants):
     max_refinements: int = 12
     """Maximum number of Newton steps to an eigenvalue."""
     max_relative_step: float = 20.0
-    """Newton's method for a crossing fails after a step larger than this number times the expected sizes of
-    eta and p."""
+    """Newton's method for a crossing fails after a step of more than this times the expected eta and p."""
     converged_step: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
     jacobian_step: float = 1e-5

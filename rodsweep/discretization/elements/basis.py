@@ -17,8 +17,7 @@ def barycentric_weights(nodes: Array) -> Array:
 
 
 def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
-    """Matrix (m, n) from values at `nodes`, (n,), to values of the interpolating polynomial at `points`,
-    (m,)."""
+    """Matrix (m, n) from values at `nodes`, (n,), to values of their polynomial at `points`, (m,)."""
     difference = points[:, None] - nodes[None, :]
     coincides = difference == 0
     difference[coincides] = 1.0

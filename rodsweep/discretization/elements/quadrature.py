@@ -33,8 +33,7 @@ def gauss_legendre_rule(n: int) -> tuple[Array, Array]:
 @cache
 def gauss_lobatto_rule(p: int) -> tuple[Array, Array]:
     """Returns (nodes, weights), (p + 1,) each, of the (p + 1)-point Lobatto rule on [-1, 1], exact to degree
-    2p - 1. The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points. P_p: Legendre
-    polynomial."""
+    2p - 1. The inner nodes are the zeros of P_p', by Newton's method from Chebyshev points."""
     x = -np.cos(np.pi * np.arange(p + 1) / p)
     for _ in range(LOBATTO_SETTINGS.max_steps):
         # (1 - x^2) P_p' = p (P_{p-1} - x P_p) and its derivative -p (p + 1) P_p.

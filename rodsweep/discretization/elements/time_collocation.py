@@ -45,8 +45,7 @@ class CollocationMethod(NamedTuple):
         return len(self.nodes)
 
     def evaluation_matrix(self, times: Array) -> Array:
-        """Matrix (m, s + 1) from values at 0 and the nodes to values at the times `times`, (m,), in [0,
-        1]."""
+        """Matrix (m, s + 1) from values at 0 and the nodes to values at `times`, (m,), in [0, 1]."""
         return lagrange_interpolation_matrix(np.append(0.0, self.nodes), times)
 
 

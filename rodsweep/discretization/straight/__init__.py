@@ -1,2 +1,1 @@
-"""The rod linearised about its straight state: eigenproblems of transverse and longitudinal modes, and
-expansions."""
+"""The rod linearised about its straight state: transverse and longitudinal modes, and expansions."""

@@ -140,8 +140,7 @@ def _pencil_of_coefficients(
     F: float, coefficients: Array, matrices: _MeshMatrices
 ) -> tuple[Array, Array, Array]:
     """Returns (A, B, scale), the fields of the `PencilMatrices` of an arm. F: follower force. coefficients:
-    coefficients of the arm at the Gauss points and then the nodes of each element, (6, elements, 2 order +
-    1)."""
+    at the Gauss points and then the nodes of each element, (6, elements, 2 order + 1)."""
     elements, order = matrices.weights_times_half_length.shape
     nodes = elements * order
     push = np.zeros(nodes + 1)

@@ -36,8 +36,7 @@ class ArmMesh(Elements):
 
 
 def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
-    """The mesh that is expected to give `modes` leading eigenvalues of the arm `rod` to the relative accuracy
-    `accuracy`."""
+    """The mesh expected to give `modes` leading eigenvalues of the arm `rod` to the relative `accuracy`."""
     weights = sampled_arm(rod).weights
     _, amplified_q = most_amplified_local_waves(rod)
     unloaded_q = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
@@ -48,8 +47,7 @@ def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
 
 def arm_elements(rod: Rod, wave_number: float, accuracy: float, largest_order: int | None = None) -> Elements:
     """Elements that resolve a field along an arm with the mean wave number `wave_number`, in 1/L, to a
-    relative accuracy. largest_order: maximum order of an element, `RESOLUTION_SETTINGS.max_order` by
-    default."""
+    relative accuracy. largest_order: of an element, `RESOLUTION_SETTINGS.max_order` by default."""
     waves = wave_number * _relative_wave_number(rod)
     return _elements_for_wave(
         rod, waves * sampled_arm(rod).weights, accuracy, largest_order or RESOLUTION_SETTINGS.max_order

@@ -1,5 +1,4 @@
-"""Indices of the unknowns of equal elements of a straight rod, inside elements and at the ends of
-elements."""
+"""Indices of the unknowns of equal elements of a straight rod, inside elements and at their ends."""
 
 from dataclasses import dataclass
 from functools import lru_cache

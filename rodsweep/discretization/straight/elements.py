@@ -30,8 +30,7 @@ from .element_numbering import ElementNumbering, element_numbering
 from .mixed_form import MixedForm
 
 LONGITUDINAL = (0,)
-"""Indices of the components of stresses and velocities in se(2) that keep their sign under reflection in the
-rod's axis."""
+"""Indices of the components of stresses and velocities in se(2) that reflection in the rod's axis keeps."""
 TRANSVERSE = (1, 2)
 """Indices of the components of stresses and velocities in se(2) that change their sign under reflection in
 the rod's axis."""
@@ -51,8 +50,7 @@ class StraightElements:
 
     @cached_property
     def numbering(self) -> ElementNumbering:
-        """Indices of the unknowns of every element. Raises ValueError for several elements of an even
-        order."""
+        """Indices of the unknowns of every element. ValueError for several elements of an even order."""
         mesh = self.form.mesh
         if mesh.element_count > 1 and mesh.order % 2 == 0:
             raise ValueError(f"several elements need an odd order, not {mesh.order}")

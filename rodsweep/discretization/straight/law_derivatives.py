@@ -61,8 +61,7 @@ class LawDerivativesAtRest:
 
 
 def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
-    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the same rod at
-    these nodes."""
+    """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the rod there."""
     law: Law = rod.build.constitutive_law
     nu = nodal.rest_strain[0]
     c1, _, c3 = nodal.compliance

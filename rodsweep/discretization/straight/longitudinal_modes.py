@@ -35,13 +35,11 @@ class LongitudinalModeSettings:
     first_mesh_accuracy: float = 1e-12
     """Relative accuracy of the eigenvalues for which the first mesh is chosen."""
     order_increase: int = 4
-    """Increase of the order of the elements in each refinement; eigenvalues of successive orders are
-    compared."""
+    """Increase of the elements' order in each refinement; eigenvalues of successive orders are compared."""
     max_order: int = 60
     """Maximum order of an element; the error at this order is returned even if it is large."""
     converged_difference: float = 1e-13
-    """The order is no longer increased if the relative difference between the eigenvalues of two orders is at
-    most this."""
+    """The order is no longer increased if the eigenvalues of two orders differ relatively by at most this."""
     rounding: float = 5e-14
     """Relative rounding error of an eigenvalue; the error estimate is the difference between two orders plus
     this number."""

@@ -105,8 +105,7 @@ class MixedForm:
         return A
 
     def times_force_derivative_of_A(self, X: Values) -> Values:
-        """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A with respect to the
-        force F."""
+        """Product (dA/dF) X for states X, (..., unknowns): dA/dF is the derivative of A by the force."""
         S, V = self.stresses_and_velocities(X)
         W = self.mesh.quadrature
         change = self.law_derivatives.force_derivatives
@@ -140,8 +139,7 @@ class MixedForm:
         return self.layout.state(S, V)
 
     def bilinear(self, X: Values, Y: Values) -> Values:
-        """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and the result:
-        (..., unknowns)."""
+        """The symmetric bilinear form B(X, Y) of the quadratic terms; X, Y and result: (..., unknowns)."""
         S, U = self.stresses_and_velocities(X)
         T, V = self.stresses_and_velocities(Y)
         CS = self._compliance_times_stress(S)
@@ -215,8 +213,7 @@ def axial_field(values: Array) -> Array:
 
 
 def integral_to_tip(mesh: Mesh, values: Array) -> Array:
-    """Integral of a field from each node to the tip, (nodes + 1,). values: the field at all nodes,
-    (nodes + 1,)."""
+    """Integral of a field from each node to the tip, (nodes + 1,). values: at all nodes, (nodes + 1,)."""
     total = np.zeros(mesh.node_count + 1)
     for nodes, order, length in zip(mesh.node_ranges, mesh.orders, mesh.lengths, strict=True):
         ends = shape_integration_matrices(order).angles_at_nodes

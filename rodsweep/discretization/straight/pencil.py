@@ -43,8 +43,7 @@ class PencilNormSettings(KernelConstants):
     min_angle_weight: float = 1e-4
     """Minimum weight of theta in the norm. The weight sqrt(gamma3) would tend to 0 for gamma3 -> 0."""
     min_tip_displacement: float = 1e-10
-    """A mode is normalised to y(1) = 1 if |y(1)| > min_tip_displacement * max(|y|, |theta|) over all
-    nodes."""
+    """A mode is normalised to y(1) = 1 if |y(1)| > min_tip_displacement * max(|y|, |theta|) of all nodes."""
 
 
 PENCIL_NORM_SETTINGS = PencilNormSettings()
@@ -92,8 +91,7 @@ class Pencil(Elements):
         return self.term_coefficients(rod) @ self.term_entries
 
     def dense_terms(self) -> Array:
-        """The six constant matrices as dense flat matrices in column-major order, as LAPACK expects, (6,
-        unknowns^2)."""
+        """The six constant matrices as dense flat matrices by columns, as LAPACK expects, (6, unknowns^2)."""
         dense = np.zeros((6, self.unknown_count**2))
         dense[:, self.columns.astype(int) * self.unknown_count + self.rows] = self.term_entries
         return dense
@@ -114,8 +112,7 @@ class Pencil(Elements):
         return B
 
     def displacement_factors(self, rod: Rod) -> Array:
-        """Factors that convert the unknowns of a rod to y and theta at the nodes, clamp excluded,
-        (2, nodes)."""
+        """Factors from the unknowns of a rod to y and theta at the nodes, clamp excluded, (2, nodes)."""
         inverse_root = 1 / np.sqrt(self.nodal_masses)
         return np.stack([inverse_root, inverse_root / angle_weight(rod.rotational_drag)])
 
@@ -128,8 +125,7 @@ def finite_eigenvalue_count(rod: Rod, nodes: int) -> int:
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
     """Returns (y, theta) of k eigenvectors `vectors`, (unknowns, k), at all nodes, clamp included, (nodes +
-    1, k) each. scale: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2,
-    nodes)."""
+    1, k). scale: factors from the unknowns to y and theta at the nodes, clamp excluded, (2, nodes)."""
     n = scale.shape[1]
     clamp = np.zeros((1, vectors.shape[1]))
     y, theta = (np.vstack([clamp, vectors[i * n : (i + 1) * n] * scale[i][:, None]]) for i in range(2))

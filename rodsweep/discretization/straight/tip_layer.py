@@ -26,11 +26,9 @@ class TipLayerSettings:
     """Maximum length of the element at the tip, divided by the thickness of the layer. Elements away from the
     tip may be longer."""
     max_equal_elements: int = 64
-    """Maximum number of equal elements. For a thinner layer the elements near the tip are halved
-    repeatedly."""
+    """Maximum number of equal elements. For a thinner layer the elements near the tip are halved."""
     samples_per_piece: int = 33
-    """Number of samples in each interval between breaks of an arm, from which the thickness of the layer is
-    estimated."""
+    """Number of samples in each interval between breaks of an arm, to estimate the layer's thickness."""
 
 
 TIP_LAYER_SETTINGS = TipLayerSettings()

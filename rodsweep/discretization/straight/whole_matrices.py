@@ -64,8 +64,7 @@ class WholeRodMatrices:
         return WholeRodFactors(self, lu_factorisation(self.A - np.diag(shift * self.M).astype(complex)))
 
     def _scatter(self, values: Values) -> Values:
-        """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, and 0 in all other
-        entries."""
+        """A state, (unknowns,), with `values`, (n,), in the unknowns of `components`, 0 in all others."""
         x = np.zeros(self.form.unknown_count, values.dtype)
         x[self.state_indices] = values
         return x

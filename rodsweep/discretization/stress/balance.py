@@ -48,8 +48,7 @@ from ..state_layout import stress_index, velocity_index
 
 @UnrolledOverAlgebra
 def write_strains_and_stresses(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
-    """Writes the strains and the stresses of a state x, (unknowns,), at all nodes into E and S, each
-    (d, nodes + 1)."""
+    """Writes strains and stresses of a state x, (unknowns,), at all nodes into E and S, (d, nodes + 1)."""
     size = E.shape[1]
     for i in range(size):
         s = [x[stress_index(a, i, size - 1)] if i < size - 1 else 0.0 for a in g.components]

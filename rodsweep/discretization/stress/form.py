@@ -22,10 +22,9 @@ class StressFormSettings:
     """Settings for the choice of the unknowns of a `StressForm`."""
 
     min_eliminated_drag: float = 1e-5
-    """Omega is eliminated if the rotational drag is at least this; with a smaller drag Omega is an unknown.
-    Division by a smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7
-    at 1e-8), and cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long.
-    """
+    """Omega is eliminated if the rotational drag is at least this; else Omega is an unknown. Division by a
+    smaller drag costs digits of Floquet multipliers (errors of 2e-9 at a drag of 1e-6, of 2e-7 at 1e-8), and
+    cycles of soft rods are not found. A form with Omega as an unknown takes 2.4 times as long."""
     min_eliminated_axial_drag: float = 2e-3
     """The axial velocity v1 is eliminated if the axial drag is everywhere at least this; otherwise v1 is an
     unknown. Newton's method for the form without v1 converges only from starts whose relative error is below
@@ -111,14 +110,12 @@ class StressForm(RodOnMesh):
         return self.mass_diagonal_of(self.nodal_rod)
 
     def mass_diagonal_of(self, rod: NodalRod | NodalRodDerivative) -> Array:
-        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative
-        of a rod."""
+        """`mass_diagonal` with the compliances of `rod`, (unknowns,). rod: another rod, or a derivative."""
         weighted = rod.compliance * self.mesh.quadrature
         return self.layout.state(weighted, np.zeros(weighted.shape))
 
     def energy_norm(self, x: Array) -> Array:
         """Energy norm sqrt(x M x), (...), of states x, (..., unknowns); 0 for the straight rod. The mass
-        matrix M of the stress form holds the compliances, so that x M x is twice the elastic energy of a
-        linear rod."""
+        matrix M of the stress form holds the compliances, so x M x is twice a linear rod's elastic energy."""
         amplitude: Array = np.sqrt(x**2 @ self.mass_diagonal)
         return amplitude

@@ -54,8 +54,7 @@ def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count re
 
 @compiled
 def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
-    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the planar rod `c` at the state
-    x."""
+    """Adds P (T - 1) to J; both (rows, unknowns). T: tangent of the law of the rod `c` at the state x."""
     n = c.compliance.shape[1] - 1
     k = 0
     for i in range(n):

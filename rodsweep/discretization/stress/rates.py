@@ -44,8 +44,7 @@ def _write_stresses_of_state(z: Array, x: Array, roots: Array) -> None:
 @compiled_for_vectors
 def write_rate_jacobian(z: Array, out: Array, roots: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the Jacobian d(dz/dt)/dz at the state z, (unknowns,), into out, (unknowns, unknowns). out is
-    column-major as in LAPACK: out[column, row]. roots: square roots of the compliances at the nodes, (d,
-    nodes + 1)."""
+    column-major: out[column, row]. roots: square roots of the compliances at the nodes, (d, nodes + 1)."""
     d, size = c.drag.shape
     unknowns = len(z)
     V = np.empty((d, size))

@@ -29,8 +29,7 @@ INERTIA_LIMIT = 0.1
 """Limit of the phase lag of the drag caused by inertia, in radians. The lag lowers the flutter threshold of a
 filament by 6.5 % at 0.1, as much as the uncertainty of drag; by 0.7 % at 0.01; by 36 % at 1."""
 COMPRESSION_LIMIT = 0.1
-"""Limit of the relative axial compression. Rubber stiffens by a quarter at a compression of 0.1, by 2 % at
-0.01."""
+"""Limit of the relative axial compression. Rubber stiffens by a quarter at 0.1, by 2 % at 0.01."""
 WEIGHT_LIMIT = 0.1
 """Limit of the ratio of weight minus buoyancy to the weight that buckles the upright arm. At a ratio of 0.1 a
 horizontal arm sags by a tenth of its length, at 0.01 by a hundredth."""
@@ -46,8 +45,7 @@ viscous drag."""
 SELF_BUCKLING_WEIGHT = 7.837
 """Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
-"""Wavenumber of the second bending mode of a clamped rod, in 1/L. The mode approximates the shape of
-flutter."""
+"""Wavenumber of the second bending mode of a clamped rod, in 1/L: approximately the shape of flutter."""
 LARGE_AMPLITUDE = 0.5
 """Amplitude of the tip in a large-amplitude cycle, in L."""
 
@@ -62,13 +60,11 @@ class Validity(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Effect:
-    """One effect that the model neglects. Arrays have the common shape (...,) of rates, forces and
-    amplitudes."""
+    """One effect that the model neglects. Arrays have the shape (...,) of rates, forces and amplitudes."""
 
     name: str
     value: Array
-    """Ratio of the neglected effect to an effect in the model; nan if unknown, as inertia of an arm at
-    rest."""
+    """Ratio of the neglected effect to an effect in the model; nan if unknown, as inertia at rest."""
     limit: float
     """The model does not apply if `value` is larger than this."""
     viscosity_factor: Array
@@ -84,8 +80,7 @@ class Effect:
 
     @property
     def validity(self) -> NDArray[np.int8]:
-        """`Validity` of the model in view of this effect, integers, (...,); `applies` where `value` is
-        nan."""
+        """`Validity` of the model given this effect, integers, (...,); `applies` where `value` is nan."""
         return (self.value_over_limit > DOUBTFUL_RATIO).astype(np.int8) + (self.value_over_limit > 1.0)
 
 
@@ -167,8 +162,7 @@ def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def compression_effect(arm: SlenderArm, F: Array) -> Effect:
-    """Relative change of the length of the arm by compression or tension, abs(F)/k1, in the shape of F,
-    (...,)."""
+    """Relative change of the length of the arm by compression or tension, abs(F)/k1, shaped as F, (...,)."""
     return _effect_independent_of_viscosity("compression", abs(F) / arm.k1, COMPRESSION_LIMIT)
 
 
@@ -180,8 +174,7 @@ def equivalent_base_force(arm: SlenderArm, F: ArrayLike) -> Array:
 
 
 def weight_effect(arm: SlenderArm, F: Array) -> Effect:
-    """Ratio of weight minus buoyancy to the weight that buckles the upright arm, in the shape of F,
-    (...,)."""
+    """Ratio of weight minus buoyancy to the weight that buckles the upright arm, shaped as F, (...,)."""
     heaviness = abs(arm.si.density_difference) * GRAVITY
     load = heaviness * arm.cross_section.area * arm.si.length
     uniform = load / (SELF_BUCKLING_WEIGHT * arm.force_scale)

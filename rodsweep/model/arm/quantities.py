@@ -15,8 +15,7 @@ LOADS = ("pressure", "force")
 
 
 class Quantity(NamedTuple):
-    """A quantity of an arm: SI unit, meaning, and an example with a unit; the example of a pure number is
-    empty."""
+    """A quantity of an arm: SI unit, meaning, and an example with a unit; empty for a pure number."""
 
     unit: str
     meaning: str

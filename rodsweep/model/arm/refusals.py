@@ -66,8 +66,7 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
 
 
 def refuse_wrong_combinations(arm: "SlenderArm") -> None:
-    """Raises InputError unless the arm has a length, a modulus, a viscosity, one shape, and at most one
-    load."""
+    """Raises InputError unless the arm has a length, modulus, viscosity, one shape, and at most one load."""
     if arm.segments is not None:
         _refuse_wrong_segments(arm)
     else:

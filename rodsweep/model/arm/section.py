@@ -150,8 +150,7 @@ class Rectangle:
 
     @property
     def drag_radius(self) -> float:
-        """(w + h)/4, in m: drag radius of an ellipse with the axes w and h in axial motion (Batchelor
-        1970)."""
+        """(w + h)/4, in m: drag radius of an ellipse with axes w and h in axial motion (Batchelor 1970)."""
         return (self.width + self.height) / 4
 
     def shear_coefficient(self, poisson: float) -> float:

@@ -17,8 +17,7 @@ EXAMPLE_SEGMENT = "4 cm: radius 6 mm, young 80 kPa"
 SEGMENT_QUANTITY_PATTERN = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?[\d.].*?)\s*")
 """Pattern of name and value of one quantity in the text of a segment, like "radius 6 mm"."""
 MAX_SEGMENTS = 100
-"""Maximum number of segments of an arm; more segments are refused. Every segment needs at least one element
-of the mesh."""
+"""Maximum number of segments of an arm; more segments are refused. Each needs an element of the mesh."""
 
 
 class ArmSegment(NamedTuple):

@@ -22,8 +22,7 @@ BUCKLING_NODE_COUNT = 400
 """Number of midpoint-rule nodes in the integrals for the buckling weight; the relative error for a uniform
 arm is then 5e-5."""
 BUCKLING_TOLERANCE = 1e-12
-"""The power iteration stops when the relative change of the largest eigenvalue in one step is at most
-this."""
+"""The power iteration stops when the largest eigenvalue changes relatively by at most this."""
 BUCKLING_MAX_ITERATIONS = 1000
 """Maximum number of steps of the power iteration, which usually takes twenty."""
 MAX_RADIUS_RATIO = 1.3
@@ -173,8 +172,7 @@ class Shape:
         return weight * ratio
 
     def _sections_at_midpoints(self) -> tuple[Array, Array, Array]:
-        """Returns (length, A, E I) of the subintervals of the quadrature, (subintervals,) each, in m, m^2, N
-        m^2."""
+        """Returns (length, A, E I) of the quadrature's subintervals, (subintervals,), in m, m^2, N m^2."""
         if self.taper != 1:
             u = (np.arange(BUCKLING_NODE_COUNT) + 0.5) / BUCKLING_NODE_COUNT
             radius = 1 - (1 - self.taper) * u

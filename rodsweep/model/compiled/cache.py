@@ -40,8 +40,7 @@ code is valid for one combination of versions only."""
 PACKAGE_DIRECTORY = Path(__file__).parents[2]
 """Directory of the package rodsweep."""
 DIGEST_BYTES = 32
-"""Length, in bytes, of the SHA-256 checksum at the start of a cache file. The checksum reveals a truncated
-file."""
+"""Length, in bytes, of the SHA-256 checksum at the start of a cache file, which reveals truncation."""
 _texts_at_first_use: dict[FunctionType, FunctionText] = {}
 """Text of each function at its first use in this process, which is the code that numba compiled."""
 
@@ -61,8 +60,7 @@ def cache_directories() -> list[Path]:
 
 
 class KernelCache(_Cache):
-    """Disk cache of one compiled function, with the interface that numba's dispatchers and C callbacks
-    expect."""
+    """Disk cache of one compiled function, with the interface of numba's dispatchers and C callbacks."""
 
     def __init__(self, function: Any, options: Mapping[str, Any], directories: Sequence[Path]) -> None:
         """function: the function to compile. options: numba's compiler options. directories: directories of

@@ -180,8 +180,7 @@ class _ValueTextConverter:
         )
 
     def _class_text(self, kind: type) -> str:
-        """Name of a class, with the fields of a NamedTuple; raises TypeError for other classes of this
-        package."""
+        """Name of a class, with the fields of a NamedTuple; TypeError for other classes of this package."""
         fields = getattr(kind, "_fields", None)
         if fields is not None:
             return f"{_qualified_name(kind)} {fields} {self.text(getattr(kind, '_field_defaults', {}))}"

@@ -39,8 +39,7 @@ class _SettingsType(types.Type):
         super().__init__(name=repr(settings))
 
     def type_and_value(self, name: str) -> Any:
-        """Returns (numba type, value) of the field `name`. An integer has a literal type, like a global
-        integer."""
+        """Returns (numba type, value) of the field `name`. An integer has a literal type, as globals do."""
         value = getattr(self.settings, name)
         return maybe_literal(value) or typeof(value), value
 

@@ -161,8 +161,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return call
 
     def _with_loop_variable(self, target: ast.expr, item: Any) -> "_UnrollingTransformer":
-        """The transformer for the body of one loop iteration, in which the loop variable `target` has the
-        value `item`."""
+        """The transformer for the body of one loop iteration, in which `target` has the value `item`."""
         return _UnrollingTransformer(
             {**self.known_values, **_loop_variable_values(target, item)}, self.shared_state
         )
@@ -189,8 +188,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
         return names
 
     def _evaluate(self, node: Any) -> Any:
-        """Value of the expression `node`. Raises NameError if a name in the expression is not in
-        `known_values`."""
+        """Value of the expression `node`. Raises NameError if a name in it is not in `known_values`."""
         code = self.shared_state.compiled_expressions.get(node)
         if code is None:
             code = self.shared_state.compiled_expressions[node] = compile(
@@ -200,8 +198,7 @@ class _UnrollingTransformer(ast.NodeVisitor):
 
 
 def _loop_variable_values(target: ast.expr, item: Any) -> dict[str, Any]:
-    """Values of the variables in the loop target `target`, by name, in the iteration with the value
-    `item`."""
+    """Values of the variables in the loop target `target`, by name, in the iteration with value `item`."""
     if isinstance(target, ast.Tuple):
         pairs = zip(target.elts, item, strict=True)
         return {

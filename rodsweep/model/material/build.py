@@ -114,19 +114,16 @@ class Build:
         return F / (k1 * self.relative_crushing_force(taper))
 
     def relative_least_rotational_drag(self, taper: float) -> float:
-        """Smallest rotational drag along an arm with the taper `taper`, divided by the rotational drag at the
-        base."""
+        """Smallest rotational drag along an arm with the taper `taper`, divided by the drag at the base."""
         return smallest_factor_along(self.profile, taper, "gamma3")
 
     @cached_property
     def relative_least_axial_drag(self) -> float:
-        """Smallest axial drag along an arm, divided by the axial drag at the base; it is the same for all
-        tapers."""
+        """Smallest axial drag along an arm, divided by the drag at the base; the same for all tapers."""
         return smallest_factor_along(self.profile, 1.0, "gamma1")
 
     def relative_crushing_forces(self, tapers: Array) -> Array:
-        """Result of `relative_crushing_force` for every value in `tapers`, (...,), as an array of the same
-        shape."""
+        """Result of `relative_crushing_force` for each of `tapers`, (...,), as an array of the same shape."""
         forces = [self.relative_crushing_force(taper) for taper in tapers.ravel().tolist()]
         return np.array(forces).reshape(tapers.shape)
 

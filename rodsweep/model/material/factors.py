@@ -18,8 +18,7 @@ class FactorCacheSettings:
     """Limits of the cache of factors along an arm, which takes at most 13 MB."""
 
     max_points: int = 1024
-    """Largest number of points at which factors are cached. Larger arrays come from meshes that are used only
-    once."""
+    """Largest number of points at which factors are cached. Larger arrays belong to meshes used once."""
     max_entries: int = 256
     """Maximum number of cached results, one for each profile, taper and array of points; a sweep along F
     needs about ten."""

@@ -37,16 +37,14 @@ SHEAR_COLUMN = SIDE_COLUMNS.index("c2")
 MAX_ITERATIONS = 40
 """Maximum number of Newton iterations; without convergence the last iterate is used."""
 CONVERGED_STEP = 1e-9
-"""Newton's method stops when |step| <= CONVERGED_STEP * |unknown|, because the next step would be below
-rounding error."""
+"""Newton's method stops when |step| <= CONVERGED_STEP * |unknown|, as the next step would be rounding."""
 MIN_STRETCH_RATIO = 0.1
 """A Newton step is shortened so that the stretch h1 after the step is at least this times h1 before the step,
 because the law is defined for h1 > 0 only."""
 
 
 class LawUnknowns(NamedTuple):
-    """The unknowns q1 (stretching) and q3 (bending) of a constitutive law at one point, as in
-    `stress_strain`."""
+    """The unknowns q1 (stretching) and q3 (bending) of a law at one point, as in `stress_strain`."""
 
     q1: float
     q3: float
@@ -133,9 +131,8 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 
 @compiled
 def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
-    """Derivatives of the mean unknowns q with respect to the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law:
-    number of the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides,
-    (2, 7)."""
+    """Derivatives of the mean unknowns q by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law: number of
+    the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides, (2, 7)."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
     T = stress_tangent(law, _section_of_side(sides[1]), b.q1, b.q3)
     s = S.N1 * S.M3 - S.N3 * S.M1

@@ -19,9 +19,8 @@ Values = Any
 """A float, or an array of floats of any shape."""
 
 SHORTENING_NEWTON_STEPS = 2
-"""Number of Newton steps for the shortening e = 1 - nu, which double the number of correct digits. Cardano's
-formula gives nu, so that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no
-cancellation."""
+"""Newton steps for the shortening e = 1 - nu, which double the correct digits. Cardano's formula gives nu, so
+that e = 1 - nu loses digits by cancellation for small loads; the residual of e has no cancellation."""
 
 
 @dataclass(frozen=True, slots=True)

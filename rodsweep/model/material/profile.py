@@ -92,8 +92,7 @@ class Profile:
         return Profile(self.u, tuple(rows))
 
     def factors_at(self, u: Array) -> Array:
-        """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No point may be a
-        break."""
+        """Factors at points u, in the order of `FACTOR_NAMES`, (factors, *u.shape). No u may be a break."""
         breaks = self.breaks
         interval = np.minimum(np.searchsorted(breaks[1:], u, side="right"), len(breaks) - 2)
         from_left, from_right = u - breaks[interval], breaks[interval + 1] - u

@@ -45,8 +45,7 @@ class Tangent(NamedTuple):
 
 @compiled
 def _bending_factor(law: int, h: float) -> tuple[float, float, float]:
-    """Returns (B, B', B''): bending factor of the law with the number `law` at the stretch h, and its
-    derivatives."""
+    """Returns (B, B', B''): bending factor of the law number `law` at the stretch h, and derivatives."""
     if law == SWELLING_SECTION:
         a = 1 / h
         b = 1 / h**4
@@ -64,8 +63,7 @@ def _neo_hookean_secant(nu: float, h: float) -> float:
 
 @compiled
 def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -> Stress:
-    """Stresses N and M at one point, minus their values at rest, for the unknowns q1 and q3. law: number of
-    the law."""
+    """Stresses N and M at one point, minus their values at rest, for q1 and q3. law: number of the law."""
     if law == LINEAR_LAW:
         return Stress(q1, q3)
     h = material.nu + material.c1 * q1
@@ -75,8 +73,7 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
 
 @compiled
 def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Tangent:
-    """Derivatives of the stresses N and M at one point with respect to the unknowns q1 and q3. law: number of
-    the law."""
+    """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law."""
     if law == LINEAR_LAW:
         return Tangent(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1

@@ -84,8 +84,7 @@ def integers_at(address: int, size: int) -> Any:
 
 @compiled
 def record_at(address: int, dtype: Any) -> Any:
-    """The record of NumPy type `dtype` at the memory address `address`; an assignment to a field writes to
-    this memory."""
+    """The record of NumPy type `dtype` at the address `address`; assignments write to this memory."""
     return numba.carray(pointer(address), (1,), dtype)[0]
 
 

@@ -38,8 +38,7 @@ __all__ = [
 ]
 
 PETSC_ERRORS = (PETSc.Error, SystemError)
-"""Exceptions that a failure inside PETSc raises; some releases of petsc4py wrap a PETSc.Error in a
-SystemError."""
+"""Exceptions after a failure inside PETSc; some releases of petsc4py wrap a PETSc.Error in a SystemError."""
 
 SPARSE_PACKAGES = ("superlu", "umfpack", "klu", "mumps")
 """Names of PETSc's sparse LU packages with pivoting, the fastest first, as measured on the rod's matrices.
@@ -75,8 +74,7 @@ def user_options_text(prefix: str = "") -> str:
 
 
 def blas_description() -> str:
-    """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's BLAS library if the two
-    differ."""
+    """One line with name, version and kernel of PETSc's BLAS library, and of NumPy's if the two differ."""
     descriptions: dict[str, set[str]] = {"PETSc": set(), "NumPy": set(), "SciPy": set()}
     for library in threadpool_info():
         if library["user_api"] == "blas":
@@ -91,8 +89,7 @@ def blas_description() -> str:
 
 
 def _package_of_library(path: str) -> str:
-    """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a library of the
-    system)."""
+    """Package to which the library at `path` belongs: NumPy, SciPy, or else PETSc (a system library)."""
     names = {part.removesuffix(".libs") for part in Path(path).parts}
     packages = (package for package in ("NumPy", "SciPy") if package.lower() in names)
     return next(packages, "PETSc")

@@ -39,8 +39,7 @@ def matrix_product(a: Any, b: Any, c: Any, extents: Any, factors: Array) -> None
 
 @compiled
 def square_product(A: Array, B: Array, C: Array, factor: float, factor_of_C: float) -> None:
-    """Matrix product C = factor A B + factor_of_C C, written to C; A, B and C have shape (n, n) and are
-    contiguous."""
+    """Matrix product C = factor A B + factor_of_C C, written to C; all (n, n) and contiguous."""
     n = len(A)
     extents = np.full(6, n, np.int32)
     factors = np.array([factor, factor_of_C])

@@ -25,8 +25,7 @@ class SmallEigenvalueSettings(KernelConstants):
     """Size of the work array of LAPACK's dgeev."""
 
     work_array_ratio: int = 12
-    """Length of the work array divided by n, for a matrix (n, n): dgeev needs at least 3, and is faster with
-    more."""
+    """Length of the work array divided by n, for a matrix (n, n): dgeev needs 3, and is faster with more."""
     ranges: ClassVar = {"work_array_ratio": (2, math.inf)}
 
 
@@ -35,8 +34,7 @@ SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()
 
 @compiled
 def small_matrix_eigenvalues(A: Array) -> Complex:
-    """Eigenvalues, (n,), of a matrix A, (n, n), with finite entries; all nan if LAPACK's iteration does not
-    converge."""
+    """Eigenvalues, (n,), of a matrix A, (n, n), finite entries; all nan if LAPACK does not converge."""
     n = len(A)
     a = A.copy()
     parts = np.empty((2, n))

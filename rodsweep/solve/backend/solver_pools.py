@@ -23,8 +23,7 @@ SOLVER_POOL_SETTINGS = SolverPoolSettings()
 
 
 class Destroyable(Protocol):
-    """An object for an `LruPool`: `destroy` frees the object's memory, `memory_bytes` estimates this
-    memory."""
+    """An object for an `LruPool`: `destroy` frees the object's memory, `memory_bytes` estimates it."""
 
     @property
     def memory_bytes(self) -> int:
@@ -58,8 +57,7 @@ class LruPool(Generic[Key, Object]):
         return sum(kept.memory_bytes for kept in self._objects.values())
 
     def get(self, key: Key) -> Object:
-        """The object for `key`, created if the pool has none; a later call with a different key may destroy
-        this object."""
+        """The object for `key`, created if the pool has none; a call with another key may destroy it."""
         if key not in self._objects:
             while len(self._objects) >= self._limit or self.memory_bytes > SOLVER_POOL_SETTINGS.max_bytes:
                 self._objects.popitem(last=False)[1].destroy()
@@ -82,7 +80,6 @@ _pools: WeakSet[LruPool[Any, Any]] = WeakSet()
 
 
 def destroy_pooled_solvers() -> None:
-    """Destroys the objects of all pools; called after an exception in a solve, which may leave objects
-    unusable."""
+    """Destroys the objects of all pools; called after an exception, which may leave objects unusable."""
     for pool in list(_pools):
         pool.destroy_all()

@@ -28,8 +28,7 @@ class PathProblem(ABC):
 
     @abstractmethod
     def interval_edges(self, low: float, high: float) -> list[float]:
-        """Path variables from `low` to `high`, both included, spaced so closely that neighbouring rods differ
-        little."""
+        """Path variables from `low` to `high`, both included, so close that neighbours differ little."""
 
     @abstractmethod
     def eigenvalue(self, guess: complex, p: float) -> tuple[complex, complex, float]:
@@ -51,8 +50,7 @@ class PathProblem(ABC):
 
     @abstractmethod
     def relaxation_time_and_slope(self, p: float) -> tuple[float, float]:
-        """Returns (relaxation time of the rod at p, derivative of this time with respect to p); the time is
-        smooth in p."""
+        """Returns (relaxation time of the rod at p, its derivative by p); the time is smooth in p."""
 
 
 class UniformPath(PathProblem):

@@ -157,8 +157,7 @@ def _search_result(
     end_counts: tuple[int, int],
 ) -> ThresholdSearchResult:
     """`ThresholdSearchResult` of `thresholds` in the searched part of the requested `interval`, and why the
-    search ended early. counts: gaps and doubts of the search. end_counts: numbers of unstable modes at both
-    ends."""
+    search ended early. counts: gaps and doubts of the search. end_counts: unstable modes at both ends."""
     known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
     reason = found.search_end.reason
     end = found.path.parameter.value(found.search_end.p)

@@ -30,8 +30,8 @@ class BautinSettings:
     """The secant method stops when the step is at most this number, or at most the error caused by the error
     of c; each parameter's range has length 1."""
     edge_tolerance: float = 1e-12
-    """A point lies on an end of a range if its distance from the end, as a fraction of the range, is below
-    this number."""
+    """A point lies on an end of a range if its distance from it, as a fraction of the range, is below
+    this."""
     min_loop_points: int = 5
     """A curve can be recognised as closed only if it has more than this number of points."""
     same_point_distance: float = 1e-6

@@ -91,8 +91,7 @@ class NormalForm:
 
     @property
     def is_supercritical(self) -> bool:
-        """Whether Re c < 0: the nonlinearity then limits the growth, and cycles are stable if no further mode
-        grows."""
+        """Whether Re c < 0: the nonlinearity limits growth; cycles are stable if no further mode grows."""
         return self.landau.real < 0
 
     @property

@@ -25,8 +25,7 @@ class ModeIterationSettings:
     iterations: int = 4
     """Number of inverse iterations per eigenvalue; two suffice unless the eigenvalue is nearly double."""
     conjugate_tolerance: float = 1e-12
-    """An eigenvalue w is the complex conjugate v* of its predecessor v in the list if |w - v*|/|w| is at most
-    this."""
+    """An eigenvalue w is the conjugate v* of its predecessor v if |w - v*|/|w| is at most this."""
 
 
 MODE_ITERATION_SETTINGS = ModeIterationSettings()
@@ -57,8 +56,7 @@ class ModeVectors:
     """Rounding errors of the eigenvalues w of the mesh, estimated from the rounding of (A - w B) x for the
     right mode x, in 1/tau2, (modes,)."""
     mode_error: Array
-    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each divided by the largest value of the same field,
-    (modes,)."""
+    """Largest error of Y, Theta, h2, Pi, Y+ and Theta+, each over the field's largest value, (modes,)."""
     condition_error: Array
     """Relative error of `condition`, (modes,); NaN, like `mode_error`, until two meshes are compared."""
 

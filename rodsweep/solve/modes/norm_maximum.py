@@ -100,9 +100,8 @@ def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) ->
 
 
 def _squared_norm_bound(h: Array, left: Array, right: Array, bend: Array, abscissa: float) -> Array:
-    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at the `left` and `right` ends
-    and the curvature bound c (`bend`) at the left ends; all (intervals,). abscissa: as in
-    `largest_propagator_norm`."""
+    """Upper bound of N^2, N = |exp(L t)|, in intervals of width `h`, from N^2 at both ends and the curvature
+    bound c (`bend`) at the left ends; all (intervals,). abscissa: as in `largest_propagator_norm`."""
     growth = np.exp(np.minimum(2 * abscissa * h, NORM_MAXIMUM_SETTINGS.max_exponent))
     # Two bounds: growth at the rate of the abscissa, and the chord plus the largest curvature below it.
     return np.minimum(left * growth, np.maximum(left, right) + h**2 / 8 * bend * growth)

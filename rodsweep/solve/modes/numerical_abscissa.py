@@ -19,8 +19,7 @@ class NumericalAbscissaSettings:
     """Settings of the shifts with which the numerical abscissa is computed from above."""
 
     max_shifts: int = 60
-    """Maximum number of shifts; if a shift is below the numerical abscissa, the next shift is about twice as
-    large."""
+    """Maximum number of shifts; after one below the numerical abscissa, the next is about twice as large."""
     final_shift_distance: float = 0.05
     """Distance of the next shift above the current estimate a of the numerical abscissa, divided by 1 + |a|:
     so small that shift + 1/eigenvalue loses no digits by cancellation. An estimate is final if its shift was

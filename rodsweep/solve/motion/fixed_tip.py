@@ -88,8 +88,7 @@ class _BentRod:
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes]
         self.angle_matrix = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
-        """Matrix from Pi to theta, both at all nodes; at a jump of the material the mean of both values of Pi
-        is used."""
+        """Matrix from Pi to theta, both at all nodes; at a jump of the material Pi is the mean."""
 
     def tip_position(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""

@@ -138,8 +138,7 @@ class Integrator:
         return ts
 
     def _stop_at_limit(self, ts: "PETSc.TS") -> None:
-        """Post-step function of a run with a `RunLimit.is_reached`: stores the step, and ends the run
-        at the limit."""
+        """Post-step function of a run with a `RunLimit.is_reached`: stores the step; ends the run at it."""
         end_step.ctypes(ts.handle)
         if self._limit.is_reached is not None and self._limit.is_reached(self.vector.array_r.copy()):
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)

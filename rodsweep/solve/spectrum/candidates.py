@@ -23,8 +23,7 @@ from .problem import TransverseProblem
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CandidateSettings(KernelConstants):
-    """Settings for the eigenvalues of a mesh, and for the vertical lines to the right of which eigenvalues
-    are counted."""
+    """Settings for the eigenvalues of a mesh, and for the lines right of which eigenvalues are counted."""
 
     max_waves_per_node: float = 2.0
     """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
@@ -35,8 +34,7 @@ class CandidateSettings(KernelConstants):
     """Like `wide_gap`, for an unstable rod; less than `wide_gap`, because eigenvalues far to the left
     converge last and need a finer mesh."""
     last_line_distance: float = 0.05
-    """Distance from the last eigenvalue w found to the last line, which lies to the left of w, divided by
-    |w|."""
+    """Distance from the last eigenvalue w found to the last line, to the left of w, divided by |w|."""
     leader_line_distance: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
     by |w|. A count at a distant line needs fewer nodes than at a near line. A line at `last_line_distance`
@@ -81,8 +79,7 @@ class CountComparison:
     count: EigenvalueCount
     found_count: int
     is_line_clear: bool
-    """Whether the distance of every found eigenvalue from the line of the count is more than twice its
-    error."""
+    """Whether the distance of every found eigenvalue from the line is more than twice its error."""
 
     @property
     def agrees(self) -> bool:
@@ -118,9 +115,8 @@ def candidates_on_mesh(
 
 
 def compare_with_count(problem: TransverseProblem, roots: Roots, modes: int) -> CountComparison:
-    """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with the
-    eigenvalues found. The line lies to the left of the `modes` leading eigenvalues and of all unstable
-    eigenvalues."""
+    """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with those
+    found. The line lies to the left of the `modes` leading eigenvalues and of all unstable eigenvalues."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
     line = line_for_proof(w[modes - 1], errors[modes - 1])

@@ -1,5 +1,4 @@
-"""Krylov-Schur solver for uniform rods on equal elements, with matrices affine in the coefficients of the
-rod."""
+"""Krylov-Schur solver for uniform rods on equal elements, with matrices affine in the coefficients."""
 
 import math
 

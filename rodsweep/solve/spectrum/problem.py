@@ -52,8 +52,7 @@ class TransverseProblem(ABC):
     has_bound: bool
     is_count_slow: ClassVar[bool]
     additional_eigenvalues: int = 0
-    """Number of eigenvalues requested from the first mesh in addition to the modes, for a proof without a
-    count."""
+    """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:

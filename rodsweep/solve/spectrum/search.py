@@ -39,8 +39,7 @@ class CheckedCandidates:
 
     @property
     def sort_key(self) -> tuple[bool, float]:
-        """Sort key, best candidates first: candidates with an undecided count come last; then by increasing
-        error."""
+        """Sort key, best candidates first: those with an undecided count last; then by increasing error."""
         return self.comparison is not None and self.comparison.count.number is None, self.error_over_limit
 
 

@@ -23,8 +23,7 @@ class SearchSettings:
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2
-    """After this number of successive refinements without progress, the error is taken to be rounding
-    error."""
+    """After this number of successive refinements without progress, the error is taken to be rounding."""
     progress_ratio: float = 0.5
     """An attempt is progress if its error is smaller than this fraction of the smallest earlier error."""
     max_error_over_limit: float = 0.5

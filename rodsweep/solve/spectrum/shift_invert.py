@@ -36,11 +36,9 @@ class KrylovSettings:
     """Number of Krylov vectors in addition to the wanted eigenvalues, if Newton's method on the determinant D
     refines the eigenvalues."""
     tight_tolerance: float = 1e-14
-    """Krylov tolerance for eigenvalues and eigenvectors that are not refined: only the error of the mesh
-    remains."""
+    """Krylov tolerance for eigenvalues and eigenvectors that are not refined: only the mesh error remains."""
     tight_spare_vectors: int = 13
-    """Number of Krylov vectors in addition to the wanted eigenvalues, if eigenvalues and eigenvectors are not
-    refined."""
+    """Number of Krylov vectors in addition to the wanted eigenvalues, if these are not refined."""
     max_restarts: int = 200
     """Maximum number of restarts of the Krylov space."""
     max_vectors_beyond_finite: int = 2
@@ -55,13 +53,11 @@ class KrylovSettings:
     """Ratio of rotation and displacement in the first Krylov vector. Without rotation only rounding errors
     would excite modes of pure rotation, in rods whose displacement and rotation are uncoupled."""
     max_uniform_solvers: int = 24
-    """Maximum number of stored solvers of uniform rods, one per mesh, if their memory allows; a sweep needs
-    few."""
+    """Maximum number of stored solvers of uniform rods, one per mesh, if memory allows; a sweep needs few."""
     max_arm_solvers: int = 8
     """Maximum number of stored solvers of arms, one per mesh."""
     dense_matrices_per_solver: int = 9
-    """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constant
-    matrices."""
+    """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constants."""
     numbers_per_nonzero_entry: int = 11
     """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and
     constant matrices."""

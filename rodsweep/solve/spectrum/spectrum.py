@@ -65,8 +65,7 @@ class Spectrum:
     """Absolute error estimates of the eigenvalues, from |D/D'|, D: determinant, (modes,), in 1/tau2. Bounds:
     estimate >= error/10, and estimate <= 10 max(error, effect of rounding of the force or of w)."""
     unstable_count: NumberPerRod = -1
-    """Number of eigenvalues with Re w > 0; -1 if unknown. The number is proved if a certificate was
-    requested."""
+    """Number of eigenvalues with Re w > 0; -1 if unknown. It is proved if a certificate was requested."""
     certified: NumberPerRod = False
     """Whether it is proved that no eigenvalue is missing to the right of the last mode."""
     elements: NumberPerRod = 0
@@ -76,8 +75,7 @@ class Spectrum:
     seconds: NumberPerRod = 0.0
     """Wall-clock time of the solve in seconds; for several rods, the mean time per rod."""
     vectors: Complex | None = None
-    """Eigenmodes (Y, Theta), complex, (2, modes, vector_node_count), scaled to Y(1) = 1; None if not
-    requested."""
+    """Eigenmodes (Y, Theta), complex, (2, modes, vector_node_count), with Y(1) = 1; None if not requested."""
     message: NumberPerRod = ""
     """Cause of a failure, or the reason why a proof failed; empty otherwise."""
 
@@ -110,8 +108,7 @@ def modes_at_lobatto_nodes(
     problem: TransverseProblem, request: SpectrumRequest, mesh: AnyMesh, vectors: Complex | None
 ) -> Complex | None:
     """Eigenmodes (Y, Theta) on the Lobatto nodes, complex, (2, modes, vector_node_count); None if `vectors`
-    is None. vectors: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 cannot be scaled to Y(1) = 1
-    and is NaN."""
+    is None. vectors: eigenvectors on `mesh`, (unknowns, k). A mode with Y(1) = 0 is NaN."""
     if vectors is None:
         return None
     solver = problem.solver(mesh)

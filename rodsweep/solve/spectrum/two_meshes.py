@@ -31,15 +31,12 @@ class TwoMeshSettings:
     spare_eigenvalues: int = 2
     """Number of eigenvalues requested first on a mesh, in addition to the wanted modes."""
     unchanged_tolerance: float = 1e-9
-    """The number of requested eigenvalues is doubled until the leading eigenvalues change relatively by less
-    than this."""
+    """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
     unchanged_rounding_tolerance: float = 3e-11
     """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
-    value is a hundred times `rounding`, because rounding differs between releases of SLEPc and between
-    processors."""
+    value is a hundred times `rounding`, as rounding differs between SLEPc's releases and processors."""
     mesh_error_factor: float = 3.0
-    """Safety factor on the difference between the eigenvalues of two meshes, which estimates the error on
-    the finer mesh."""
+    """Safety factor on the difference between two meshes, which estimates the error on the finer mesh."""
     rounding: float = 3e-13
     """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
@@ -181,8 +178,7 @@ def _spectrum_of_mesh(
     eigenvalues: _MeshEigenvalues,
     error: Array,
 ) -> Spectrum:
-    """The spectrum of one mesh, with the status from the errors. error: absolute error of each found
-    eigenvalue, (k,)."""
+    """The spectrum of one mesh, with the status from the errors. error: of each found eigenvalue, (k,)."""
     w = eigenvalues.w
     modes = request.modes
     is_accurate = bool((error[:modes] <= request.accuracy * np.abs(w[:modes])).all())

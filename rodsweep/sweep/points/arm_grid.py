@@ -78,8 +78,7 @@ def grid_of_arms(
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:
-    """Values of `quantity` for all arms, (arms, 1, 1); nan for None, which stands for an arm outside the rod
-    model."""
+    """Values of `quantity` for all arms, (arms, 1, 1); nan for None, an arm outside the rod model."""
     return _along_dimension(0, [quantity(arm) if arm else np.nan for arm in arms])
 
 
@@ -122,8 +121,7 @@ def _unit_load_force(
 
 def _with_flutter_codes(codes: Array, flutter: Array) -> Array:
     """Status codes `codes`, with NO_FLUTTER and FLUTTER_UNKNOWN where a relative load has no value. flutter:
-    F at flutter; inf if the arm does not flutter, nan if unknown. The shapes broadcast to (arms, loads,
-    n)."""
+    F at flutter; inf without flutter, nan if unknown. The shapes broadcast to (arms, loads, n)."""
     rod_codes = np.where(np.isinf(flutter), NO_FLUTTER, np.where(np.isnan(flutter), FLUTTER_UNKNOWN, SLENDER))
     result: Array = np.where(codes == SLENDER, rod_codes, codes)
     return result
@@ -158,6 +156,5 @@ def _refuse_grid_without_rods(
 
 
 def _along_dimension(dimension: int, values: Any) -> Array:
-    """`values`, (n,), as an array with three dimensions, along dimension 0 (arms), 1 (loads) or 2 (replaced
-    parameters)."""
+    """`values`, (n,), as a 3-D array, along dimension 0 (arms), 1 (loads) or 2 (replaced parameters)."""
     return np.asarray(values).reshape([-1 if i == dimension else 1 for i in range(3)])

@@ -72,8 +72,7 @@ class Chains:
         return indices_along(self.shape, self.axis, chain, positions if self.is_upward else positions[::-1])
 
     def unsolved_ranges(self, missing: IndexSet) -> list[IndexRange]:
-        """Ranges of the numbers of the chains with missing points. missing: flat indices of missing
-        points."""
+        """Ranges of the numbers of chains with missing points. missing: flat indices of missing points."""
         return merged_ranges((n, n + 1) for n in range(self.count) if missing[self.indices(n)].any())
 
 

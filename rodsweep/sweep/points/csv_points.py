@@ -18,8 +18,7 @@ from ...wording import enumeration
 from .points import NEUTRAL_VALUES
 
 LONGEST_LINE = 10_000
-"""A CSV file with a line of this number of characters or more is refused; a long line could fill the
-memory."""
+"""A CSV file with a line of this many characters or more is refused; a long line could fill the memory."""
 
 
 def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD) -> tuple[Array, ...]:
@@ -51,8 +50,7 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD
 
 
 def _header_fault(header: list[str]) -> str:
-    """Fault of a wrong header as a phrase. A header without parameter names is not quoted: it may be
-    anything."""
+    """Fault of a wrong header as a phrase. A header without parameter names is not quoted."""
     if "" in header and set(header) & set(PARAMETERS):
         return f"the header {short_repr(','.join(header))} has an empty name"
     if set(header) & set(PARAMETERS) and all(cell.isidentifier() for cell in header):

@@ -35,8 +35,7 @@ class Points:
     is_grid: bool
     """Whether the points are a grid of parameters, whose axes are `columns`."""
     arm_axes: dict[str, Array] = field(default_factory=dict)
-    """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; empty for a grid of parameters
-    or a list."""
+    """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; else empty."""
     units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
     build: Build = DEFAULT_BUILD
@@ -74,8 +73,7 @@ class Points:
 
     @property
     def rod_values(self) -> dict[str, Array]:
-        """Values of each parameter by name, (n,) each, as in `columns`, without the points that have no
-        rod."""
+        """Values of each parameter by name, (n,) each, as in `columns`, without points that have no rod."""
         if self.arm_statuses is None:
             return self.columns_by_name
         return self.values_of(np.flatnonzero(self.arm_statuses == SLENDER))
@@ -120,8 +118,7 @@ class Points:
 
     @property
     def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """Returns (distinct builds, indices). indices: for each point of `rod_values`, the index of its
-        build, (rods,)."""
+        """Returns (distinct builds, index of the build of each point of `rod_values`, (rods,))."""
         distinct_builds = list(dict.fromkeys(self.builds)) or [self.build]
         build_of_arm = np.array([distinct_builds.index(build) for build in self.builds] or [0])
         numbers = build_of_arm[np.arange(self.count) * len(build_of_arm) // self.count]

@@ -1,5 +1,4 @@
-"""Ranges (first, end) of flat indices of points or of numbers of work items, sets of such indices, and shards
-of a sweep."""
+"""Ranges (first, end) of flat indices of points or numbers of work items, sets of indices, and shards."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -55,8 +54,7 @@ class IndexSet:
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """Shard `number` of `shard_count` shards of a sweep, each solved by a separate run; shard 1/1 is the
-    complete sweep."""
+    """Shard `number` of `shard_count` shards of a sweep, each solved by a separate run; 1/1 is all."""
 
     number: int = 1
     shard_count: int = 1

@@ -200,8 +200,7 @@ def _is_lost(node: PhaseNode, node_count: int) -> bool:
 
 @compiled
 def _serves_efficiently(W: float, required_W: float) -> bool:
-    """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than
-    necessary."""
+    """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than that."""
     return required_W <= W <= CONTOUR_SETTINGS.max_level_ratio * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
 
 

@@ -87,8 +87,7 @@ def _modes_from(
 def _mode_near(
     guess: complex, known_w: Complex, propagator_set: PropagatorsUpToW, samples: ArmSamples
 ) -> complex:
-    """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no further eigenvalue is
-    close."""
+    """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no further one is close."""
     w = guess
     for _ in range(NEAR_AXIS_SETTINGS.max_steps):
         value = determinant_along_chain(w, propagator_set[0], propagator_set[1])

@@ -48,11 +48,9 @@ class ContourSettings(KernelConstants):
     """Largest expected growth of the valid radius per distance; the next node is then at most 3.6 valid radii
     away."""
     min_radius_ratio: float = 0.2
-    """If the valid radius is below this fraction of a circle's radius, the next smaller circle is tried at
-    once."""
+    """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
     first_radius: float = 12.0
-    """Radius of the first circle at a node without a previous circle, in units of the length over which D
-    changes."""
+    """Radius of the first circle at a first node, in units of the length over which D changes."""
     min_circle_radius: float = 0.75
     """Radius of the smallest circle at any node, in units of the length over which D changes. Every trial
     halves the radius."""
@@ -79,8 +77,7 @@ class ContourSettings(KernelConstants):
     @property
     def directions(self) -> tuple[complex, ...]:
         """Unit vectors to the points of a circle, in the order of evaluation. Successive points differ much
-        in (v - w)^2, so that circles on which |f| is too large are mostly rejected after one or two
-        points."""
+        in (v - w)^2, so that circles with too large |f| are mostly rejected after one or two points."""
         order = np.arange(self.circle_points).reshape(-1, 2, 2).swapaxes(1, 2).ravel()
         return tuple(np.exp(2j * np.pi * (order + 0.5) / self.circle_points).tolist())
 
@@ -120,8 +117,7 @@ class NoCrossingSettings(KernelConstants):
     radius_divisor: float = 1.5
     """After a disc on whose circle f changes too much, the radius is divided by this number."""
     min_radius: float = 0.05
-    """Radius below which a disc is not tried, in units of the length over which D changes near the real
-    axis."""
+    """Radius below which no disc is tried, in units of the length over which D changes near the real axis."""
 
     ranges: ClassVar = {
         "arm_count": (2, math.inf),

@@ -52,8 +52,7 @@ from .settings import ARM_ELEMENT_SETTINGS, MINORS
 
 
 class IntegrationMatrices(NamedTuple):
-    """Matrix of the integrals on [0, 1] from 0 to each Gauss point, (STAGES, STAGES), and Gauss weights,
-    (STAGES,)."""
+    """Matrix of integrals from 0 to each Gauss point on [0, 1], (STAGES, STAGES), and weights, (STAGES,)."""
 
     integrals: Array
     weights: Array
@@ -207,9 +206,8 @@ def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
 
 @compiled
 def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool:
-    """Writes the propagators' coefficients of w^n into terms[:, n] and returns whether all of them are
-    negligible. terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights:
-    (STAGES,)."""
+    """Writes the propagators' coefficients of w^n into terms[:, n]; returns whether all are negligible.
+    terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,)."""
     integrals = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
     _add_end_integrals(weights, rates, integrals)
     is_negligible = True

@@ -1,5 +1,4 @@
-"""Boundaries between the elements of arms: elements so short that they resolve the waves and the
-coefficients."""
+"""Boundaries between the elements of arms: elements so short that they resolve waves and coefficients."""
 
 import math
 from functools import cache

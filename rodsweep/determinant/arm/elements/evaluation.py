@@ -70,15 +70,13 @@ def fill_propagator(polynomial: Array, powers: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def fill_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module
-    docstring."""
+    """Writes a propagator C, without dC/dz, into out, (2, PADDED). polynomial, powers: see the module."""
     _fill_rows(polynomial, powers, (RE, IM), out)
 
 
 @compiled_for_vectors
 def fill_real_propagator(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C and dC/dz at real z into out, (2, PADDED). polynomial, powers: see the module
-    docstring."""
+    """Writes a propagator C and dC/dz at real z into out, (2, PADDED). polynomial, powers: see the module."""
     _fill_rows(polynomial, powers, (RE, RE_SLOPE), out)
 
 
@@ -112,8 +110,7 @@ def _fill_rows(polynomial: Array, powers: Array, rows: tuple[int, int], out: Arr
 
 @compiled_for_vectors
 def fill_real_propagator_value(polynomial: Array, powers: Array, out: Array) -> None:
-    """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see the module
-    docstring."""
+    """Writes a propagator C at real z, without dC/dz, into out, (PADDED,). polynomial, powers: see module."""
     for k in range(PADDED):
         out[k] = polynomial[0, k]
     for n in range(1, len(powers)):
@@ -179,8 +176,7 @@ def modulus_sum_of_real_form(a: Array, sizes: Array, t: float, x: Array) -> floa
 
 @compiled_for_vectors
 def apply_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for propagators C and change, (2 or more, PADDED), and minors t, x, out,
-    (2, MINORS)."""
+    """out = C t + change x for propagators C, change, (2 or more, PADDED), minors t, x, out, (2, MINORS)."""
     for i in range(MINORS):
         out[0, i] = out[1, i] = 0.0
     for j in range(MINORS):

@@ -31,9 +31,8 @@ def add_start_value(minor: int, start: float, values: Array) -> None:
 
 @compiled_for_vectors
 def add_eliminated_start_value(minor: int, start: float, eliminations: Array, values: Array) -> None:
-    """`add_start_value` for the minor theta^s or y^theta, from whose equation another minor is eliminated.
-    values: (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0
-    multiplies `start`."""
+    """`add_start_value` for the minor theta^s or y^theta, from whose equation one is eliminated. values:
+    (MINORS, STAGES, WIDTH). eliminations: (STAGES, 1 + STAGES, WIDTH), whose column 0 multiplies `start`."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             c = minor * ARM_ELEMENT_SETTINGS.lane_count + lane

@@ -17,8 +17,7 @@ from .settings import ARM_ELEMENT_SETTINGS
 
 @cache
 def gauss_method(stages: int) -> tuple[Array, Array, Array]:
-    """(Gauss points on [0, 1], (s,); integrals from 0 to each point, (s, s); Gauss weights, (s,)); s:
-    `stages`."""
+    """(Gauss points on [0, 1], (s,); integrals from 0 to each, (s, s); Gauss weights, (s,)); s: `stages`."""
     x, weights = np.polynomial.legendre.leggauss(stages)
     # The Legendre coefficients of a function's interpolant, integrated exactly.
     vandermonde = np.polynomial.legendre.legvander(x, stages - 1)

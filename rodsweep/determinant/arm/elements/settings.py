@@ -18,12 +18,10 @@ class ArmElementSettings(KernelConstants):
     """Largest |q1 +- q2| h of an element of length h; these are the exponents of the minors. Twelve Gauss
     points integrate exp(3.2) to 1e-19, with rounding errors like those of elements half as long."""
     max_length_over_apex_distance: float = 0.5
-    """Largest length of an element divided by the distance from the apex of the cone, where stiffnesses
-    vanish."""
+    """Largest length of an element divided by the distance from the cone's apex, where stiffnesses vanish."""
     max_coefficient_tail: float = 1e-9
     """An element is halved if one of the last two Legendre coefficients of nu, c2, ... over the element
-    exceeds this fraction of the largest value. The error of a Gauss method is about the square of this
-    fraction."""
+    exceeds this fraction of the largest value. The error of a Gauss method is about its square."""
     max_halvings: int = 28
     """Maximum number of halvings of an element, down to 4e-9 of the first length. A factor that grows a
     million times between two rows has its pole a millionth of their distance away."""
@@ -31,14 +29,12 @@ class ArmElementSettings(KernelConstants):
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
     not w, determine the length of elements."""
     W_reserve_factor: float = 1.1
-    """New elements are valid up to W = W_reserve_factor |w|: the reserve allows their reuse for slightly
-    larger |w|."""
+    """New elements are valid up to W = W_reserve_factor |w|: the reserve is for slightly larger |w|."""
     max_reuse_ratio: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
     max_compared_reuse_ratio: float = 1.5
-    """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1, so that the elements
-    differ."""
+    """Value of `max_reuse_ratio` for comparisons of D on different elements; near 1: the elements differ."""
     max_elements: int = 4000
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
     stages: int = 12

@@ -75,8 +75,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
 
 @compiled
 def _with_points_beside_jumps(u: Array, h: float) -> Array:
-    """The points u of an arm, (points,), and two further points near each u at the distance h from a jump;
-    sorted."""
+    """The points u of an arm, (points,), and two more near each u at the distance h from a jump; sorted."""
     points = np.empty(5 * len(u))
     count = len(u)
     points[:count] = u
@@ -186,8 +185,7 @@ def _averaged_log_weight(
 
 @compiled
 def squared_block_norm(A2: float, B2: float, e: float, drag: float) -> float:
-    """Squared norm of the matrix [[A, B], [e/sqrt(drag), 0]]; A2 = A^2, B2 = B^2; inf if drag = 0 and e !=
-    0."""
+    """Squared norm of the matrix [[A, B], [e/sqrt(drag), 0]]; A2 = A^2, B2 = B^2; inf if drag = 0 != e."""
     if e == 0:
         return A2 + B2
     if drag == 0:

@@ -94,8 +94,7 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
 
 @lru_cache(maxsize=HULL_SETTINGS.max_cached_builds)
 def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
-    """(lengths of the intervals between breaks, (pieces,); Chebyshev points u of these intervals, (pieces,
-    points))."""
+    """(lengths of the intervals between breaks, (pieces,); their Chebyshev points u, (pieces, points))."""
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
     lengths = np.diff(build.breaks)
     u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2

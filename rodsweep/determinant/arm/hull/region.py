@@ -18,8 +18,7 @@ class HullSettings(KernelConstants):
     """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
     evaluated and alpha is differentiated."""
     enlargement: float = 0.05
-    """The constants of a hull are enlarged by this fraction, for extremes between the points and for
-    rounding."""
+    """The constants of a hull are enlarged by this fraction, for extremes between points and for rounding."""
     end_distance: float = 1e-9
     """Distance of the first and last Chebyshev point from the ends of an interval between breaks, divided by
     the length of the interval, so that no point lies on a jump."""
@@ -29,8 +28,7 @@ class HullSettings(KernelConstants):
     """The smallest hull is chosen by the measure a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this
     c."""
     constant_weight_count: int = 41
-    """Number of constant weights alpha tried, from the smallest to the largest |g/nu| along the arm, in
-    addition to 1."""
+    """Number of constant weights alpha tried, from smallest to largest |g/nu| along the arm, besides 1."""
     min_weight: float = 1e-3
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
     supporting_lines: int = 48

@@ -1,5 +1,4 @@
-"""Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smoothly varying weights
-alpha."""
+"""Bounds for the hull of `rodsweep.determinant.arm.hull.hull`, from constant or smooth weights alpha."""
 
 from math import exp, inf, log, sqrt
 

@@ -32,8 +32,7 @@ class ArmCrossingSettings:
     max_frequency_ratio: float = 4.0
     """Modes near the axis at a crossing are searched for |Im w| up to this multiple of the largest |w|."""
     max_distance_in_errors: float = 10.0
-    """Two crossings may be equal if their parameter values differ by at most this multiple of the sum of
-    their errors."""
+    """Two crossings may be equal if their values differ by at most this multiple of their summed errors."""
     frequency_tolerance: float = 1e-6
     """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
     their frequencies is at most this number."""

@@ -33,8 +33,7 @@ class ArmPathSettings:
     """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
     an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
     steps_per_interval: int = 4
-    """Number of steps in which eigenvalues are followed through each of the `first_interval_count`
-    intervals."""
+    """Number of steps in which eigenvalues are followed through each of `first_interval_count` intervals."""
     followed_modes: int = 4
     """Number of leading eigenvalues, besides all unstable ones, that are proved complete at each step."""
     spare_modes: int = 2

@@ -72,8 +72,7 @@ class _StabilityBoundaries:
     seeds: list[Seed]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
-        """Index of the threshold at which the next curve starts: the first in `untraced`, the thresholds
-        on no curve."""
+        """Index of the threshold at which the next curve starts: the first of `untraced`, on no curve."""
         return untraced[0]
 
     def missing_items(self, seed: int) -> list[int]:
@@ -102,8 +101,7 @@ class _StabilityBoundaries:
 
 
 def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
-    """Boundary curves through all thresholds `seeds`; a threshold on a curve already followed starts no
-    further curve."""
+    """Boundary curves through all thresholds `seeds`; a threshold on a known curve starts no other."""
     problem = _StabilityBoundaries(plane, seeds)
     return trace_all_curves(
         problem, range(len(seeds)), BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance

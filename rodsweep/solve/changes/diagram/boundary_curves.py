@@ -27,8 +27,7 @@ from .boundary_problem import (
 
 @dataclass(frozen=True, slots=True)
 class Fold:
-    """Extremum of coordinate `axis` (0 or 1) on a curve: values and errors of both parameters, eigenvalue in
-    1/tau2."""
+    """Extremum of coordinate `axis` (0 or 1) on a curve: both parameters with errors, eigenvalue."""
 
     axis: int
     values: tuple[float, float]
@@ -98,8 +97,7 @@ def trace_boundary(
 def _curve_with_folds(
     curve: BoundaryCurveProblem, points: Array, end_reasons: tuple[BoundaryEndReason, BoundaryEndReason]
 ) -> BoundaryCurve:
-    """The curve through points, (points, 3), with the folds between the points. end_reasons: reasons for its
-    two ends."""
+    """The curve through points, (points, 3), with folds between. end_reasons: for its two ends."""
     boundary = curve.boundary
     folds = []
     if len(points) > 1:

@@ -40,8 +40,7 @@ class BoundaryCurveSettings:
     """Two neighbouring points of a curve are merged if their distance is at most this number, as at a start
     on an edge of the plane."""
     fold_accuracy: float = 1e-13
-    """Convergence tolerance at a fold: largest component of the tangent, and smallest bracket as a fraction
-    of the step."""
+    """Tolerance at a fold: largest component of the tangent, and smallest bracket over the step."""
     hopf_tangent_error: float = 1e-12
     """Rounding error of the unit tangent to a curve of Hopf points."""
     double_tangent_error: float = 1e-11

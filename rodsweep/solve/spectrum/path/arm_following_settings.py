@@ -5,13 +5,11 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ArmFollowingSettings:
-    """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls of
-    spectra."""
+    """Settings for arms along a path: number of followed modes, families of interpolated arms, hulls."""
 
     further_modes: tuple[int, ...] = (3, 9)
     """Numbers of modes followed in addition to the wanted modes. The second number is tried if, with the
-    first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes are
-    followed."""
+    first number, fewer than `min_proved_fraction` of the points are proved or too few growing modes."""
     min_proved_fraction: float = 0.5
     """More modes are followed if the modes are proved complete at less than this fraction of the points, no
     counts follow, and more modes would prove a further point."""
@@ -27,8 +25,7 @@ class ArmFollowingSettings:
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|
     at the first point of the new interval."""
     max_points_growth: int = 2
-    """Maximum number of points of a new family, divided by the number of points reached with the previous
-    family."""
+    """Maximum number of points of a new family, divided by the number reached with the previous family."""
     min_points: int = 4
     """Minimum number of points for which a family of arms is made."""
     accuracy: float = 1e-8

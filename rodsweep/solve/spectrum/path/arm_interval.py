@@ -99,8 +99,7 @@ def _follows_too_few_modes(interval: ArmInterval) -> bool:
 
 
 def _is_better_interval(interval: ArmInterval, other: ArmInterval, modes: int) -> bool:
-    """Whether `interval` has more proved points than `other`, or equally many while `other` follows too few
-    modes."""
+    """Whether `interval` has more proved points than `other`, or as many while `other` follows too few."""
     proved = interval.proved_points(modes)
     other_proved = other.proved_points(modes)
     return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))

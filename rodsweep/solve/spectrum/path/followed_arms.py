@@ -67,16 +67,14 @@ class FollowedArms:
         )
 
     def eigenvalue_slope(self, w: complex, p: float) -> tuple[complex, float] | None:
-        """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for any other
-        w."""
+        """Returns (dw/dp, error of w) for an eigenvalue w that `spectrum` returned at p; None for others."""
         for eigenvalues in self._proved_by_p.get(p, []):
             for k in np.flatnonzero(eigenvalues.track.w[0] == w).tolist():
                 return complex(eigenvalues.track.slope[0, k]), float(eigenvalues.track.error[0, k])
         return None
 
     def spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The leading `modes` eigenvalues at p; None unless they were followed, are accurate and are proved
-        complete."""
+        """The leading `modes` eigenvalues at p; None unless followed, accurate and proved complete."""
         self._follow_to(p)
         proved = self._proved_by_p.setdefault(p, [])
         if not any(modes <= eigenvalues.max_tried_modes for eigenvalues in proved):
@@ -96,8 +94,7 @@ class FollowedArms:
 
     def _proved_eigenvalues_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
-        for `modes`. All growing modes and two more modes are proved at once, because the next requests need
-        these modes."""
+        for `modes`. All growing modes and two more modes are proved at once, for the next requests."""
         for interval in self.intervals:
             followed_count = interval.track.w.shape[1]
             if not interval.p.min() <= p <= interval.p.max() or followed_count < modes:

@@ -113,8 +113,7 @@ def _matches_neighbour(w: complex, error: float, neighbour_w: complex, accuracy:
 
 
 def _lines_for_count(w: complex) -> Iterator[float]:
-    """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper count
-    first."""
+    """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper first."""
     return (
         w.real - distance * abs(w)
         for distance in (CANDIDATE_SETTINGS.leader_line_distance, CANDIDATE_SETTINGS.last_line_distance)

@@ -30,8 +30,7 @@ class FollowingSettings(KernelConstants):
     max_newton_steps: int = 8
     """Maximum number of Newton steps for one eigenvalue."""
     accuracy: float = 1e-9
-    """Relative accuracy of eigenvalues beyond the leading modes, which are used only to place the line of a
-    count."""
+    """Relative accuracy of eigenvalues beyond the leading modes, used only to place the line of a count."""
     curvature_safety_factor: float = 4.0
     """Safety factor on |D''/(2 D')|: the modulus of the sum of 1/(w - w_j) over all other roots w_j,
     estimated from the followed roots alone."""
@@ -58,8 +57,7 @@ class CorrectedEigenvalue(NamedTuple):
 def correct_eigenvalue(
     w: complex, coefficients: Coefficients, direction: Coefficients
 ) -> CorrectedEigenvalue:
-    """One Newton step for a root of D from w, for a uniform rod; a real w stays real. direction: d(F, nu, c2,
-    gamma3)/dp."""
+    """One Newton step for a root of D from w; a real w stays real. direction: d(F, nu, c2, gamma3)/dp."""
     value = determinant_along_path(w, coefficients, direction)
     return newton_step(w, value, DETERMINANT_SETTINGS.typical_rounding_fraction * value.rounding_error)
 
@@ -82,8 +80,7 @@ def newton_step(w: complex, value: PathDeterminantValue, rounding: float) -> Cor
 
 @compiled
 def curvature_estimate(w: Complex, k: int) -> float:
-    """Upper estimate of |D''/(2 D')| at root w[k], from the distances to 0 and to the other followed roots w,
-    (m,)."""
+    """Upper estimate of |D''/(2 D')| at root w[k], from the distances to 0 and to the other roots w, (m,)."""
     total = 1 / abs(w[k])
     for j in range(len(w)):
         if j != k:

@@ -186,9 +186,8 @@ def _proved_counts_along(
 
 
 def _first_eigenvalues(rod: Rod, request: SpectrumRequest) -> tuple[Complex, int] | None:
-    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: eigenvalues
-    to follow, (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved
-    complete."""
+    """Returns (eigenvalues, proved_count); None after a failure or without a proof. eigenvalues: to follow,
+    (m,), without unpaired complex eigenvalues. proved_count: number of eigenvalues proved complete."""
     try:
         modes = request.modes + NEIGHBOURING_RODS_SETTINGS.further_modes
         search = SpectrumSearch(rod, replace(request, modes=modes - 1, certify=True), requested=modes)

@@ -74,8 +74,7 @@ def slice_track(track: FollowedEigenvalues, start: int, stop: int) -> FollowedEi
 
 @compiled
 def find_conjugates(w: Complex, conjugate: NDArray) -> None:
-    """Writes the index of the complex conjugate of each eigenvalue w into `conjugate`, (m,); -1 for real
-    eigenvalues."""
+    """Writes the index of the conjugate of each eigenvalue w into `conjugate`, (m,); -1 for real ones."""
     for k in range(len(w)):
         conjugate[k] = -1
         if w[k].imag != 0:
@@ -86,9 +85,8 @@ def find_conjugates(w: Complex, conjugate: NDArray) -> None:
 
 @compiled
 def _pair_meeting_eigenvalues(w: Complex, slope: Complex, step: float, partner: NDArray) -> None:
-    """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of the
-    partner of each paired eigenvalue into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step:
-    change of p."""
+    """Pairs real eigenvalues that are about to meet, the earliest meeting first: writes the index of each
+    one's partner into `partner`, (m,). w, slope: eigenvalues and dw/dp, (m,). step: change of p."""
     while True:
         min_steps = EIGENVALUE_PREDICTION_SETTINGS.max_steps_to_meeting
         a = -1
