@@ -41,8 +41,7 @@ ROUNDING_UNIT = 2 * ROUND_OFF
 
 
 class HyperbolicFunctions(NamedTuple):
-    """cosh q, sinh(q)/q and the slope (1/q) d(sinh(q)/q)/dq, three entire functions of q^2, all times
-    exp(-Re q)."""
+    """cosh q, sinh(q)/q and (1/q) d(sinh(q)/q)/dq, three entire functions of q^2, all times exp(-Re q)."""
 
     cosh: complex
     sinhc: complex

@@ -40,8 +40,7 @@ class MovingLineSettings(KernelConstants):
     """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
     rectangle must not contain w = 0."""
     overlap: float = 1e-7
-    """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap
-    between rectangles."""
+    """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap."""
     min_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
@@ -60,11 +59,9 @@ class IntervalEnd(NamedTuple):
 
 
 class UnprovedStrip(NamedTuple):
-    """The part above y of the strip over a subinterval of p; D may still have zeros in this part.
-
-    p_start, p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: half the
-    height of the next rectangle to try, in y.
-    """
+    """The part above y of the strip over a subinterval of p; D may still have zeros in this part. p_start,
+    p_stop: ends of the subinterval, as fractions of the whole interval of p. half_height: half the height of
+    the next rectangle to try, in y."""
 
     p_start: float
     p_stop: float

@@ -125,8 +125,7 @@ def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients)
 def exponent_slopes(
     w: complex, exponents: ExponentDerivatives, coefficient_derivatives: CoefficientDerivatives
 ) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. exponents: result of `exponent_derivatives` at w. coefficient_derivatives:
-    derivatives by p."""
+    """(dz+/dp, dz-/dp) at w. exponents: of `exponent_derivatives` at w. coefficient_derivatives: by p."""
     P_p = 0j
     if exponents.P != 0:
         P_p = w * (coefficient_derivatives.G_p + coefficient_derivatives.X_p * w) / (2 * exponents.P)

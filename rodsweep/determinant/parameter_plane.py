@@ -18,8 +18,7 @@ class PlaneDifferenceSettings:
     """Settings for derivatives of D by differences along the scaled axes of a plane."""
 
     end_tolerance: float = 1e-12
-    """A coordinate beyond an end of a scaled axis by less than this number is moved to the end: the excess is
-    rounding error."""
+    """A coordinate beyond an end of a scaled axis by less than this is moved to the end: it is rounding."""
     max_difference_step: float = 1e-3
     """Largest step of differences along a scaled axis, which has length 1."""
     max_step_over_crushing_distance: float = 0.01
@@ -46,10 +45,8 @@ class PlaneAxis:
 
     def value(self, x: float) -> float:
         """The parameter at the scaled coordinate x: 0 at `start`, 1 at `stop`; clipped just beyond an end."""
-        if (
-            -PLANE_DIFFERENCE_SETTINGS.end_tolerance < x < 0
-            or 1 < x < 1 + PLANE_DIFFERENCE_SETTINGS.end_tolerance
-        ):
+        settings = PLANE_DIFFERENCE_SETTINGS
+        if -settings.end_tolerance < x < 0 or 1 < x < 1 + settings.end_tolerance:
             x = round(x)
         if self.logarithmic:
             return exp(log(self.start) + x * (log(self.stop) - log(self.start)))
@@ -96,10 +93,8 @@ class Plane:
         return self.rod.is_uniform_and_linear and all(axis.name != "taper" for axis in self.axes)
 
     def rod_at(self, x: float, y: float) -> Rod:
-        """The rod at scaled coordinates (x, y). Raises ValueError if the rod is invalid, for example
-        crushed."""
-        first, D_ww = self.axes
-        return self.rod.with_values(**{first.name: first.value(x), D_ww.name: D_ww.value(y)})
+        """The rod at scaled coordinates (x, y). Raises ValueError if it is invalid, as crushed."""
+        return self.rod.with_values(**{a.name: a.value(z) for a, z in zip(self.axes, (x, y), strict=True)})
 
     def determinant(self, w: complex, x: float, y: float) -> ValueOnPlane:
         """D and the derivatives of D by w, x and y, at w, for the rod at scaled coordinates (x, y)."""
@@ -115,11 +110,9 @@ class Plane:
     def determinant_value(self, w: complex, x: float, y: float) -> DeterminantValue:
         """D and dD/dw at w, for the rod at scaled coordinates (x, y)."""
         rod = self.rod_at(x, y)
-        return (
-            scaled_determinant(w, rod.coefficients)
-            if self.are_rods_uniform_and_linear
-            else arm_determinant(rod).value(w)
-        )
+        if self.are_rods_uniform_and_linear:
+            return scaled_determinant(w, rod.coefficients)
+        return arm_determinant(rod).value(w)
 
     def difference_stencil(
         self, x: float, y: float, axis_index: int
@@ -152,8 +145,8 @@ class Plane:
     def _determinant_along_axis(
         w: complex, rod: Rod, axis: PlaneAxis
     ) -> tuple[PathDeterminantValue, complex]:
-        """Returns (D with derivatives by w and by the parameter of `axis`, derivative of D by the scaled
-        coordinate of `axis`)."""
+        """Returns (D with derivatives by w and the parameter of `axis`, derivative by its scaled
+        coordinate)."""
         value = determinant_along_path(w, rod.coefficients, rod.coefficient_derivative(axis.name))
         return value, value.D_p * axis.path_variable_per_coordinate(getattr(rod, axis.name))
 

@@ -41,8 +41,7 @@ BOUNDARY_POINT_SETTINGS = BoundaryPointSettings()
 
 
 class BoundarySolution(NamedTuple):
-    """A point v = (x, y, h) on a stability boundary, the Jacobian of the two equations at v, (2, 3), and the
-    error of v."""
+    """A point v = (x, y, h) on a stability boundary, the equations' Jacobian at v, (2, 3), and its error."""
 
     v: Array
     jacobian: Array

@@ -38,8 +38,7 @@ class DeterminantSettings(KernelConstants):
     """The rounding error of D is estimated by this fraction of its bound `rounding_error`. Measured fractions
     have the median 0.05, the upper quartile 0.1 and the maximum 0.7."""
     zero_replacement: float = 1e-200
-    """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0. At this w, |D - 1| is below
-    rounding error."""
+    """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0; |D - 1| is rounding there."""
     second_difference_step: float = 1e-4
     """Step of the central difference of D' for D'', divided by |w|. The relative error of D'' is about the
     square of this number: enough to distinguish a double root from two close roots."""

@@ -88,8 +88,7 @@ class Beam(RodOnMesh):
 
     def tip_position_and_velocity(self, z: Array, direction: Array) -> tuple[Array, Array]:
         """Returns (position, velocity) of the tip, (3, ...) each: (x, y, theta) at z, and its time derivative
-        for dz/dt = direction. z, direction: (..., unknowns). The velocity is a complex-step derivative, which
-        has no cancellation."""
+        for dz/dt = direction. z, direction: (..., unknowns). The velocity is a complex-step derivative."""
         shape = self._shape_and_velocities(z, direction)[..., -1]
         return shape.real, shape.imag / TIP_VELOCITY_SETTINGS.imaginary_step
 

@@ -47,13 +47,11 @@ class Jumps(NamedTuple):
 NO_JUMPS = Jumps(np.zeros(0, np.int64), np.zeros((0, 2, len(SIDE_COLUMNS))))
 """Jumps of a rod with a continuous material: arrays of length 0."""
 NO_JUMP_DERIVATIVE = np.zeros((0, 2, 3))
-"""Derivatives of the material on both sides of jumps, for a rod without jumps or with a linear law: an array
-of length 0."""
+"""Derivatives of the material on both sides of jumps, for a rod without jumps or of linear law: no rows."""
 
 
 class NodalRodDerivative(NamedTuple):
-    """The derivatives of fields of a `NodalRod` with respect to the coordinate of a parameter, with the
-    shapes of the fields."""
+    """The derivatives of fields of a `NodalRod` by the coordinate of a parameter, shaped as the fields."""
 
     tip_stress: Array
     rest_strain: Array

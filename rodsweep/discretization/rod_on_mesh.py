@@ -88,8 +88,7 @@ class RodOnMesh(ABC):
         return out
 
     def element_strain_rates(self, x: Array, change: Array) -> Array:
-        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements). x, change:
-        (..., unknowns)."""
+        """Derivative of `element_strains` at states x along `change`, (3, ..., nodes + elements)."""
         S = self.stresses(x)
         dS = self.stresses(change)
         dE = broadcast_to_field(self.nodal_rod.compliance, dS) * dS

@@ -22,12 +22,9 @@ Both constants are for compiled code."""
 
 @dataclass(frozen=True, slots=True)
 class StateLayout:
-    """Order of the unknowns in states of the shape (..., unknowns).
-
-    components: number of stress components. node_count: number of nodes without the tip. unknown_velocities:
-    indices of the components of V that are unknowns. Velocities at the tip are unknowns, stresses at the tip
-    are 0.
-    """
+    """Order of the unknowns in states of the shape (..., unknowns). components: number of stress components.
+    node_count: number of nodes without the tip. unknown_velocities: indices of the components of V that are
+    unknowns. Velocities at the tip are unknowns, stresses at the tip are 0."""
 
     components: int
     node_count: int

@@ -25,8 +25,7 @@ from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING_STRESS_INDEX = 0
 BENDING_STRESS_INDEX = 2
-"""Indices of the stretching stress S1 and of the bending stress S3, the components of S that are
-discontinuous at a jump."""
+"""Indices of the stretching stress S1 and of the bending stress S3, the components of S that jump."""
 JUMPING_COMPONENTS = STRETCHING_STRESS_INDEX, BENDING_STRESS_INDEX
 """The components of S that are discontinuous at a jump."""
 SHARE_COLUMNS = 3, 4

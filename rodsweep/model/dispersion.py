@@ -42,11 +42,9 @@ def most_amplified_wave(rod: Rod) -> tuple[float, float]:
 
 
 class SampledArm(NamedTuple):
-    """Midpoints of short intervals of u along an arm, and the local coefficients at the midpoints.
-
-    points: midpoints, (points,); no midpoint is a break of the profile. weights: interval lengths, (points,).
-    local: coefficients at the midpoints.
-    """
+    """Midpoints of short intervals of u along an arm, and the local coefficients at the midpoints. points:
+    midpoints, (points,); no midpoint is a break of the profile. weights: interval lengths, (points,). local:
+    coefficients at the midpoints."""
 
     points: Array
     weights: Array

@@ -200,8 +200,7 @@ CRUSHING_PARAMETERS = ("F", "k1")
 
 
 def parameter_names_except(excluded: str, names: tuple[str, ...] = LINEAR_PARAMETERS) -> tuple[str, ...]:
-    """All names in `names` except `excluded`. names: parameter names, by default the parameters of the
-    transverse linear problem."""
+    """All names in `names` except `excluded`. names: by default of the transverse linear problem."""
     return tuple(name for name in names if name != excluded)
 
 

@@ -136,8 +136,7 @@ def _cached_conversion_factor(unit_text: str, unit: str) -> float:
 
 
 def _suggestion(unit_text: str, unit: str) -> str:
-    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt common unit with the dimension of `unit`;
-    else ""."""
+    """The text "did you mean 'kPa'? " if `unit_text` is a misspelt unit of the kind of `unit`; else ""."""
     plain_text = "".join(unit_text.split()).casefold()
     for common_unit in COMMON_UNITS:
         if "".join(common_unit.split()).casefold() == plain_text and unit_registry()(common_unit).check(

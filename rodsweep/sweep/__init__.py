@@ -17,8 +17,7 @@ from typing import Any
 
 
 class _CalledPackage(ModuleType):
-    """Class of this package, which makes the package callable: `rs.sweep(...)` calls
-    `rodsweep.api.sweeping.sweep(...)`."""
+    """Class of this package, callable: `rs.sweep(...)` calls `rodsweep.api.sweeping.sweep(...)`."""
 
     @property
     def __wrapped__(self) -> Any:

@@ -11,8 +11,7 @@ from .cost_estimate import CostEstimate, sampled_points
 from .points.points import Points
 
 COSTLIER_IF_LARGER = frozenset({"k1", "F"})
-"""Parameters for which large values make branches of cycles expensive. For all other parameters, small values
-are expensive."""
+"""Parameters for which large values make branches of cycles expensive; for all others, small values."""
 BRANCH_SECONDS_PER_FORCE = 0.004
 """All branches of a rod take BRANCH_SECONDS_PER_FORCE F (accuracy/1e-7)^BRANCH_ACCURACY_EXPONENT (1 + F/(k2
 t))^BRANCH_BENDING_EXPONENT/taper^2, in seconds. t: min(1, taper)^2. F: largest force on the branches, at most

@@ -102,11 +102,9 @@ class ChunkQueue:
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:
         """The next chunk for a rank that still works on a chunk; None if few items are left in the queue."""
         with self.change:
-            return (
-                self._pop_chunk(rank)
-                if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.ranks
-                else None
-            )
+            if self.unsolved and self.items_left >= MIN_ITEMS_AHEAD * self.ranks:
+                return self._pop_chunk(rank)
+            return None
 
     def _pop_chunk(self, rank: int) -> IndexRange:
         """Removes and returns the next chunk, sized by the rank's time per item; the lock must be held."""
@@ -139,10 +137,9 @@ class ItemChooser(Protocol):
 
 
 class DependentItemQueue(ChunkQueue):
-    """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk.
-
-    item_chooser: chooses the next items from the results. results: results of solved items, by number of the
-    item; at first from an earlier run, later also from the reports. ranks: number of ranks."""
+    """`ChunkQueue` whose items depend on the results of solved items, one item in a chunk. item_chooser:
+    chooses the next items from the results. results: results of solved items, by number of the item; at first
+    from an earlier run, later also from the reports. ranks: number of ranks."""
 
     def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], ranks: int):
         super().__init__([], ranks)

@@ -39,8 +39,7 @@ LONGEST_CHUNK_POLL_SECONDS = 1e-2
 """Longest pause, in seconds, between two polls of a rank that waits for a chunk: an idle rank must not take
 processor time from solving ranks."""
 CHUNK_POLL_GROWTH = 1.1
-"""Ratio of two successive pauses of a waiting rank. The ratio is near 1, so that a wait of a millisecond is
-hardly prolonged."""
+"""Ratio of two successive pauses of a waiting rank. Near 1, it hardly prolongs a wait of a millisecond."""
 QUEUE_WAIT_SECONDS = 0.05
 """Seconds for which an idle first rank waits for the queue to change before it polls for MPI messages."""
 

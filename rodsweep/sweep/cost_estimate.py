@@ -56,8 +56,7 @@ MODES_OF_SLOW_SPECTRUM = 500.0
 """Number of unstable modes at which the time of a spectrum begins to grow with their fourth power."""
 PULLED_MS_PER_WAVE_NUMBER = 0.4
 """Time of a spectrum of a pulled rod, divided by the wave number of the layers at its ends, in ms L: 0.2 to
-0.8 for nine rods under pulls of 1e3 to 1e6, some of which no mesh resolves; 0.02 for a rod without
-compliances under 1e3."""
+0.8 for nine rods under pulls of 1e3 to 1e6, some unresolved; 0.02 for a rod without compliances under 1e3."""
 MIN_WAVE_NUMBER_OF_LAYERS = 25.0
 """Wave number, in 1/L, below which the first mesh of a pulled rod resolves the layers at its ends."""
 MAX_SQUARED_WAVE_NUMBER = 1e8
@@ -68,8 +67,7 @@ UNCOUNTED_SHARE = 0.05
 """Additional time of soft or pulled rods by Krylov-Schur on two meshes, which finds only the requested modes,
 divided by the additional time by roots of D; three rods."""
 FINER_MESH_RATIO = 4 / 3
-"""Number of unknowns of the second mesh divided by the number of unknowns of the first mesh, in a spectrum by
-Krylov-Schur."""
+"""Number of unknowns of the second mesh divided by that of the first, in a spectrum by Krylov-Schur."""
 MODES_MS = 0.4
 """Time of the eigenvectors at one point divided by the square of the number of modes, in ms: mean over 24
 rods with 4, 8 and 12 modes each. The time is quadratic because the mesh grows with the number of modes."""

@@ -41,12 +41,9 @@ class ProgressSink(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class RankStatistics:
-    """Statistics of a rank after the sweep.
-
-    solved_points: number of points that this rank solved. busy_seconds, idle_seconds: time spent on solving
-    and on waiting, in s. was_interrupted: whether a stop request interrupted a solve; a later run repeats
-    this solve.
-    """
+    """Statistics of a rank after the sweep. solved_points: number of points that this rank solved.
+    busy_seconds, idle_seconds: time spent on solving and on waiting, in s. was_interrupted: whether a stop
+    request interrupted a solve; a later run repeats this solve."""
 
     solved_points: int
     busy_seconds: float

@@ -51,10 +51,8 @@ class SilentProgress:
 
 class ProgressReporter:
     """Shows the number of finished points, the rate, the remaining time and the progress of a long point.
-
     total: number of all points; None if unknown. title: text before the bar. noun: name of the counted
-    objects in a line.
-    """
+    objects in a line."""
 
     def __init__(self, total: int | None, title: str, noun: str = "points", is_bar: bool | None = None):
         """total, title, noun: see the class. is_bar: True for a progress bar, False for lines; None: a bar on
@@ -95,11 +93,9 @@ class ProgressReporter:
             return
         elapsed = now - self.began
         rate = rate_in_words(self.done, elapsed) if self.total else ""
-        seconds = (
-            self.remaining_time.remaining_seconds(self.done, elapsed, self.begun)
-            if self.remaining_time
-            else None
-        )
+        seconds = None
+        if self.remaining_time:
+            seconds = self.remaining_time.remaining_seconds(self.done, elapsed, self.begun)
         time_left = "" if seconds is None else f"about {duration_text(seconds)} left"
         count = f"{self.done} of {self.total}" if self.total else f"{self.done or ''}"
         if self.bar is not None:

@@ -15,8 +15,7 @@ COVERING_MS_PER_BOX = 0.11
 """Time to search one uniform rod under pulls, divided by the number of boxes from which the covering starts,
 in ms: 0.07 to 0.15 for twelve rods with 98 to 2900 boxes."""
 BEYOND_SHEAR_MS = 100.0
-"""Further time to search one uniform rod that begins at a pull beyond its shear stiffness, in ms: 110 for six
-rods with k2 = 100."""
+"""Further time to search one rod from a pull beyond its shear stiffness, in ms: 110 for six, k2 = 100."""
 ARM_MS_PER_PULL = 0.6
 """Time to search an arm that is not uniform under pulls, divided by the largest pull in k3/L^2, in ms: 0.5 to
 0.7 for a cone under pulls of 100 and 1000."""
@@ -36,7 +35,9 @@ def pulled_rows_seconds(rods: Sequence[Rod], values: Array, count: int) -> tuple
         return 0.0, ""
     starts = [_first_searchable_pull(rod, pulls) for rod in rods]
     each = [_row_seconds(rod, start) for rod, start in zip(rods, starts, strict=True)]
-    is_beyond_pulls = any(_least_coupling(rod, start) < 0 for rod, start in zip(rods, starts, strict=True))
+    # Beyond the shear stiffness g = nu + F c2 is negative somewhere along the arm.
+    arms = (sampled_arm(rod.with_values(F=start)) for rod, start in zip(rods, starts, strict=True))
+    is_beyond_pulls = any(float(np.min(arm.local.g)) < 0 for arm in arms)
     return count * float(np.mean(each)), DOUBTFUL_PULLS if is_beyond_pulls else ""
 
 
@@ -74,8 +75,3 @@ def _boxes(rod: Rod, pull: float) -> Array | None:
     from ..determinant.parameter_path import ParameterPath
 
     return first_boxes(ParameterPath(rod.with_values(F=pull), "F"), pull, 0.0) if pull < 0 else None
-
-
-def _least_coupling(rod: Rod, pull: float) -> float:
-    """Smallest g = nu + F c2 along an arm under `pull`; g < 0 beyond the shear stiffness."""
-    return float(np.min(sampled_arm(rod.with_values(F=pull)).local.g))

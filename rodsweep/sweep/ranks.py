@@ -41,8 +41,7 @@ class Ranks:
         return self.rank == 0
 
     def call_on_first_rank(self, work: Callable[[], T]) -> T:
-        """Calls `work` on the first rank only. Every rank returns the result, or raises the `UserError` that
-        `work` raised."""
+        """Calls `work` on the first rank only. Every rank returns the result, or raises its `UserError`."""
         outcome: Any = None
         if self.is_first:
             try:
@@ -64,8 +63,7 @@ class Ranks:
             wait_seconds = min(2 * wait_seconds, LONGEST_PAUSE)
 
     def require_on_all_ranks(self, work: Callable[[], object]) -> None:
-        """Calls `work` on every rank. If `work` raises a `UserError` on any rank, all ranks raise this
-        refusal."""
+        """Calls `work` on every rank. If any rank raises a `UserError`, all ranks raise this refusal."""
         first_error: UserError | None = None
         try:
             work()

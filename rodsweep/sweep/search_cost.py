@@ -19,8 +19,7 @@ largest force of the search. The number of exchanges grows with F^2/k2: 30 rods 
 to 3 times this time, for F up to 200."""
 SOFT_ARM_SEARCH_MS = 4e-4
 """Time to search a soft arm that is not uniform for crossings along F, divided by (F^2/k2)^2, in ms. F:
-largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000 took 0.3 to 2 times this
-time."""
+largest force; k2: of the thinnest section. Eight cones with F^2/k2 from 800 to 16000: 0.3 to 2 times this."""
 ARM_SEARCH_MS = 200.0
 """Time to search an arm that is not uniform for crossings along F, in ms: mean over 64 random arms, of which
 half take 40 ms and a few soft arms 2000 ms."""
@@ -47,9 +46,8 @@ def searches_cost(lines: int, certify: bool, is_varying: bool) -> CostEstimate:
 
 
 def soft_searches_seconds(points: Points, F_max: float, is_varying: bool) -> float:
-    """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges of the leading
-    eigenvalue and crossings become many where F^2/k2 is large. F_max: largest force. is_varying: whether any
-    arm is not uniform."""
+    """Time of all searches along F in `points` beyond the time of stiff rods, in s: exchanges and crossings
+    become many where F^2/k2 is large. F_max: largest force. is_varying: whether any arm is not uniform."""
     indices = sampled_points(points)
     if not indices.size:
         return 0.0

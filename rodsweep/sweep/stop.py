@@ -29,11 +29,8 @@ STOPPING_MESSAGE = b"\nstopping: all points that are done are kept (Ctrl-\\ ends
 
 class StopRequest:
     """Stop request to this process; true after a stop signal. `name` is the name of the signal, empty before
-    a signal.
-
-    acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher no rank acknowledges,
-    because all ranks would.
-    """
+    a signal. acknowledges: whether Ctrl-C is acknowledged on standard error. Under a launcher no rank
+    acknowledges, because all ranks would."""
 
     def __init__(self, acknowledges: bool = False) -> None:
         self.name = ""
@@ -53,8 +50,7 @@ class StopRequest:
         return time.monotonic() - self._since >= GRACE_SECONDS
 
     def listen(self) -> None:
-        """Installs handlers, so that stop signals set this request instead of ending the process; only for
-        the main thread."""
+        """Installs handlers, so that stop signals set this request, not end the process; main thread only."""
         for number in STOP_SIGNALS:
             signal.signal(number, self._record_signal)
 

@@ -43,8 +43,7 @@ class ArmReport:
     __repr__ = __str__
 
     def styled_paragraphs(self) -> Iterator[tuple[str, str]]:
-        """Yields (text, style) of each paragraph, wrapped at 80 columns; style: "warning",
-        "headline" or ""."""
+        """Yields (text, style) of paragraphs, wrapped at 80 columns; style: "warning", "headline" or ""."""
         for check in self.warnings:
             yield _wrapped(check.text), "warning"
         for number, sentence in enumerate(self.verdict):

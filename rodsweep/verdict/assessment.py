@@ -50,13 +50,10 @@ class Assessment:
 
     @cached_property
     def compression_under_load(self) -> tuple[Effect, ...]:
-        """Compression by the arm's load, the only neglected effect that depends on the load; empty if the arm
-        has no load."""
-        return (
-            ()
-            if self.arm.load is None
-            else (compression_effect(self.arm, equivalent_base_force(self.arm, self.arm.F)),)
-        )
+        """Compression by the arm's load, the only neglected effect that it changes; empty without load."""
+        if self.arm.load is None:
+            return ()
+        return (compression_effect(self.arm, equivalent_base_force(self.arm, self.arm.F)),)
 
     @property
     def force_at_flutter(self) -> float | None:

@@ -19,8 +19,7 @@ velocity caused by inertia."""
 SAG_AT_SELF_BUCKLING = SELF_BUCKLING_WEIGHT / 8
 """Sag over length, w L^3/(8 E I), of a horizontal arm whose weight w L just buckles an upright arm."""
 MAX_STATED_SAG = 0.25
-"""A check states the ratio of sag to length only below this ratio. At a larger sag the linear formula is
-inaccurate."""
+"""A check states the ratio of sag to length only below this: beyond, the linear formula is inaccurate."""
 USUAL_POISSON = (0.3, 0.5)
 """Range of Poisson's ratio of rubbers and gels; a check warns of a Poisson's ratio outside this range."""
 
@@ -72,11 +71,9 @@ def slenderness_check(arm: SlenderArm) -> Check:
     """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
     ratio = arm.si.length / arm.shape.largest_drag_radius
     is_slender = ratio >= MIN_SLENDERNESS
-    reason = (
-        "slender enough for local drag"
-        if is_slender
-        else f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
-    )
+    reason = "slender enough for local drag"
+    if not is_slender:
+        reason = f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     return Check(_doubtful_if(not is_slender), f"Slenderness: the arm is {ratio:.3g} radii long; {reason}.")
 
 
@@ -136,14 +133,12 @@ def rubber_stiffening(strain: float) -> float:
 
 
 def _one_digit_text(value: float) -> str:
-    """The positive number `value` as text with one significant digit; without an exponent of ten from 1e-4
-    to 1e5."""
+    """The positive number `value` as text with one significant digit; no exponent from 1e-4 to 1e5."""
     return f"{float(f'{value:.1g}'):g}"
 
 
 def inertia_checks(of_arm: Effect, of_fluid: Effect) -> list[Check]:
-    """Check of the inertia of the arm and of the fluid at the flutter threshold; an empty list if the arm
-    does not flutter."""
+    """Check of the inertia of the arm and of the fluid at the flutter threshold; empty without flutter."""
     if isnan(of_arm.value):
         return []
     validity = max(map(_validity_of_effect, (of_arm, of_fluid)))

@@ -1,5 +1,4 @@
-"""Thresholds of an arm for each drag of its range: flutter, frequency at flutter, restabilization.
-Forces are in k3/L^2."""
+"""Thresholds of an arm for each drag of its range: flutter, frequency, restabilization. Forces: k3/L^2."""
 
 from dataclasses import dataclass, replace
 from math import inf, pi
@@ -151,11 +150,9 @@ class ThresholdsOverDrags:
 def range_over_drags(values: list[float | None]) -> RangeOverDrags | None:
     """Smallest and largest number in `values`, which may contain None; None if there is no number."""
     known_values = [value for value in values if value is not None]
-    return (
-        RangeOverDrags(min(known_values), max(known_values), len(known_values) == len(values))
-        if known_values
-        else None
-    )
+    if known_values:
+        return RangeOverDrags(min(known_values), max(known_values), len(known_values) == len(values))
+    return None
 
 
 def thresholds_with_drag(arm: SlenderArm, drag: Drag, end: float = SEARCH_END) -> ThresholdsWithDrag:

@@ -7,11 +7,9 @@ from .flutter import RangeOverDrags
 from .rounded_numbers import range_text, three_digits_rounded_down
 
 TYPICAL_FLUTTER_FORCE = 36.0
-"""Typical flutter force, in k3/L^2. If the user gave no load, the SI prefix of the load (Pa, kPa) is chosen
-for this force."""
+"""Typical flutter force, in k3/L^2. Without a load, its SI prefix (Pa, kPa) is chosen for this force."""
 MAX_TYPED_LENGTH = 6
-"""A number of at most this many characters is reported as the user typed it; a longer number is rounded to
-four digits."""
+"""A number of at most this many characters is reported as typed; a longer one is rounded to four digits."""
 
 
 class LoadFormatter:

@@ -88,11 +88,9 @@ def load_row(arm: SlenderArm) -> list[NumberRow]:
     if arm.load is None:
         return []
     tip_clause = " of the tip" if arm.shape.varies else ""
-    formula = (
-        f"{arm.shape.tip.section.pressure_force_formula}{tip_clause}"
-        if arm.load == "pressure"
-        else "as given"
-    )
+    formula = "as given"
+    if arm.load == "pressure":
+        formula = f"{arm.shape.tip.section.pressure_force_formula}{tip_clause}"
     return [NumberRow("tip force", f"{arm.tip_force:.4g} N", formula, "paper, Sec. IV")]
 
 
@@ -147,8 +145,7 @@ def drag_rows(arm: SlenderArm) -> list[NumberRow]:
 
 
 def dimensionless_rows(arm: SlenderArm) -> list[NumberRow]:
-    """Rows with the dimensionless parameters of an arm, named like the keys of a config; F only for an arm
-    with a load."""
+    """Rows with the dimensionless parameters of an arm, named like keys of a config; F only with a load."""
     drags = arm.drags
     force = NumberRow("F", f"{arm.F:.5g}", "tip force L^2/k3", "paper, Sec. IV, VI") if arm.load else None
     return [

@@ -145,8 +145,7 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
 
 
 def _becomes_unstable(path: ParameterPath, zero: LocatedEigenvalue) -> bool:
-    """Whether the pair of eigenvalues that lies on the imaginary axis at `zero` becomes unstable as p grows:
-    d Re w/dp > 0."""
+    """Whether the pair on the imaginary axis at `zero` becomes unstable as p grows: d Re w/dp > 0."""
     value = determinant_along_path(
         complex(0.0, zero.eta_or_x), coefficients_at(zero.p, path.origin, path.direction), path.direction
     )

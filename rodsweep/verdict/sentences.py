@@ -176,11 +176,9 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     flutter = second_plane.thresholds.first_forces(ChangeKind.hopf)
     if flutter is None:
         return [f"In {second_plane.name} there {verb} no flutter {_search_end_clause(second_plane, load)}."]
-    drag_clause = (
-        ""
-        if planes.is_first_for_every_drag
-        else "; for part of the range of drag, flutter starts in this plane"
-    )
+    drag_clause = ""
+    if not planes.is_first_for_every_drag:
+        drag_clause = "; for part of the range of drag, flutter starts in this plane"
     return [f"In {second_plane.name} flutter {verb} at {load.range_of_forces_text(flutter)}{drag_clause}."]
 
 

@@ -27,11 +27,8 @@ PropagatorsUpToW = tuple[float, Array]
 
 
 class ArmDeterminant:
-    """Characteristic determinant D(w) of one arm. Propagators for |w| <= W are made once and reused.
-
-    known: (W, propagators) of this arm made earlier. Methods raise FloatingPointError if `max_elements`
-    elements do not resolve the arm.
-    """
+    """Characteristic determinant D(w) of one arm. Propagators for |w| <= W are made once and reused. known:
+    (W, propagators) of this arm made earlier. FloatingPointError if `max_elements` do not resolve the arm."""
 
     def __init__(self, rod: Rod, propagator_set: PropagatorsUpToW | None = None):
         self.rod = rod
@@ -59,8 +56,7 @@ class ArmDeterminant:
         return mean_wave_number_and_w_scale(w, self.samples)[0]
 
     def w_scale(self, w: complex) -> float:
-        """Change of w over which an exponent of D, integrated along the arm, changes by about one, in
-        1/tau2."""
+        """Change of w over which an exponent of D, integrated along it, changes by about one, in 1/tau2."""
         return mean_wave_number_and_w_scale(w, self.samples)[1]
 
     @cached_property
@@ -94,11 +90,9 @@ class ArmDeterminant:
 
 
 class CoefficientSamples(NamedTuple):
-    """Samples of n arms between the breaks of their profile.
-
-    points: material coordinates u, (points,). local: `LocalCoefficients` at the points, each (n, points).
-    squares: c2 gamma2 + c3 gamma3, F c3 g, g nu gamma2 c3 and c2 c3 gamma2 gamma3, (4, n, points).
-    """
+    """Samples of n arms between the breaks of their profile. points: material coordinates u, (points,).
+    local: `LocalCoefficients` at the points, each (n, points). squares: c2 gamma2 + c3 gamma3, F c3 g, g nu
+    gamma2 c3 and c2 c3 gamma2 gamma3, (4, n, points)."""
 
     points: Array
     local: LocalCoefficients
@@ -153,15 +147,12 @@ def arm_determinant(rod: Rod) -> ArmDeterminant:
 def wave_number(rod: Rod, w: complex) -> float:
     """Bound of |q| in the exponentials exp(+-q u) of the eigenfunction at w, in 1/L; for an arm that is not
     uniform or not of linear material, the average along the arm."""
-    return (
-        newton_correction_and_scales(w, rod.coefficients)[2]
-        if rod.is_uniform_and_linear
-        else arm_determinant(rod).wave_number(w)
-    )
+    if rod.is_uniform_and_linear:
+        return newton_correction_and_scales(w, rod.coefficients)[2]
+    return arm_determinant(rod).wave_number(w)
 
 
 def forget_arm_determinants() -> None:
     """Empties the cache of `arm_determinant`. Propagators made for a larger |w| change D by rounding errors.
-    A point or a search that begins with an empty cache has the same result in every process, whatever this
-    process solved before."""
+    A point or a search that begins with an empty cache has the same result in every process."""
     arm_determinant.cache_clear()

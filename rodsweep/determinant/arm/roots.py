@@ -5,10 +5,9 @@ The algorithm equals the algorithm of `rodsweep.determinant.roots.roots`, with D
 
 import cmath
 import math
-from collections.abc import Callable
 from contextlib import suppress
 from itertools import combinations
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
@@ -27,8 +26,6 @@ from .newton import (
     taylor_parabola_roots,
 )
 
-T = TypeVar("T")
-
 
 def refine_mesh_eigenvalues(
     raw: Complex, determinant: ArmDeterminant, hull: EigenvalueHull, max_q: float, largest_w: float = 0.0
@@ -40,10 +37,8 @@ def refine_mesh_eigenvalues(
     afterwards. Infinite eigenvalues, which rounding makes finite, are dropped: they lie outside the hull,
     have too large a |q|, or are far from every root.
     """
-    guesses = [
-        w.real + 0j if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w) else w
-        for w in raw.tolist()
-    ]
+    settings = ROOT_NEWTON_SETTINGS
+    guesses = [w.real + 0j if abs(w.imag) <= settings.real_tolerance * abs(w) else w for w in raw.tolist()]
     in_box = [i for i, w in enumerate(guesses) if _is_in_eigenvalue_box(w, hull)]
     waves, w_scales = mean_wave_numbers_and_w_scales(
         np.array([guesses[i] for i in in_box], complex), determinant.samples
@@ -52,17 +47,20 @@ def refine_mesh_eigenvalues(
     resolved = [i for i, number in zip(in_box, waves.tolist(), strict=True) if number <= max_q]
     starts = [guesses[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
-    errors = dict(zip(resolved, _values_at_roots(starts, lambda w: root_error(w, determinant)), strict=True))
+    errors: dict[int, float] = {}
+    for k, i in enumerate(resolved):
+        is_conjugate = k > 0 and starts[k] == starts[k - 1].conjugate()
+        errors[i] = errors[resolved[k - 1]] if is_conjugate else root_error(starts[k], determinant)
     near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction * scale[i]]
     near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
-    starts_of_near, radii = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
+    starts_of_near, gaps = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
     refined = [
         k
         for k, i in enumerate(near)
-        if radii[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction * scale[i]
+        if gaps[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction * scale[i]
     ]
-    located = _refine_guesses([(starts_of_near[k], radii[k]) for k in refined], determinant)
+    located = _refine_guesses([(starts_of_near[k], gaps[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
     mesh_indices = np.array([near[refined[root.guess_index]] for root in located], np.int64)
     w: Complex = np.array([root.w for root in located], complex)
@@ -77,15 +75,6 @@ def refine_mesh_eigenvalues(
     # An eigenvalue inside the hull that approximates no root is spurious, or hides one that leads.
     spurious_count = sum(raw[i].real > leading_growth for i in in_box if i not in near)
     return Roots(mesh_indices, w, error, displacement, wave, is_on_axis, spurious_count)
-
-
-def _values_at_roots(w: list[complex], function: Callable[[complex], T]) -> list[T]:
-    """The values of `function` at all w. Two successive conjugates have equal values, computed once."""
-    values: list[T] = []
-    for k, value in enumerate(w):
-        pair = k > 0 and value == w[k - 1].conjugate()
-        values.append(values[-1] if pair else function(value))
-    return values
 
 
 def _prepare_elements(determinant: ArmDeterminant, needed_w: float, later_w: float) -> None:
@@ -108,7 +97,7 @@ def _is_in_eigenvalue_box(w: complex, hull: EigenvalueHull) -> bool:
 def _separate_close_roots(
     w: list[complex], error: list[float], determinant: ArmDeterminant
 ) -> tuple[list[complex], list[float]]:
-    """Returns (w, valid_radius), with every two eigenvalues closer than their errors moved to two roots of D.
+    """Returns (w, half_distance), with every two eigenvalues closer than their errors moved to roots of D.
     error: errors of w. half_distance: half the distance from the partner; inf if not moved."""
     w = w.copy()
     half_distance = [math.inf] * len(w)
@@ -142,7 +131,7 @@ class _LocatedRoot(NamedTuple):
 
 
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
-    """The root of D near each guess (w, valid_radius), a pair of results of `_separate_close_roots`. For
+    """The root of D near each guess (w, half_distance), a pair of results of `_separate_close_roots`. For
     conjugate guesses only the first is refined."""
     roots: list[_LocatedRoot] = []
     for index, (w, radius) in enumerate(guesses):

@@ -90,8 +90,7 @@ def frequency_bound(rod: Rod) -> float:
 
 
 def frequency_bound_on_path(path: ParameterPath, start: float, stop: float) -> float:
-    """An upper bound of `frequency_bound` over all rods of a path with p from start to stop; inf if no
-    bound is known."""
+    """An upper bound of `frequency_bound` over a path with p from start to stop; inf if none is known."""
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     return frequency_bound_between_rods(ends[0], ends[1])
 

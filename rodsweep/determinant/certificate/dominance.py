@@ -28,8 +28,7 @@ class DominanceSettings(KernelConstants):
     """Settings for discs in which one exponential of D dominates."""
 
     first_radius: float = 0.25
-    """(radius of the first trial disc) / (distance of the start of its step from the nearest branch point of
-    z+-)."""
+    """(radius of the first trial disc) / (distance of its step's start to the next branch point of z+-)."""
     max_halvings: int = 2
     """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
     overlap: float = 1e-3
@@ -91,8 +90,7 @@ def _nonlinearity_bounds(
 
 @compiled
 def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
-    """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, on the disc of radius rho about
-    w."""
+    """Whether one exponential is proved to dominate D = A (1 + e), |e| < 1, within rho of w."""
     P, (z, slope, root), (z_other, slope_other, root_other) = _dominant_and_recessive(w, coefficients)
     if P == 0 or root.real <= root_other.real:
         return False
@@ -133,16 +131,14 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
 
 @compiled
 def dominant_prefactor_and_exponent(w: complex, coefficients: Coefficients) -> tuple[complex, complex]:
-    """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant exponential A
-    of D."""
+    """Returns (w z'/z, sqrt z) at w: four times the factor, and the exponent, of the dominant A of D."""
     _, dominant, _ = _dominant_and_recessive(w, coefficients)
     return w * dominant.slope / dominant.z, dominant.root
 
 
 @compiled
 def _phase_beyond_dominant(w: complex, factors: tuple[complex, complex], coefficients: Coefficients) -> float:
-    """arg(1 + e) = arg(D/A), the phase of D minus the phase of A, at w. factors:
-    `dominant_prefactor_and_exponent` at w."""
+    """arg(1 + e) = arg(D/A), phase of D minus phase of A. factors: `dominant_prefactor_and_exponent`."""
     D, _, _, _ = scaled_determinant(w, coefficients)
     factor, root = factors
     return cmath.phase(D / (factor * cmath.exp(complex(0.0, root.imag))))

@@ -31,8 +31,7 @@ class WindingSettings(KernelConstants):
     """Settings for the contour around which the winding number of D is computed."""
 
     width_factor: float = 4.0
-    """Factor on the width of the box. A wider box is cheaper, because one exponential dominates D far from
-    the eigenvalues."""
+    """Factor on the width of the box. Wider is cheaper: one exponential dominates D far from eigenvalues."""
     additional_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
     min_height: float = 0.5
@@ -48,8 +47,7 @@ class WindingSettings(KernelConstants):
     safe_step: float = 0.999
     """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
     min_zero_free_radius: float = 1e-13
-    """The count fails if the zero-free radius of a node is below this number times |w|: a zero of D is too
-    close."""
+    """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
     ranges: ClassVar = {"safe_step": (0.0, 1.0)}

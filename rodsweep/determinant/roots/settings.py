@@ -31,8 +31,7 @@ class RootSettings(KernelConstants):
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""
     same_root_distance: float = 4.0
-    """Distance of two computed roots, divided by the sum of their errors, up to which they may be the same
-    root of D."""
+    """Distance of two computed roots, over the sum of their errors, up to which they may be the same."""
     same_root_fraction: float = 0.25
     """Two roots that may be the same by `same_root_distance` are the same root of D if their distance is
     below this fraction of the estimated distance 2 |D'/D''| of the next root."""

@@ -6,8 +6,7 @@ from ...arrays import Array
 
 
 def barycentric_weights(nodes: Array) -> Array:
-    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of the nodes x, (n,), scaled so that the largest
-    modulus is 1."""
+    """Barycentric weights 1/prod_(j != i) (x_i - x_j) of nodes x, (n,), scaled to a largest modulus of 1."""
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     # A product of many differences would underflow. Only ratios of weights are used, so the weights are
@@ -30,8 +29,7 @@ def lagrange_interpolation_matrix(nodes: Array, points: Array) -> Array:
 
 
 def differentiation_matrix(nodes: Array) -> Array:
-    """Matrix (n, n) from values at `nodes`, (n,), to derivatives of the interpolating polynomial at `nodes`.
-    Every row sums to 0."""
+    """Matrix (n, n) from values at `nodes`, (n,), to derivatives of their polynomial there. Rows sum to 0."""
     weights = barycentric_weights(nodes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)

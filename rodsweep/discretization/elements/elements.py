@@ -38,10 +38,8 @@ ELEMENT_SETTINGS = ElementSettings()
 @dataclass(frozen=True)
 class Elements:
     """Elements on the rod. Element e reaches from edges[e] to edges[e + 1]; edges[0] is 0 and edges[-1] is 1.
-
     order: largest order of an element. order_ratios: order of each element divided by `order`, rounded up to
-    an integer by `element_orders`; empty if all orders are equal.
-    """
+    an integer by `element_orders`; empty if all orders are equal."""
 
     edges: tuple[float, ...]
     order: int
@@ -87,15 +85,13 @@ class Elements:
 
     @cached_property
     def element_nodes(self) -> NDArray[np.int64]:
-        """Indices of the nodes of every element, one element after the other, (nodes + elements,). Neighbours
-        share a node."""
+        """Indices of the nodes of every element, in turn, (nodes + elements,). Neighbours share a node."""
         return np.concatenate([np.arange(nodes.start, nodes.stop) for nodes in self.node_ranges])
 
     @cached_property
     def points_inside_elements(self) -> Array:
         """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
-        inside the element. At a jump between two elements, each element therefore evaluates a coefficient on
-        its own side."""
+        inside: at a jump, each element evaluates a coefficient on its own side."""
         distance = ELEMENT_SETTINGS.end_distance
         return np.concatenate(
             [

@@ -30,10 +30,8 @@ RECONSTRUCTION_SETTINGS = ReconstructionSettings()
 
 class NodeMatrices(NamedTuple):
     """Matrices over all nodes of a mesh: D, D^T and -D^T W (`weak_derivative`), (nodes + 1, nodes + 1), and
-    the weights W, (nodes + 1,).
-
-    D: differentiation. W: lumped mass. All arrays are contiguous, for inner loops over the nodes.
-    """
+    the weights W, (nodes + 1,). D: differentiation. W: lumped mass. All arrays are contiguous, for inner
+    loops over the nodes."""
 
     D: Array
     D_transposed: Array
@@ -144,8 +142,7 @@ def shape_integration_matrices(order: int, gauss_points: int = 0) -> ShapeIntegr
 
 def integration_matrix(nodes: Array, upper_limits: Array) -> Array:
     """Matrix (m, n) from values at `nodes`, (n,), to integrals of the interpolating polynomial along an
-    element of length 1, from its start to each of `upper_limits`, (m,). Nodes and ends are coordinates in
-    [-1, 1] of the element."""
+    element of length 1, from its start to `upper_limits`, (m,). All coordinates are in [-1, 1]."""
     points, weights = gauss_legendre_rule(len(nodes))
     return np.array(
         [

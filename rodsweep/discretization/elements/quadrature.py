@@ -24,8 +24,7 @@ LOBATTO_SETTINGS = LobattoSettings()
 
 @cache
 def gauss_legendre_rule(n: int) -> tuple[Array, Array]:
-    """Returns (nodes, weights), (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], which is exact to
-    degree 2n - 1."""
+    """Returns (nodes, weights), (n,) each, of the n-point Gauss-Legendre rule on [-1, 1], exact to 2n - 1."""
     nodes, weights = legendre.leggauss(n)
     return nodes, weights
 

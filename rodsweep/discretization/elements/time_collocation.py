@@ -29,11 +29,9 @@ RADAU_SETTINGS = RadauSettings()
 
 
 class CollocationMethod(NamedTuple):
-    """A collocation method with s stages on the interval [0, 1].
-
-    nodes, weights: nodes and quadrature weights, (s,); the last node is 1. differentiation_matrix: (s, s +
-    1), matrix from values at 0 and at the nodes to derivatives at the nodes.
-    """
+    """A collocation method with s stages on the interval [0, 1]. nodes, weights: nodes and quadrature
+    weights, (s,); the last node is 1. differentiation_matrix: (s, s + 1), matrix from values at 0 and at the
+    nodes to derivatives at the nodes."""
 
     nodes: Array
     weights: Array

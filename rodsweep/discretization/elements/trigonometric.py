@@ -222,8 +222,7 @@ def _series_value_slope_curvature(c: Complex, t: float) -> tuple[float, float, f
 
 
 def time_of_rise_through_mean(samples: Array) -> float:
-    """Time, in periods, of the first rise of the interpolant of samples, (N,), through its mean after a
-    minimum."""
+    """Time, in periods, at which the interpolant of samples, (N,), rises through its mean after a minimum."""
     n = len(samples)
     deviation = samples - samples.mean()
     after = (int(np.argmin(deviation)) + np.arange(n + 1)) % n

@@ -17,8 +17,7 @@ class ArmResolutionSettings:
     """Settings for the mesh of an arm that varies along its length."""
 
     max_radius_ratio: float = 2.2
-    """Maximum ratio of the radii at both ends of an element of a cone; at this ratio order 12 gives
-    eigenvalues to 1e-4."""
+    """Maximum ratio of the radii at both ends of an element of a cone: order 12 gives eigenvalues to 1e-4."""
     profile_order_increase: int = 2
     """Increase of the order if coefficients vary within an element."""
 

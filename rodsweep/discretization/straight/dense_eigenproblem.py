@@ -20,10 +20,9 @@ AnyPencil = Pencil | ArmPencil
 
 @dataclass(frozen=True, eq=False)
 class DenseEigenproblem:
-    """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B.
-
-    A: (unknowns, unknowns). B: diagonal, (unknowns,). displacement_factors: factors that convert the unknowns
-    to y and theta at the nodes, clamp excluded, (2, nodes)."""
+    """The transverse eigenproblem A x = w B x of one rod, with dense A and diagonal B. A: (unknowns,
+    unknowns). B: diagonal, (unknowns,). displacement_factors: factors that convert the unknowns to y and
+    theta at the nodes, clamp excluded, (2, nodes)."""
 
     rod: Rod
     mesh: Elements
@@ -71,8 +70,7 @@ def dense_eigenproblem(rod: Rod, pencil: AnyPencil) -> DenseEigenproblem:
 
 
 def _points_inside_elements(mesh: Elements, points: Array) -> Array:
-    """The points, (n,), each moved just inside the element to which `Elements.points_by_element` assigns the
-    point."""
+    """The points, (n,), each moved just inside its element by `Elements.points_by_element`."""
     points_inside = np.array(points, dtype=float)
     for e, indices, coordinates in mesh.points_by_element(points):
         position = mesh.edges[e] + mesh.lengths[e] * (coordinates + 1) / 2

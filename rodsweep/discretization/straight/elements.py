@@ -39,11 +39,8 @@ the rod's axis."""
 @dataclass(frozen=True, eq=False)
 class StraightElements:
     """A and M of a `MixedForm` about its straight rod, restricted to some components, as matrices of one
-    element.
-
-    components: indices of these components of stresses and velocities. Vectors are states of the form,
-    (unknowns,); all other components are ignored, and are 0 in results.
-    """
+    element. components: indices of these components of stresses and velocities. Vectors are states of the
+    form, (unknowns,); all other components are ignored, and are 0 in results."""
 
     form: MixedForm
     components: tuple[int, ...]
@@ -174,12 +171,9 @@ class _InteriorElimination:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ElementFactors:
-    """Factorisation of A - shift M by static condensation.
-
-    K: matrix of one element. interior: elimination of the interior unknowns of an element, None for a single
-    element. interface: LU factorisation of the matrix of the end unknowns of all elements; for a single
-    element, of all its unknowns.
-    """
+    """Factorisation of A - shift M by static condensation. K: matrix of one element. interior: elimination of
+    the interior unknowns of an element, None for a single element. interface: LU factorisation of the matrix
+    of the end unknowns of all elements; for a single element, of all its unknowns."""
 
     elements: StraightElements
     K: Complex

@@ -140,8 +140,7 @@ def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
 
 
 def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> DerivativeTensors:
-    """Derivatives of N and M at rest with respect to q1 and q3 on each side of a jump; nu, c1, c3: arrays of
-    equal shape."""
+    """Derivatives of N and M at rest by q1 and q3 on each side of a jump; nu, c1, c3: of equal shape."""
     first, second, third = (np.zeros((*nu.shape, *(2,) * order)) for order in (2, 3, 4))
     first[..., 0, 0] = law.stiffness(nu)
     first[..., 1, 1] = law.bending_factor(nu)
@@ -158,8 +157,7 @@ def _derivatives_beside_jump(law: Law, nu: Array, c1: Array, c3: Array) -> Deriv
 
 
 def inverse_function_derivatives(derivatives: DerivativeTensors) -> DerivativeTensors:
-    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y three times. derivatives:
-    derivatives of f."""
+    """Derivatives of the inverse function g of f, by differentiating f(g(y)) = y. derivatives: of f."""
     f1, f2, f3 = derivatives
     g1 = np.linalg.inv(f1)
     g2 = -np.einsum("...ai,...ijk,...jb,...kc->...abc", g1, f2, g1, g1)

@@ -41,8 +41,7 @@ class LongitudinalModeSettings:
     converged_difference: float = 1e-13
     """The order is no longer increased if the eigenvalues of two orders differ relatively by at most this."""
     rounding: float = 5e-14
-    """Relative rounding error of an eigenvalue; the error estimate is the difference between two orders plus
-    this number."""
+    """Relative rounding error of an eigenvalue; the error estimate is a difference of orders plus this."""
     extra_points: int = 6
     """Number of quadrature points per element for displacements, minus the number for strains."""
 
@@ -53,22 +52,20 @@ LONGITUDINAL_MODE_SETTINGS = LongitudinalModeSettings()
 def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
     """Returns (w, relative errors) of the leading longitudinal eigenvalues w, in 1/tau2, (modes,) each.
     Raises ValueError for an inextensible rod."""
+    settings = LONGITUDINAL_MODE_SETTINGS
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, LONGITUDINAL_MODE_SETTINGS.first_mesh_accuracy)
+    mesh = arm_elements(rod, np.pi * modes, settings.first_mesh_accuracy)
     order = max(mesh.order, -(-(modes + 1) // mesh.element_count))
     eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
     while True:
-        order += LONGITUDINAL_MODE_SETTINGS.order_increase
+        order += settings.order_increase
         # No a-priori bound of the error holds for every profile, so the error is estimated from a second
         # order.
         finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
         error = np.abs(finer_eigenvalues / eigenvalues - 1)
-        if (
-            error.max() <= LONGITUDINAL_MODE_SETTINGS.converged_difference
-            or order >= LONGITUDINAL_MODE_SETTINGS.max_order
-        ):
-            return finer_eigenvalues, error + LONGITUDINAL_MODE_SETTINGS.rounding
+        if error.max() <= settings.converged_difference or order >= settings.max_order:
+            return finer_eigenvalues, error + settings.rounding
         eigenvalues = finer_eigenvalues
 
 
@@ -100,22 +97,16 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     diagonal = np.arange(count)
     # Within the element of the point, the integral ends at the point, so Gauss weights of the full element do
     # not apply.
-    integral[diagonal, :, diagonal, :] = halves[:, :, None] * _lagrange_integrals(order, points)
+    to_points = legendre.legval(points, _legendre_series_of_integrals(order)).T
+    integral[diagonal, :, diagonal, :] = halves[:, :, None] * to_points
     matrix: Array = root[:, None] * integral.reshape(len(root), len(scale)) / scale
     return matrix
 
 
 @cache
-def _legendre_coefficients_at_gauss(order: int) -> Array:
-    """Legendre coefficients of the Lagrange polynomials through the Gauss points, (order, order)."""
+def _legendre_series_of_integrals(order: int) -> Array:
+    """Legendre coefficients of the integrals from -1 of the Lagrange polynomials through the Gauss points,
+    (order + 1, order)."""
     nodes, weights = gauss_legendre_rule(order)
     coefficients: Array = legendre.legvander(nodes, order - 1).T * weights * (np.arange(order)[:, None] + 0.5)
-    return coefficients
-
-
-def _lagrange_integrals(order: int, points: Array) -> Array:
-    """Integrals from -1 to each of `points`, (points,), of the Lagrange polynomials through the Gauss points,
-    (points, order)."""
-    series = legendre.legint(_legendre_coefficients_at_gauss(order), lbnd=-1)
-    integrals: Array = legendre.legval(points, series).T
-    return integrals
+    return legendre.legint(coefficients, lbnd=-1)

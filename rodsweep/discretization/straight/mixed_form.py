@@ -79,8 +79,7 @@ class MixedForm:
 
     @cached_property
     def reflection_signs(self) -> Array:
-        """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, then so does its
-        mirror image R X."""
+        """Diagonal of the reflection R, +1 or -1, (unknowns,). If X solves the equations, so does R X."""
         signs = np.repeat(MIRROR_SIGNS[:, None], self.mesh.node_count + 1, axis=1)
         return self.layout.state(signs, signs)
 
@@ -156,8 +155,7 @@ class MixedForm:
         return self.state(W * (ad(CS, V) + ad(CT, U)), forces)
 
     def trilinear(self, X: Values, Y: Values, Z: Values) -> Values:
-        """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns), for states X, Y, Z; 0
-        for a linear law."""
+        """The symmetric trilinear form C(X, Y, Z) of the cubic terms, (..., unknowns); 0 for a linear law."""
         S, T, R = (self.stresses_and_velocities(state)[0] for state in (X, Y, Z))
         W = self.mesh.quadrature
         law = self.law_derivatives
@@ -184,9 +182,8 @@ class MixedForm:
         return field @ -self.mesh.matrices.weak_derivative
 
     def _coupling_matrix(self) -> Array:
-        """Matrix of the terms of A without D and without drag, (unknowns, unknowns). These terms are W ad_E V
-        in the equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the
-        law."""
+        """Matrix of the terms of A without D and drag, (unknowns, unknowns). They are W ad_E V in the
+        equations of S, and W (ad*_E T S + ad*_{C S} Sigma) in the equations of V; T: tangent of the law."""
         N = self.mesh.node_count
         W = self.mesh.quadrature[:-1]
         identity = np.eye(PLANE_COMPONENT_COUNT)[:, :, None]

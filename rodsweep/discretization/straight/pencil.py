@@ -50,11 +50,9 @@ PENCIL_NORM_SETTINGS = PencilNormSettings()
 
 
 class PencilMatrices(NamedTuple):
-    """The matrices of the pencil A x = w B x of one rod or arm.
-
-    A: entries of A in the order of the sparsity pattern, (nnz,). B: diagonal of B, (unknowns,).
-    displacement_factors: factors that convert the unknowns to y and theta at the nodes, clamp excluded, (2,
-    nodes)."""
+    """The matrices of the pencil A x = w B x of one rod or arm. A: entries of A in the order of the sparsity
+    pattern, (nnz,). B: diagonal of B, (unknowns,). displacement_factors: factors that convert the unknowns to
+    y and theta at the nodes, clamp excluded, (2, nodes)."""
 
     A: Array
     B: Array
@@ -133,8 +131,7 @@ def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]
 
 
 def angle_weight(gamma3: float) -> float:
-    """Weight of theta in the norm of the pencil: sqrt(gamma3), but at least
-    `PENCIL_NORM_SETTINGS.min_angle_weight`."""
+    """Weight of theta in the norm: sqrt(gamma3), at least `PENCIL_NORM_SETTINGS.min_angle_weight`."""
     return max(sqrt(gamma3), PENCIL_NORM_SETTINGS.min_angle_weight)
 
 

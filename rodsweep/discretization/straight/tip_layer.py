@@ -23,8 +23,7 @@ class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
     max_length: float = 4.0
-    """Maximum length of the element at the tip, divided by the thickness of the layer. Elements away from the
-    tip may be longer."""
+    """Maximum length of the element at the tip, divided by the layer's thickness. Others may be longer."""
     max_equal_elements: int = 64
     """Maximum number of equal elements. For a thinner layer the elements near the tip are halved."""
     samples_per_piece: int = 33

@@ -19,8 +19,7 @@ AnyMesh = Resolution | ArmMesh
 
 
 def mesh_for(rod: Rod, wave_number: float, accuracy: float) -> AnyMesh:
-    """The mesh that resolves fields of the wave number `wave_number`, in 1/L, on a rod to the relative
-    accuracy `accuracy`."""
+    """The mesh that resolves fields of a wave number, in 1/L, on a rod to the relative `accuracy`."""
     if rod.is_uniform_and_linear:
         return resolution_for(wave_number, accuracy)
     elements = arm_elements(rod, wave_number, accuracy)
@@ -34,9 +33,9 @@ def finer_mesh(rod: Rod, mesh: AnyMesh) -> AnyMesh:
 
 def pencil_on(mesh: AnyMesh) -> AnyPencil:
     """The pencil of the transverse eigenproblem on a mesh, cached for other rods on an equal mesh."""
-    return (
-        assemble_pencil(mesh.element_count, mesh.order) if isinstance(mesh, Resolution) else _arm_pencil(mesh)
-    )
+    if isinstance(mesh, Resolution):
+        return assemble_pencil(mesh.element_count, mesh.order)
+    return _arm_pencil(mesh)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)

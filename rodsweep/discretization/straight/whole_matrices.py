@@ -20,11 +20,8 @@ from .mixed_form import MixedForm
 @dataclass(frozen=True, eq=False)
 class WholeRodMatrices:
     """A and M of a `MixedForm` about its straight arm, restricted to some components of stresses and
-    velocities.
-
-    components: indices of these components. Vectors are states of the form, (unknowns,); all other components
-    are ignored, and are 0 in results.
-    """
+    velocities. components: indices of these components. Vectors are states of the form, (unknowns,); all
+    other components are ignored, and are 0 in results."""
 
     form: MixedForm
     components: tuple[int, ...]

@@ -82,8 +82,7 @@ class StressForm(RodOnMesh):
         return self._state_on_mesh(target, self.stresses_on_mesh(target, x), x)
 
     def increments_on_mesh(self, target: Mesh, change: Array) -> Array:
-        """Increments of states, (..., unknowns), interpolated to the mesh `target` by a linear map, (...,
-        unknowns on target)."""
+        """Increments of states, (..., unknowns), mapped linearly to the mesh `target`, (..., unknowns)."""
         if self.has_continuous_stresses:
             return self.states_on_mesh(target, change)
         return self._state_on_mesh(target, self.stress_increments_on_mesh(target, change), change)

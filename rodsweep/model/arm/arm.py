@@ -20,7 +20,7 @@ from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
-from .shape import Shape, Station, shape_of_cone, shape_of_segments
+from .shape import Shape, Station, shape_of_segments
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,16 +88,15 @@ class SlenderArm:
         if self.si_segments:
             return shape_of_segments([(L, section, E or self.si.young) for L, section, E in self.si_segments])
         if self.tip_radius is not None:
-            return shape_of_cone(self.si.length, self.si.radius, self.si.tip_radius, self.si.young)
-        return Shape(self.si.length, (Station(1.0, self._uniform_section, self.si.young),))
-
-    @property
-    def _uniform_section(self) -> Section:
+            radii = ((0.0, self.si.radius), (1.0, self.si.tip_radius))
+            ends = tuple(Station(u, Circle(radius), self.si.young) for u, radius in radii)
+            return Shape(self.si.length, ends, self.si.tip_radius / self.si.radius)
+        section: Section = Tube(self.si.radius, self.si.inner_radius)
         if self.radius is None:
-            return Rectangle(self.si.width, self.si.height)
-        if self.inner_radius is None:
-            return Circle(self.si.radius)
-        return Tube(self.si.radius, self.si.inner_radius)
+            section = Rectangle(self.si.width, self.si.height)
+        elif self.inner_radius is None:
+            section = Circle(self.si.radius)
+        return Shape(self.si.length, (Station(1.0, section, self.si.young),))
 
     @property
     def cross_section(self) -> Section:
@@ -159,12 +158,8 @@ class SlenderArm:
             raise InputError("pressure is missing; give the pressure on the tip's cross section, or a force")
         if self.share_of_flutter is not None:
             raise InputError(f"{self.text_of(self.load)} is relative to flutter; give an absolute load")
-        return float(getattr(self.si, self.load)) * self._loaded_area
-
-    @property
-    def _loaded_area(self) -> float:
-        """Tip force divided by the load: face area of the tip, in m^2, for a pressure; 1 for a force."""
-        return 1.0 if self.load == "force" else self.shape.tip.section.face_area
+        loaded_area = 1.0 if self.load == "force" else self.shape.tip.section.face_area
+        return float(getattr(self.si, self.load)) * loaded_area
 
     @property
     def pressure_scale(self) -> float:

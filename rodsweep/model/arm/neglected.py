@@ -40,8 +40,7 @@ CURVATURE_OVER_AMPLITUDE = 6.0
 """Largest curvature of an arm in a limit cycle, in 1/L, divided by the amplitude of the tip, in L. For cycles
 from 2 % to 50 % above the flutter force the ratio is 5.8 to 6.7."""
 REYNOLDS_LIMIT = 1.0
-"""Limit of the Reynolds number of a large-amplitude cycle: inertia of the flow past the section then equals
-viscous drag."""
+"""Limit of the Reynolds number of a large-amplitude cycle, at which the flow's inertia equals its drag."""
 SELF_BUCKLING_WEIGHT = 7.837
 """Weight in k3/L^2 at which an upright rod buckles under its own weight (Greenhill 1881)."""
 FLUTTER_WAVENUMBER = 4.694
@@ -136,8 +135,7 @@ def angular_frequency_at_smallest_drag(arm: SlenderArm, frequency: ArrayLike) ->
 
 
 def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag m omega/gamma2 of the drag, caused by the mass of the arm. rate: omega in rad/s; `rate` and
-    the effect: (...,)."""
+    """Phase lag m omega/gamma2 of the drag, caused by the arm's mass. rate: omega in rad/s, (...,)."""
     stations_and_drags = zip(arm.shape.stations, arm.drags_along(drag), strict=True)
     # The value is taken at the section with the largest ratio of mass to drag.
     value = max(arm.mass_at(station) / local_drag.gamma2 for station, local_drag in stations_and_drags) * rate
@@ -147,8 +145,7 @@ def arm_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
 
 
 def fluid_inertia_effect(arm: SlenderArm, rate: Array, drag: Drag) -> Effect:
-    """Phase lag of the drag, caused by the inertia of the fluid. rate: angular frequency in rad/s; `rate` and
-    the effect: (...,)."""
+    """Phase lag of the drag, caused by the inertia of the fluid. rate: in rad/s, (...,)."""
     logarithm = 4 * pi * arm.si.viscosity / max(local_drag.gamma2 for local_drag in arm.drags_along(drag))
     # Vorticity diffuses over a wavelength of the bending wave, not over the radius.
     k = FLUTTER_WAVENUMBER / arm.si.length

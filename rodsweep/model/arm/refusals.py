@@ -22,8 +22,7 @@ CRUSHED_FORCE_RATIO = 1 - 1e-14
 """An arm is refused as crushed if F divided by the crushing force is at least this. The limit is below 1
 because unit conversion has rounding errors."""
 LENGTH_TOLERANCE = 1e-9
-"""A given length may differ from the sum of the segment lengths by this relative difference, which allows for
-rounding errors."""
+"""A given length may differ from the sum of the segment lengths by this, relatively, for rounding."""
 INCOMPRESSIBLE_POISSON = 0.5
 """Poisson's ratio of incompressible material, which a swelling section requires."""
 

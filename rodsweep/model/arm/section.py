@@ -13,11 +13,9 @@ class BoreTooWide(InputError):
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A solid circular cross-section of radius a, in m.
-
-    formula, shear_formula, pressure_force_formula: texts for reports, on area and second moment, on the shear
-    coefficient, and on the tip force under a pressure p.
-    """
+    """A solid circular cross-section of radius a, in m. formula, shear_formula, pressure_force_formula: texts
+    for reports, on area and second moment, on the shear coefficient, and on the tip force under a pressure
+    p."""
 
     radius: float
     formula: ClassVar[str] = "A = pi a^2, I = pi a^4/4"

@@ -2,12 +2,11 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from ...errors import InputError
 from ..units import GivenQuantity
-from .quantities import arm_quantity_in_si, quoted_quantity, radius_of_diameter
+from .quantities import UNITS, arm_quantity_in_si, quoted_quantity, radius_of_diameter
 from .section import BoreTooWide, Circle, Tube
 
 SEGMENT_KEYS = ("length", "radius", "inner_radius", "young")
@@ -19,6 +18,9 @@ SEGMENT_QUANTITY_PATTERN = re.compile(r"\s*([A-Za-z][A-Za-z_ -]*?)\s*=?\s*([+-]?
 MAX_SEGMENTS = 100
 """Maximum number of segments of an arm; more segments are refused. Each needs an element of the mesh."""
 
+WrittenSegment = Mapping[str, GivenQuantity]
+"""Quantities of a segment by name, as the user wrote them."""
+
 
 class ArmSegment(NamedTuple):
     """A uniform segment of an arm, in SI units. young: None if the segment has Young's modulus of the arm."""
@@ -26,19 +28,6 @@ class ArmSegment(NamedTuple):
     length: float
     section: Circle | Tube
     young: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class WrittenSegment:
-    """Quantities of a segment by name, as the user wrote them."""
-
-    quantities: Mapping[str, GivenQuantity]
-
-    def __str__(self) -> str:
-        """The segment as a text that `written_segment` accepts."""
-        texts = {name: _value_with_unit(name, value) for name, value in self.quantities.items()}
-        length = texts.pop("length")
-        return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"
 
 
 def segment_texts(segments: Any) -> tuple[str, ...]:
@@ -56,10 +45,10 @@ def segment_texts(segments: Any) -> tuple[str, ...]:
         )
     if len(segments) > MAX_SEGMENTS:
         raise InputError(f"segments: {len(segments)} are given; an arm has at most {MAX_SEGMENTS}")
-    quantities = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
-    for number, segment in enumerate(quantities, 1):
-        _segment_in_si(number, segment)
-    return tuple(map(str, quantities))
+    written = [written_segment(number, segment) for number, segment in enumerate(segments, 1)]
+    for number, quantities in enumerate(written, 1):
+        _segment_in_si(number, quantities)
+    return tuple(map(_segment_text, written))
 
 
 def segments_of(texts: Sequence[str]) -> tuple[ArmSegment, ...]:
@@ -82,14 +71,11 @@ def written_segment(number: int, segment: Any) -> WrittenSegment:
     for name in ("length", "radius"):
         if quantities.get(name) is None:
             raise InputError(f"{place}: {name} is missing; write a segment as in '{EXAMPLE_SEGMENT}'")
-    return WrittenSegment(
-        {name: quantities[name] for name in SEGMENT_KEYS if quantities.get(name) is not None}
-    )
+    return {name: quantities[name] for name in SEGMENT_KEYS if quantities.get(name) is not None}
 
 
 def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]:
-    """Quantities of a segment by name. segment: a mapping or a text. Raises InputError, beginning with
-    `place`, if invalid."""
+    """Quantities of a segment by name. segment: a mapping or a text. InputError begins with `place`."""
     if isinstance(segment, Mapping):
         return {str(name): value for name, value in segment.items()}
     length, colon, parts = str(segment).partition(":")
@@ -111,10 +97,9 @@ def _quantities_by_name(place: str, segment: Any) -> Mapping[str, GivenQuantity]
     return quantities
 
 
-def _segment_in_si(number: int, segment: WrittenSegment) -> ArmSegment:
-    """The segment `segment` in SI units. number: its position, for messages. Raises InputError for a value
+def _segment_in_si(number: int, quantities: WrittenSegment) -> ArmSegment:
+    """The segment in SI units. number: its position, for messages. Raises InputError for a value
     out of range, and BoreTooWide if the bore is too wide."""
-    quantities = segment.quantities
     place = f"segments, number {number}"
     try:
         length, radius, inner, young = (
@@ -130,12 +115,13 @@ def _segment_in_si(number: int, segment: WrittenSegment) -> ArmSegment:
     return ArmSegment(length, Tube(radius, inner), young if "young" in quantities else None)
 
 
-def _value_with_unit(name: str, quantity: GivenQuantity) -> str:
-    """Value of the quantity `name` as text with its unit."""
-    from .quantities import UNITS
-
-    return (
-        quantity.strip()
-        if isinstance(quantity, str)
-        else f"{arm_quantity_in_si(name, quantity)!r} {UNITS[name][0]}"
-    )
+def _segment_text(quantities: WrittenSegment) -> str:
+    """The segment as a text that `written_segment` accepts."""
+    texts = {
+        name: value.strip()
+        if isinstance(value, str)
+        else f"{arm_quantity_in_si(name, value)!r} {UNITS[name][0]}"
+        for name, value in quantities.items()
+    }
+    length = texts.pop("length")
+    return f"{length}: {', '.join(f'{name} {text}' for name, text in texts.items())}"

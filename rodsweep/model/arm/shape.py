@@ -19,8 +19,7 @@ from .drag import Drag, drag_estimates
 from .section import Circle, Section, Tube
 
 BUCKLING_NODE_COUNT = 400
-"""Number of midpoint-rule nodes in the integrals for the buckling weight; the relative error for a uniform
-arm is then 5e-5."""
+"""Number of midpoint-rule nodes in the integrals for the buckling weight; the relative error is then 5e-5."""
 BUCKLING_TOLERANCE = 1e-12
 """The power iteration stops when the largest eigenvalue changes relatively by at most this."""
 BUCKLING_MAX_ITERATIONS = 1000
@@ -32,11 +31,9 @@ at ten radii."""
 
 
 class Station(NamedTuple):
-    """A cross-section of an arm, with Young's modulus `young` in Pa.
-
-    end: material coordinate u, from 0 at the base to 1 at the tip, of the end of the segment with this
-    cross-section; for a cone, the u of the cross-section.
-    """
+    """A cross-section of an arm, with Young's modulus `young` in Pa. end: material coordinate u, from 0 at
+    the base to 1 at the tip, of the end of the segment with this cross-section; for a cone, the u of the
+    cross-section."""
 
     end: float
     section: Section
@@ -45,11 +42,9 @@ class Station(NamedTuple):
 
 @dataclass(frozen=True)
 class Shape:
-    """Cross-sections along an arm of the length `length`, in m.
-
-    stations: one station per segment from the base to the tip, or base and tip of a cone, or one station of a
-    uniform arm. taper: tip radius divided by base radius of a cone; 1 for other arms.
-    """
+    """Cross-sections along an arm of the length `length`, in m. stations: one station per segment from the
+    base to the tip, or base and tip of a cone, or one station of a uniform arm. taper: tip radius divided by
+    base radius of a cone; 1 for other arms."""
 
     length: float
     stations: tuple[Station, ...]
@@ -185,12 +180,6 @@ class Shape:
         areas = [station.section.area for station in self.stations]
         stiffnesses = [station.young * station.section.second_moment for station in self.stations]
         return np.repeat(lengths / count, count), np.repeat(areas, count), np.repeat(stiffnesses, count)
-
-
-def shape_of_cone(length: float, radius: float, tip_radius: float, young: float) -> Shape:
-    """Shape of a solid cone. length, radius, tip_radius: in m. young: Young's modulus, in Pa."""
-    ends = (Station(0.0, Circle(radius), young), Station(1.0, Circle(tip_radius), young))
-    return Shape(length, ends, tip_radius / radius)
 
 
 def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:

@@ -29,8 +29,7 @@ REPR_STABLE_TYPES = (bool, int, float, complex, str, bytes, type(None), type(Ell
 
 
 class FunctionText(NamedTuple):
-    """A Python function in the digest. text: its code and constants. called_kernels: the kernels that it
-    calls."""
+    """A Python function in the digest. text: its code and constants. called_kernels: those it calls."""
 
     text: str
     called_kernels: list["Kernel"]
@@ -162,8 +161,7 @@ class _ValueTextConverter:
         return _array_or_type_text(value) or self._object_text(value)
 
     def _object_text(self, value: Any) -> str:
-        """Name of a function or module; a function of this package becomes a called kernel. Raises TypeError
-        for any other object."""
+        """Name of a function or module; a function of this package becomes a kernel. Else TypeError."""
         if hasattr(value, "_defn"):  # an intrinsic of numba
             value = value._defn
         if isinstance(value, Dispatcher):

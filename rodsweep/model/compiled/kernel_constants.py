@@ -21,8 +21,7 @@ class KernelConstants:
 
     __slots__ = ()
     ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
-    """Exclusive bounds (lower, upper) of the value of a field, by name of the field; for example bounds that
-    a proof requires."""
+    """Exclusive bounds (lower, upper) of the value of a field, by name of the field, as a proof requires."""
 
     def __post_init__(self) -> None:
         """Raises ValueError for a field outside its bounds in `ranges`."""

@@ -29,8 +29,7 @@ ALWAYS_KNOWN_VALUES = {"range": range}
 
 
 class UnrolledOverAlgebra(Generic[P, R]):
-    """Decorator of a function whose first argument is a Lie algebra; `compiled_for` unrolls the loops over
-    this argument."""
+    """Decorator of a function whose first argument is a Lie algebra; `compiled_for` unrolls loops over it."""
 
     def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
         self.function: Any = function
@@ -91,8 +90,7 @@ class _UnrollingState(NamedTuple):
 
 
 class _UnrollingTransformer(ast.NodeVisitor):
-    """Copies a syntax tree. Names in `known_values` are replaced by their values, and loops over such values
-    are unrolled."""
+    """Copies a syntax tree. Names in `known_values` become values, and loops over them are unrolled."""
 
     def __init__(self, known_values: Mapping[str, Any], state: _UnrollingState) -> None:
         self.known_values = known_values

@@ -16,10 +16,8 @@ from .profile import RADIUS_POWERS, Profile
 
 class LocalCoefficients(NamedTuple):
     """Coefficients of the transverse operator at points of an arm; all arrays have the shape of the points.
-
     nu: stretch of the straight arm under its force. c2, c3: compliances of shear and bending. gamma2, gamma3:
-    normal and rotational drag. g = nu + F c2.
-    """
+    normal and rotational drag. g = nu + F c2."""
 
     nu: Array
     c2: Array
@@ -31,11 +29,8 @@ class LocalCoefficients(NamedTuple):
 
 class Sections(NamedTuple):
     """Properties of the cross-sections at points of an arm, for motion in the plane, or derivatives of these
-    properties.
-
-    compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational drag,
-    (3, points). nu: stretch of the straight arm under its force, (points,).
-    """
+    properties. compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational
+    drag, (3, points). nu: stretch of the straight arm under its force, (points,)."""
 
     compliance: Array
     drag: Array
@@ -44,11 +39,9 @@ class Sections(NamedTuple):
 
 @dataclass(frozen=True)
 class Build:
-    """Constitutive law and profile of an arm, together called its build; compared and hashed by value.
-
-    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for
-    constant stiffnesses and drags. Raises ValueError for an unknown law.
-    """
+    """Constitutive law and profile of an arm, together called its build; compared and hashed by value. (law,
+    section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for constant
+    stiffnesses and drags. Raises ValueError for an unknown law."""
 
     law: str = LINEAR.law
     section: str = LINEAR.section
@@ -154,8 +147,7 @@ class Build:
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
-        the base. Shape (3, points). taper: taper of the arm. The ratio is also defined for a rigid rod, which
-        has compliances of 0."""
+        the base. Shape (3, points). The ratio is also defined for a rigid rod, of compliance 0."""
         factors = factors_along(self.profile, taper, u)
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 

@@ -20,8 +20,7 @@ class FactorCacheSettings:
     max_points: int = 1024
     """Largest number of points at which factors are cached. Larger arrays belong to meshes used once."""
     max_entries: int = 256
-    """Maximum number of cached results, one for each profile, taper and array of points; a sweep along F
-    needs about ten."""
+    """Maximum number of cached results, by profile, taper and points; a sweep along F needs about ten."""
 
 
 FACTOR_CACHE_SETTINGS = FactorCacheSettings()

@@ -10,7 +10,7 @@ the rod shortens, in which a fibre at the distance Y from the axis has the stret
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -28,16 +28,14 @@ class Law:
     """A constitutive law, by its stretch energy W and bending factor B as functions of the stretch h1.
 
     Kernels use the compiled twin of all laws in `rodsweep.model.material.stress_strain`; a change of a law is
-    a change in both modules. All functions take and return floats or arrays. energy: W(h1).
-    energy_over_square: W(h1)/(h1 - 1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope,
-    stiffness_second_derivative: W''' and W''''. bending_factor: B(h1). bending_factor_slope,
-    bending_factor_second_derivative: B' and B''. shortening: 1 - nu at the load x = F/k1, from W'(nu) = -x,
-    without cancellation for small loads. crushing_load: the load x that crushes the rod; inf if no force
-    crushes the rod."""
+    a change in both modules. All functions take and return floats or arrays. energy_over_square: W(h1)/(h1 -
+    1)^2. stress: W'(h1). stiffness: W''(h1). stiffness_slope, stiffness_second_derivative: W''' and W''''.
+    bending_factor: B(h1). bending_factor_slope, bending_factor_second_derivative: B' and B''. shortening: 1 -
+    nu at the load x = F/k1, from W'(nu) = -x, without cancellation for small loads. crushing_load: the load x
+    that crushes the rod; inf if no force crushes the rod."""
 
     law: str
     section: str
-    energy: Callable[[Values], Values]
     energy_over_square: Callable[[Values], Values]
     stress: Callable[[Values], Values]
     stiffness: Callable[[Values], Values]
@@ -80,7 +78,6 @@ def _zeros(h1: Values) -> Values:
 LINEAR = Law(
     law="linear",
     section="fixed",
-    energy=lambda h: (h - 1) ** 2 / 2,
     energy_over_square=lambda h: 0.5 * _ones(h),
     stress=lambda h: h - 1,
     stiffness=_ones,
@@ -95,7 +92,6 @@ LINEAR = Law(
 NEO_HOOKEAN = Law(
     law="neo_hookean",
     section="fixed",
-    energy=lambda h: (h**2 + 2 / h - 3) / 6,
     energy_over_square=lambda h: (h + 2) / (6 * h),
     stress=lambda h: (h - 1 / h**2) / 3,
     stiffness=lambda h: (1 + 2 / h**3) / 3,
@@ -106,19 +102,12 @@ NEO_HOOKEAN = Law(
     bending_factor_second_derivative=_zeros,
     shortening=_neo_hookean_shortening,
 )
-SWELLING = Law(
-    law="neo_hookean",
+SWELLING = replace(
+    NEO_HOOKEAN,
     section="swelling",
-    energy=NEO_HOOKEAN.energy,
-    energy_over_square=NEO_HOOKEAN.energy_over_square,
-    stress=NEO_HOOKEAN.stress,
-    stiffness=NEO_HOOKEAN.stiffness,
-    stiffness_slope=NEO_HOOKEAN.stiffness_slope,
-    stiffness_second_derivative=NEO_HOOKEAN.stiffness_second_derivative,
     bending_factor=lambda h: (1 + 2 / h**3) / (3 * h),
     bending_factor_slope=lambda h: -(1 + 8 / h**3) / (3 * h**2),
     bending_factor_second_derivative=lambda h: (2 / h**3 + 40 / h**6) / 3,
-    shortening=_neo_hookean_shortening,
 )
 LAWS = {(law.law, law.section): law for law in (LINEAR, NEO_HOOKEAN, SWELLING)}
 """All constitutive laws by (law name, section name)."""

@@ -26,11 +26,9 @@ RADIUS_POWERS = {"k1": 2, "k2": 2, "k3": 4, "gamma3": 2}
 
 @dataclass(frozen=True)
 class Profile:
-    """Table of factors of stiffnesses and drags along the arm, compared and hashed by value.
-
-    u: material coordinates, increasing from 0 to 1, with a repeated value at a jump. rows: positive factors
-    at each u, in the order of `FACTOR_NAMES`. Raises ValueError for an invalid table.
-    """
+    """Table of factors of stiffnesses and drags along the arm, compared and hashed by value. u: material
+    coordinates, increasing from 0 to 1, with a repeated value at a jump. rows: positive factors at each u, in
+    the order of `FACTOR_NAMES`. Raises ValueError for an invalid table."""
 
     u: tuple[float, ...]
     rows: tuple[tuple[float, ...], ...]

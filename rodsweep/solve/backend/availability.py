@@ -43,8 +43,7 @@ def _petsc_version_numbers(directory: Path) -> list[int]:
 
 
 def require_working_directory() -> None:
-    """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc cannot start without a
-    working directory."""
+    """Raises EnvironmentIncomplete if the working directory was deleted: MPI and PETSc cannot start then."""
     try:
         os.getcwd()
     except FileNotFoundError:

@@ -11,30 +11,15 @@ from typing import Any
 
 import numba
 import numpy as np
-from llvmlite import binding
 from numba import types
-from numba.core import typing
 from numba.extending import intrinsic
 
 from ...model.compiled.compilation import c_callback, compiled
 from .petsc import PETSc
 
-PETSC_FUNCTIONS = (
-    "VecGetArrayRead",
-    "VecRestoreArrayRead",
-    "VecGetArray",
-    "VecRestoreArray",
-    "MatDenseGetArray",
-    "MatDenseRestoreArray",
-    "PetscObjectStateGet",
-)
-"""Names of the PETSc functions that compiled code calls."""
 PETSC_LIBRARY = ctypes.CDLL(
     PETSc.__file__
 )  # a module's symbols include those of the libraries it is linked to
-for _name in PETSC_FUNCTIONS:
-    binding.add_symbol(_name, ctypes.cast(getattr(PETSC_LIBRARY, _name), ctypes.c_void_p).value)
-
 POINTER = types.intp
 """numba type of a memory address or of the handle of a PETSc object."""
 INT = types.int32 if PETSc.IntType == np.int32 else types.int64
@@ -45,12 +30,6 @@ def c_function(*arguments: Any) -> Callable[[Callable], Any]:
     """Decorator that compiles a function for calls from C. arguments: numba types of the function's
     arguments. The function must return PETSc's error code, 0 for success."""
     return partial(c_callback, signature=types.int32(*arguments))
-
-
-def petsc_function(name: str) -> Any:
-    """The libpetsc function `int name(object, array*)` for compiled code. Compiled code that calls a function
-    of this type can be cached on disk; code that calls a ctypes function cannot."""
-    return types.ExternalFunction(name, typing.signature(types.int32, POINTER, POINTER))
 
 
 @intrinsic
@@ -89,7 +68,6 @@ def record_at(address: int, dtype: Any) -> Any:
 
 
 def call_petsc(name: str, *arguments: int) -> None:
-    """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError if the returned error
-    code is not 0."""
+    """Calls the libpetsc function `name` with pointers `arguments`; raises RuntimeError for an error code."""
     if getattr(PETSC_LIBRARY, name)(*map(ctypes.c_void_p, arguments)):
         raise RuntimeError(f"the PETSc function {name} failed")

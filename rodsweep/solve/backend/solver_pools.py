@@ -37,10 +37,9 @@ Object = TypeVar("Object", bound=Destroyable)
 
 
 class LruPool(Generic[Key, Object]):
-    """Cache of objects made by `create(key)`; a full pool destroys the least recently used objects.
-
-    A pool is full with `limit` objects, or above `SOLVER_POOL_SETTINGS.max_bytes`. Objects may grow while
-    they solve, so a pool may exceed the memory limit until the next object is created."""
+    """Cache of objects made by `create(key)`; a full pool destroys the least recently used objects. A pool is
+    full with `limit` objects, or above `SOLVER_POOL_SETTINGS.max_bytes`. Objects may grow while they solve,
+    so a pool may exceed the memory limit until the next object is created."""
 
     def __init__(self, create: Callable[[Key], Object], limit: int) -> None:
         self._create = create

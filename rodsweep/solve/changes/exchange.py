@@ -95,8 +95,7 @@ def overtaking_between(
 
 
 def _follow_eigenvalue(problem: PathProblem, w: complex, start: float, stop: float) -> complex:
-    """The eigenvalue at p = `stop` that continues the eigenvalue w at p = `start`, followed in small
-    steps by Newton's method on D."""
+    """The eigenvalue at p = `stop` that continues w at p = `start`, by small steps of Newton's method."""
     p = start
     for i in range(1, EXCHANGE_SETTINGS.following_steps + 1):
         w, slope, _ = problem.eigenvalue(w, p)

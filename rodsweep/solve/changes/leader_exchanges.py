@@ -74,8 +74,7 @@ LEADING_EIGENVALUE_SETTINGS = LeadingEigenvalueSettings()
 
 
 class LeaderExchangeSearch:
-    """Finds the exchanges of the leading eigenvalue along a path. samples: the samples solved so far, by path
-    variable."""
+    """Finds the exchanges of the leading eigenvalue along a path. samples: the solved samples, by p."""
 
     def __init__(self, problem: PathProblem, certify: bool):
         self.problem = problem

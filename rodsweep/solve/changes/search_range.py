@@ -65,13 +65,10 @@ class IntervalQueue:
 
     def __iter__(self) -> Iterator[tuple[float, float]]:
         """Yields the intervals of the queue; raises Unsolvable if no interval could be searched."""
+        settings = SEARCH_RANGE_SETTINGS
         while True:
             # The left part of an interval whose search failed can often be searched.
-            if (
-                not self._queue
-                and self.end.reason
-                and self._halvings < SEARCH_RANGE_SETTINGS.max_halvings_after_failure
-            ):
+            if not self._queue and self.end.reason and self._halvings < settings.max_halvings_after_failure:
                 self._halvings += 1
                 middle = (self.end.p + self._unsearched_end) / 2
                 self._queue.append((self.end.p, middle))

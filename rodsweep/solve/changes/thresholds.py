@@ -88,7 +88,6 @@ def warm_up() -> None:
 
 
 def filament_flutter_force() -> float:
-    """Critical force Fc, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) starts to flutter (De
-    Canio et al. 2017)."""
+    """Force, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) flutters (De Canio et al. 2017)."""
     result = find_thresholds(ParameterPath(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
     return next(c.value for c in result.thresholds if c.kind == ChangeKind.hopf)

@@ -158,6 +158,7 @@ def _search_result(
 ) -> ThresholdSearchResult:
     """`ThresholdSearchResult` of `thresholds` in the searched part of the requested `interval`, and why the
     search ended early. counts: gaps and doubts of the search. end_counts: unstable modes at both ends."""
+    starts, ends = zip(*counts.gaps, strict=True) if counts.gaps else ((math.nan,), (math.nan,))
     known = all(number >= 0 for number in (*end_counts, *(c.unstable_after for c in thresholds)))
     reason = found.search_end.reason
     end = found.path.parameter.value(found.search_end.p)
@@ -166,7 +167,7 @@ def _search_result(
         thresholds=thresholds,
         searched_interval=found.searched_interval(*interval),
         ended_early=bool(reason),
-        open_range=_hull_of_gaps(counts.gaps),
+        open_range=(min(starts), max(ends)),
         unstable_at_start=end_counts[0],
         unstable_at_end=end_counts[1],
         proved=counts.certify and not counts.gaps and not counts.doubts and known,
@@ -199,11 +200,6 @@ def _crossings_by_covering(path: ParameterPath, low: float, high: float) -> Path
     inside = [zero for zero in zeros if low <= zero.p + zero.error_of_p and zero.p - zero.error_of_p <= high]
     hopfs = [_hopf_crossing(path, zero) for zero in inside]
     return PathCrossings(path, hopfs, _undecided_intervals(path, undecided), SearchEnd(high), box_count)
-
-
-def _hull_of_gaps(gaps: list[tuple[float, float]]) -> tuple[float, float]:
-    """The smallest interval that contains all `gaps`; (nan, nan) if there are no gaps."""
-    return (min(a for a, _ in gaps), max(b for _, b in gaps)) if gaps else (math.nan, math.nan)
 
 
 def _crossings_without_leading_pair(

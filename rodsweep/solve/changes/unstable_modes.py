@@ -30,9 +30,7 @@ UNSTABLE_MODE_COUNT_SETTINGS = UnstableModeCountSettings()
 
 class ModeCounter:
     """Number of unstable modes along a path, from the directions of the crossings, confirmed by winding
-    numbers.
-
-    gaps: intervals of the parameter that may contain crossings missing from the list. doubts:
+    numbers. gaps: intervals of the parameter that may contain crossings missing from the list. doubts:
     sentences on counts that are undecided or contradict the crossings."""
 
     def __init__(self, problem: "PathProblem", gaps: list[tuple[float, float]], certify: bool):

@@ -216,7 +216,11 @@ def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_Curve
     at its requested values; reason for the end of the curve)."""
     if not 0 < start.v[2] + problem.direction * BAUTIN_STEP_CONTROL.min_length < 1:
         return [start], BautinEndReason.range_end
-    curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, _report_point_count)
+
+    def report_progress(points: Sequence[_CurvePoint]) -> None:
+        report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(points)} points"))
+
+    curve = follow_curve(problem, start, BAUTIN_STEP_CONTROL, report_progress)
     points = curve.solutions[:1]
     for point, next_point in pairwise(curve.solutions):
         try:
@@ -227,11 +231,6 @@ def _half_curve(problem: BautinProblem, start: _CurvePoint) -> tuple[list[_Curve
         is_range_end = curve.margin_index // 2 == 2
         return points, BautinEndReason.range_end if is_range_end else BautinEndReason.plane_edge
     return points, END_BY_STOP_REASON[curve.end_reason]
-
-
-def _report_point_count(points: Sequence[_CurvePoint]) -> None:
-    """Reports the number of points of the curve as progress."""
-    report(lambda: SolvePosition(f"curve of generalised Hopf points, {len(points)} points"))
 
 
 def _requested_points(problem: BautinProblem, first: _CurvePoint, second: _CurvePoint) -> list[_CurvePoint]:

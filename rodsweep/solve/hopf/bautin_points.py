@@ -64,11 +64,9 @@ class BautinPoint:
 
 @dataclass(frozen=True, slots=True)
 class CurveCriticality:
-    """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve.
-
-    criticality: sign of Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,).
-    points: generalised Hopf points. unlocated_count: number of sign changes without a located point.
-    """
+    """Signs of Re c along one Hopf curve, and the generalised Hopf points of this curve. criticality: sign of
+    Re c at every stored point, 0 if undecided, NaN if the normal form failed, (points,). points: generalised
+    Hopf points. unlocated_count: number of sign changes without a located point."""
 
     criticality: Array
     points: tuple[BautinPoint, ...]
@@ -114,10 +112,8 @@ def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> Cu
 @dataclass(frozen=True, slots=True)
 class HopfCurve:
     """Normal forms along a Hopf curve. boundary: equation D = 0 of the curve in the plane of two parameters.
-
     scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
-    relative accuracy of the Landau coefficient c.
-    """
+    relative accuracy of the Landau coefficient c."""
 
     boundary: Boundary
     scaled: Array
@@ -158,6 +154,7 @@ class HopfCurve:
         """The generalised Hopf point between the stored points with the indices `first_index` and
         `last_index`, at which Re c has opposite signs. None if a normal form fails, if Brent's method finds
         no zero, or if Re c jumps there."""
+        settings = BAUTIN_POINT_SETTINGS
         from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
 
         start = self.scaled[first_index]
@@ -168,24 +165,20 @@ class HopfCurve:
             return self.hopf_point_on_plane(start + s * chord, normal, self.accuracy)
 
         try:
-            s = float(
-                brentq(
-                    lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=BAUTIN_POINT_SETTINGS.tolerance
-                )
-            )
+            s = float(brentq(lambda s: on_chord(s).relative_real_part, 0.0, 1.0, xtol=settings.tolerance))
             hopf_point, start_values, beyond_values = (
-                on_chord(s + side * BAUTIN_POINT_SETTINGS.relative_difference_step) for side in (0, -1, 1)
+                on_chord(s + side * settings.relative_difference_step) for side in (0, -1, 1)
             )
         except (*FAILURES, ValueError):
             return None
         slope = (beyond_values.relative_real_part - start_values.relative_real_part) / (
-            2 * BAUTIN_POINT_SETTINGS.relative_difference_step
+            2 * settings.relative_difference_step
         )
-        if abs(hopf_point.relative_real_part) > BAUTIN_POINT_SETTINGS.max_relative_real_part or slope == 0:
+        if abs(hopf_point.relative_real_part) > settings.max_relative_real_part or slope == 0:
             return None
         # Points of undecided sign may lie between the two points, on both sides of the zero.
         is_passed = (self.scaled[first_index + 1 : last_index] - start) @ chord <= s * (chord @ chord)
-        error_along = hopf_point.coefficients.landau_error / abs(slope) + BAUTIN_POINT_SETTINGS.tolerance
+        error_along = hopf_point.coefficients.landau_error / abs(slope) + settings.tolerance
         return self.as_bautin_point(hopf_point, first_index + int(is_passed.sum()), chord * error_along)
 
     def as_bautin_point(

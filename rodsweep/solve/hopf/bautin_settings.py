@@ -22,21 +22,18 @@ class BautinSettings:
     """Settings of the corrector and of the ends of a curve of generalised Hopf points."""
 
     max_secant_steps: int = 10
-    """Maximum number of secant steps to a generalised Hopf point; if more are necessary, the step along the
-    curve has failed."""
+    """Maximum number of secant steps to a generalised Hopf point; beyond, the curve's step has failed."""
     first_secant_step: float = 1e-3
     """First secant step along the Hopf curve; each parameter's range has length 1."""
     tolerance: float = 1e-12
     """The secant method stops when the step is at most this number, or at most the error caused by the error
     of c; each parameter's range has length 1."""
     edge_tolerance: float = 1e-12
-    """A point lies on an end of a range if its distance from it, as a fraction of the range, is below
-    this."""
+    """A point lies on an end of a range if its distance, as a fraction of the range, is below this."""
     min_loop_points: int = 5
     """A curve can be recognised as closed only if it has more than this number of points."""
     same_point_distance: float = 1e-6
-    """Two points are identical if all their coordinates (scaled parameters, log frequency) differ by less
-    than this number."""
+    """Two points are identical if their coordinates (scaled parameters, log frequency) differ by less."""
 
 
 BAUTIN_SETTINGS = BautinSettings()

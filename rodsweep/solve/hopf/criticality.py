@@ -70,7 +70,16 @@ def solve_criticality(rod: Rod, request: CriticalityRequest) -> Criticality:
             message=message,
         )
 
-    return outcome_or_failure(search, _empty_criticality)
+    def failed(cause: str) -> Criticality:
+        return Criticality(
+            status=CriticalityStatus.failed,
+            search_result=ThresholdSearchResult(proved=False),
+            coefficients=(),
+            end=math.nan,
+            message=cause,
+        )
+
+    return outcome_or_failure(search, failed)
 
 
 @cache
@@ -90,16 +99,6 @@ def _coefficients(rod: Rod, hopf: Threshold, request: CriticalityRequest) -> Hop
         return hopf_coefficients(replace(rod, F=hopf.value), hopf, request.accuracy)
     except FAILURES as error:
         return HopfCoefficients(message=f"Hopf point at F = {hopf.value:.12g}: {cause_of(error)}")
-
-
-def _empty_criticality(cause: str) -> Criticality:
-    return Criticality(
-        status=CriticalityStatus.failed,
-        search_result=ThresholdSearchResult(proved=False),
-        coefficients=(),
-        end=math.nan,
-        message=cause,
-    )
 
 
 def _status_and_message(

@@ -36,8 +36,7 @@ class HopfCoefficientSettings:
     max_refinements: int = 4
     """Maximum number of meshes after the first."""
     coarsest_accuracy: float = 1e-2
-    """Coarsest relative accuracy for which the first mesh is chosen: the eigenvalue must still be identified
-    on this mesh."""
+    """Coarsest relative accuracy for which the first mesh is chosen: it must identify the eigenvalue."""
     landau_rounding_per_condition_number: float = 1.5e-14
     """Relative rounding error of c, divided by the condition number of the eigenvalue. Most rods have 1e-15;
     the largest measured value is 9e-15, for nearly crushed rods that are soft in stretch and shear."""
@@ -101,27 +100,30 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises
     Unsolvable. rod: the rod at the force of `hopf`. c is less accurate if its rounding error exceeds
     `accuracy`, or if the finest mesh does not suffice."""
+    settings = HOPF_COEFFICIENT_SETTINGS
     w = complex(0.0, hopf.frequency)
     # Undo the worst-case factor of the mesh rule: here the second mesh measures the actual error.
     start = elements_for_landau_coefficient(
         rod,
         w,
-        min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy),
+        min(accuracy / NORMAL_FORM_SETTINGS.mesh_accuracy_ratio, settings.coarsest_accuracy),
     )
-    fine_form = normal_form_on(start, rod, w, HOPF_COEFFICIENT_SETTINGS.coarsest_accuracy)
+    fine_form = normal_form_on(start, rod, w, settings.coarsest_accuracy)
     change = math.inf
     rounding = 0.0
-    for number in range(HOPF_COEFFICIENT_SETTINGS.max_refinements):
+    for number in range(settings.max_refinements):
         elements = Elements(fine_form.form.mesh.edges, fine_form.form.mesh.order)
         finer_elements = (
             elements_with_third_more_unknowns(elements)
             if number
-            else Elements(elements.edges, elements.order + HOPF_COEFFICIENT_SETTINGS.order_increase)
+            else Elements(elements.edges, elements.order + settings.order_increase)
         )
         coarse_form = fine_form
         fine_form = normal_form_on(finer_elements, rod, w, accuracy)
         change = abs(fine_form.landau - coarse_form.landau) / abs(fine_form.landau)
-        rounding = _landau_rounding_error(fine_form)
+        # The rounding error of c follows from the condition number of the eigenvalue.
+        sizes = straight_matrices(fine_form.form, TRANSVERSE).product_magnitude(fine_form.p, fine_form.q)
+        rounding = settings.landau_rounding_per_condition_number * sizes / abs(fine_form.w)
         if change <= max(accuracy, rounding):
             break
     # The slope of the root of D has no error of a mesh.
@@ -133,7 +135,7 @@ def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoeffic
         slope_difference = abs(fine_form.eigenvalue_slope - coarse_form.eigenvalue_slope) / abs(slope)
     # c was computed at the force of `hopf`: an error of this force changes c.
     unit = second_derivative / abs(slope) + 1 / abs(rod.F) + 1 / abs(rod.crushing_force - rod.F)
-    force_effect = HOPF_COEFFICIENT_SETTINGS.max_force_sensitivity * hopf.error * unit
+    force_effect = settings.max_force_sensitivity * hopf.error * unit
     landau_error = max(change, rounding) + force_effect
     slope_error = max(slope_difference, rounding) + hopf.error * second_derivative / abs(slope)
     return _coefficients_with_errors(
@@ -177,9 +179,3 @@ def _eigenvalue_derivatives(rod: Rod, w: complex) -> tuple[complex, float]:
     _, slope, _ = problem.eigenvalue(w, rod.F)
     _, slope_before, _ = problem.eigenvalue(w - slope * step, rod.F - step)
     return complex(slope), abs(slope - slope_before) / step
-
-
-def _landau_rounding_error(normal: NormalForm) -> float:
-    """Relative rounding error of c, from the condition number of the eigenvalue of `normal`."""
-    sizes = straight_matrices(normal.form, TRANSVERSE).product_magnitude(normal.p, normal.q)
-    return HOPF_COEFFICIENT_SETTINGS.landau_rounding_per_condition_number * sizes / abs(normal.w)

@@ -32,11 +32,9 @@ SUBCRITICAL_HOPF_SETTINGS = SubcriticalHopfSettings()
 
 @dataclass(frozen=True, slots=True)
 class SubcriticalHopf:
-    """Subcritical Hopf point near the force of a rod, with the size of its unstable cycle.
-
-    F: force of the Hopf point, in k3/L^2. unstable_y: largest tip y, in L, of the unstable cycle at the force
-    of the rod, to leading order.
-    """
+    """Subcritical Hopf point near the force of a rod, with the size of its unstable cycle. F: force of the
+    Hopf point, in k3/L^2. unstable_y: largest tip y, in L, of the unstable cycle at the force of the rod, to
+    leading order."""
 
     F: float
     unstable_y: float

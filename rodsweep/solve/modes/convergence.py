@@ -26,8 +26,7 @@ class ModeMeshSettings:
     """Settings of the meshes on which modes and condition numbers are computed."""
 
     order_increase: int = 4
-    """Increase of the element order from the first mesh to the second, which reduces the error of the modes
-    by a factor of 100."""
+    """Increase of the element order from the first mesh to the second; the modes' error falls by 100."""
     max_meshes: int = 4
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
@@ -43,8 +42,7 @@ MODE_MESH_SETTINGS = ModeMeshSettings()
 
 
 def mesh_accuracy_for_modes(accuracy: float) -> float:
-    """Relative accuracy of eigenvalues for which the first mesh is chosen if the modes need the relative
-    accuracy `accuracy`."""
+    """Relative accuracy of eigenvalues for the first mesh if the modes need the accuracy `accuracy`."""
     return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_accuracy)
 
 

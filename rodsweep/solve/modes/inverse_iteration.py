@@ -33,10 +33,8 @@ MODE_ITERATION_SETTINGS = ModeIterationSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModeVectors:
-    """Right and left modes computed on one mesh, evaluated at given points of the rod, with errors.
-
-    resolution: the mesh. The fields of modes are complex, (2, modes, points), NaN if the tip does not move.
-    """
+    """Right and left modes computed on one mesh, at given points of the rod, with errors. resolution: the
+    mesh. The fields of modes are complex, (2, modes, points), NaN if the tip does not move."""
 
     resolution: Resolution
     right_modes: Complex
@@ -105,17 +103,14 @@ def nan_mode_vectors(resolution: Resolution, modes: int, points: int) -> ModeVec
 def _eigenvectors(form: DenseEigenproblem, eigenvalues: Complex) -> tuple[Complex, Complex, Array]:
     """Returns (right eigenvectors, left eigenvectors, rounding errors of `eigenvalues`), (unknowns, modes),
     (unknowns, modes) and (modes,). The eigenvectors have the tip deflection 1."""
+    settings = MODE_ITERATION_SETTINGS
     A = form.A
     B = form.B
     m = len(eigenvalues)
     X = np.empty((len(B), m), complex)
     Z = np.empty((len(B), m), complex)
     for i, w in enumerate(eigenvalues):
-        if (
-            i
-            and w.imag < 0
-            and abs(w - eigenvalues[i - 1].conj()) <= MODE_ITERATION_SETTINGS.conjugate_tolerance * abs(w)
-        ):
+        if i and w.imag < 0 and abs(w - eigenvalues[i - 1].conj()) <= settings.conjugate_tolerance * abs(w):
             X[:, i] = X[:, i - 1].conj()
             Z[:, i] = Z[:, i - 1].conj()
         else:

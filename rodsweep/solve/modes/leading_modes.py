@@ -60,11 +60,7 @@ class ModesRequest:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Modes:
     """Result for one rod: leading eigenvalues, modes and transient growth, in the order defined in
-    `rodsweep.model`.
-
-    status: status of the spectrum, unless the modes or the growth failed or do not have the requested
-    accuracy.
-    """
+    `rodsweep.model`. status: status of the spectrum, unless modes or growth failed or are inaccurate."""
 
     status: SpectrumStatus
     spectrum: Spectrum

@@ -29,8 +29,7 @@ class NormMaximumSettings:
     max_halvings: int = 40
     """Maximum number of halvings of a time interval; after that the bound is not improved further."""
     max_open_intervals: int = 4000
-    """Maximum number of intervals in which a larger norm is possible; with more intervals, the bound is not
-    improved further."""
+    """Maximum number of intervals in which a larger norm is possible; with more, the bound stays."""
     times_per_batch: int = 128
     """Number of times at which the propagator is evaluated in one call; limits the memory."""
     max_exponent: float = 300.0
@@ -51,8 +50,9 @@ def largest_propagator_norm(
     """Returns ((maximum of |exp(L t)|, time of the maximum), upper bound of |exp(L t)|) for times from
     span[0] to span[1], in tau2. tolerance: relative tolerance of the bound. floor: norms below this are not
     searched for. abscissa: upper bound, at least 0, of the numerical abscissa."""
+    settings = NORM_MAXIMUM_SETTINGS
     low, high = span
-    count = max(2, int(np.ceil(np.log(high / low) / np.log(NORM_MAXIMUM_SETTINGS.first_grid_ratio))) + 1)
+    count = max(2, int(np.ceil(np.log(high / low) / np.log(settings.first_grid_ratio))) + 1)
     times = np.geomspace(low, high, count, dtype=np.float64)
     times[[0, -1]] = span
     squares, bends = _squared_norms_and_curvature_bounds(propagator, times)
@@ -64,14 +64,11 @@ def largest_propagator_norm(
     right = squares[1:]
     bend = bends[:-1]
     upper_bound = maximum[0]
-    for halving in range(NORM_MAXIMUM_SETTINGS.max_halvings + 1):
+    for halving in range(settings.max_halvings + 1):
         bound = np.sqrt(_squared_norm_bound(h, left, right, bend, abscissa))
         sufficient_bound = max(maximum[0], floor) * (1 + tolerance)
         is_open = bound > sufficient_bound
-        is_abandoned = (
-            halving == NORM_MAXIMUM_SETTINGS.max_halvings
-            or int(is_open.sum()) > NORM_MAXIMUM_SETTINGS.max_open_intervals
-        )
+        is_abandoned = halving == settings.max_halvings or int(is_open.sum()) > settings.max_open_intervals
         upper_bound = max(upper_bound, bound[~is_open | is_abandoned].max(initial=0.0))
         if is_abandoned or not is_open.any():
             break
@@ -90,8 +87,7 @@ def largest_propagator_norm(
 
 
 def _squared_norms_and_curvature_bounds(propagator: Propagator, times: Array) -> tuple[Array, Array]:
-    """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, evaluated in batches to
-    limit the memory."""
+    """Returns (|exp(L t)|^2, curvature bounds c) at `times`, in tau2, (times,) each, in batches."""
     parts = [
         propagator.squared_norms_and_curvature_bounds(part)
         for part in np.array_split(times, len(times) // NORM_MAXIMUM_SETTINGS.times_per_batch + 1)

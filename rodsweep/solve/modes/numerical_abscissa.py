@@ -40,28 +40,23 @@ def numerical_abscissa(rod: Rod, pencil: AnyPencil) -> float:
     nan if no shift lies above this eigenvalue, which is possible only for a rod without rotational drag and
     with `Rod.g` < 0.
     """
+    settings = NUMERICAL_ABSCISSA_SETTINGS
     form = dense_eigenproblem(rod, pencil)
     A = form.with_tip_terms(*hermitian_tip_coefficients(rod.F, tip_layer_ratio(rod)))
     B = form.B
     bound, _ = eigenvalue_box(rod) if rod.is_uniform_and_linear else hull_of(rod).box()
     # Any shift above the abscissa is allowed; the bound of the eigenvalues is the first guess.
     shift = bound + 1 if bound < inf else rod.F**2 + 1
-    for _ in range(NUMERICAL_ABSCISSA_SETTINGS.max_shifts):
+    for _ in range(settings.max_shifts):
         H = shifted_inverse(A, B, shift)
         values = np.linalg.eigvalsh((H + H.T) / 2)
-        if (
-            values[-1] > -NUMERICAL_ABSCISSA_SETTINGS.min_positive_ratio * values[0]
-        ):  # an eigenvalue lies above the shift
+        if values[-1] > -settings.min_positive_ratio * values[0]:  # an eigenvalue lies above the shift
             shift = 2 * abs(shift) + 1
             continue
         # Eigenvalues of the inverse of (L + L+)/2 - shift, all negative above the abscissa; the most negative
         # is nearest.
         abscissa = shift + 1 / float(values[0])
-        is_close = (
-            abscissa
-            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance * abs(abscissa)
-            + NUMERICAL_ABSCISSA_SETTINGS.final_shift_distance
-        )
+        is_close = abscissa + settings.final_shift_distance * abs(abscissa) + settings.final_shift_distance
         if shift - abscissa <= 2 * (is_close - abscissa):
             return abscissa
         # A shift far above the abscissa cancels in shift + 1/value: one more solve close to it restores the

@@ -24,7 +24,6 @@ from ..backend.c_functions import (
     call_petsc,
     doubles_at,
     integers_at,
-    petsc_function,
     record_at,
 )
 from ..backend.petsc import PETSc
@@ -42,14 +41,18 @@ from .context import (
     rod_of,
     sqrt_compliance_of,
 )
-from .petsc_calls import read_array, release_read, release_write, write_array
+from .petsc_calls import (
+    get_dense,
+    object_state_of,
+    read_array,
+    release_read,
+    release_write,
+    restore_dense,
+    write_array,
+)
 from .predictor import STAGE_PREDICTOR_SETTINGS, begin_step, extrapolation_points_of
 from .stage_newton import solve_stage, test_newton_convergence
 from .step_record import take_steps
-
-_get_dense = petsc_function("MatDenseGetArray")
-_restore_dense = petsc_function("MatDenseRestoreArray")
-_get_object_state = petsc_function("PetscObjectStateGet")
 
 
 @c_function(POINTER, types.float64, POINTER, POINTER, POINTER, POINTER)
@@ -100,7 +103,7 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
     n = c.unknowns
     scratch = context + OUTPUTS_OFFSET
     outputs = integers_at(scratch, 1)
-    _get_object_state(B, scratch)
+    object_state_of(B, scratch)
     # PETSc may have scaled the matrix in place; its state counter shows every change.
     is_unchanged = c.last_matrix == B and c.matrix_state == outputs[0]
     if c.matrix_due == UP_TO_DATE and c.shift == shift and is_unchanged:
@@ -113,14 +116,14 @@ def residual_jacobian(  # noqa: PLR0913, PLR0917 - PETSc's signature
         release_read(U, scratch)
     elif c.matrix_due == AT_BASE:
         write_rate_jacobian(doubles_at(c.base, n), J, sqrt_compliance_of(c), rod_of(c), matrices_of(c))
-    _get_dense(B, scratch)
+    get_dense(B, scratch)
     M = doubles_at(outputs[0], n * n).reshape(n, n)
     M[:, :] = -J
     for i in range(n):
         M[i, i] += shift
-    _restore_dense(B, scratch)
+    restore_dense(B, scratch)
     c.last_matrix = B
-    _get_object_state(B, context + MATRIX_STATE_OFFSET)
+    object_state_of(B, context + MATRIX_STATE_OFFSET)
     c.matrix_due = UP_TO_DATE
     c.shift = shift
     c.factorisations += 1

@@ -26,23 +26,20 @@ class FixedTipSettings:
     """Settings of the rod that is bent until its tip is at a given point."""
 
     max_tip_distance: float = 0.98
-    """Largest distance of the tip from the clamp, divided by the length of the straight rod: at 1 the rod
-    cannot be bent."""
+    """Largest distance of the tip from the clamp over the straight length: at 1 the rod cannot be bent."""
     start_angle: float = 0.8
     """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
     straight rod cannot move towards the clamp."""
     first_step: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
     min_step: float = 1e-3
-    """If a step of the target, as a fraction of the path, must be smaller than this, the search ends at the
-    last target reached."""
+    """If a step of the target, as a fraction of the path, is smaller, the search ends at the last target."""
     max_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
     target_tolerance: float = 1e-10
     """Tolerance of Newton's method: distance of the tip from its target, in L."""
     max_rotation: float = 1.0
-    """Newton's method fails if a Newton step changes theta by more than this, in rad: a longer step may lead
-    to a different shape."""
+    """Newton's method fails if a step turns theta by more, in rad: it may lead to another shape."""
 
 
 FIXED_TIP_SETTINGS = FixedTipSettings()

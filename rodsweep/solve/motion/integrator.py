@@ -39,8 +39,7 @@ class IntegratorSettings:
     max_rejections: int = 30
     """PETSc ends the run after more than this number of successive rejections of one time step."""
     max_failed_stages: int = 1_000_000
-    """PETSc ends the run after more than this number of stages at which Newton's method fails; each failure
-    shortens the step."""
+    """PETSc ends the run after more failures of Newton's method than this; each shortens the step."""
     relaxation_duration_ratio: float = 1e-3
     """Duration of the run in `relax_fast_components`, as a fraction of the period."""
     relaxation_steps_per_period: float = 1e5

@@ -26,11 +26,8 @@ class LeadingMode:
     @property
     def period(self) -> float:
         """Period 2 pi/Im w in tau2, or the time constant 1/|w| of a mode that does not oscillate."""
-        return (
-            2 * np.pi / self.w.imag
-            if self.w.imag
-            else 1 / max(abs(self.w.real), EXPONENT_SETTINGS.least_divisor)
-        )
+        settings = EXPONENT_SETTINGS
+        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), settings.least_divisor)
 
 
 def leading_mode(beam: Beam) -> LeadingMode:

@@ -27,6 +27,9 @@ def _compiled_symbol(name: str, signature: Any) -> Any:
     return types.ExternalFunction(name, signature)
 
 
+get_dense = _int_function("MatDenseGetArray", POINTER, POINTER)
+restore_dense = _int_function("MatDenseRestoreArray", POINTER, POINTER)
+object_state_of = _int_function("PetscObjectStateGet", POINTER, POINTER)
 read_array = _int_function("VecGetArrayRead", POINTER, POINTER)
 release_read = _int_function("VecRestoreArrayRead", POINTER, POINTER)
 write_array = _int_function("VecGetArray", POINTER, POINTER)

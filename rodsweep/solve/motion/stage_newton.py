@@ -54,8 +54,7 @@ class StageNewtonSettings(KernelConstants):
     new_matrix_contraction: float = 0.3
     """If the contraction exceeds this, a new matrix is computed at the current iterate."""
     stagnant_contraction: float = 0.5
-    """If the contraction exceeds this and the Newton steps are as small as rounding error, the iteration ends
-    as converged."""
+    """If the contraction exceeds this and Newton steps are rounding, the iteration ends as converged."""
     growing_step_ratio: float = 2.0
     """A Newton step is growing if the contraction exceeds this."""
     max_growing_steps: int = 2

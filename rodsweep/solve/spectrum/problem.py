@@ -40,12 +40,9 @@ from .shift_invert import KRYLOV_SETTINGS
 
 
 class TransverseProblem(ABC):
-    """Meshes, solver and determinant D of one rod.
-
-    shift: target of Krylov-Schur, to the right of most spectra, in 1/tau2. has_bound: whether an a-priori
-    bound of the eigenvalues exists. is_count_slow: whether one count takes longer than several eigenvalue
-    problems.
-    """
+    """Meshes, solver and determinant D of one rod. shift: target of Krylov-Schur, to the right of most
+    spectra, in 1/tau2. has_bound: whether an a-priori bound of the eigenvalues exists. is_count_slow: whether
+    one count takes longer than several eigenvalue problems."""
 
     rod: Rod
     shift: float
@@ -78,8 +75,7 @@ class TransverseProblem(ABC):
 
     @abstractmethod
     def count(self, line: float, roots: Roots | KnownRoots | None = None) -> EigenvalueCount:
-        """Proved number of eigenvalues with Re w > line. roots: known roots of D, which make the count of an
-        arm faster."""
+        """Proved number of eigenvalues with Re w > line. roots: known roots of D, for a faster count."""
 
     def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
         """Returns (proved, evaluations). proved: whether it is proved that `roots` contains all eigenvalues
@@ -149,9 +145,7 @@ class ArmProblem(TransverseProblem):
         return finer_arm_mesh(self.rod, mesh)
 
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
-        """Roots of D refined from the eigenvalues `mesh_eigenvalues`, (n,), as in
-        `TransverseProblem.refined_roots`; if a proof is requested, only from the eigenvalues that the proof
-        needs."""
+        """Roots of D refined from `mesh_eigenvalues`, (n,); for a proof, only from those that it needs."""
         needed_mask, largest_w = self._eigenvalues_for_proof(mesh_eigenvalues)
         return roots_of_arm(
             np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, largest_w

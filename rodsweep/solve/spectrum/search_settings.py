@@ -18,8 +18,7 @@ class SearchSettings:
     """If a mesh gives too few roots of D, but at least this fraction of the number of requested modes, the
     next attempt requests more eigenvalues and refines the mesh; otherwise it only refines the mesh."""
     max_meshes: int = 16
-    """Maximum number of attempts, each on one mesh. Only pulled rods with little rotational drag need most of
-    these attempts."""
+    """Maximum number of attempts, each on one mesh. Only pulled rods of little rotational drag need most."""
     max_failures: int = 3
     """Maximum number of attempts that end with an error inside PETSc, SLEPc or LAPACK."""
     max_stalled_refinements: int = 2

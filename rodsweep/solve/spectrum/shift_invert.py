@@ -59,8 +59,7 @@ class KrylovSettings:
     dense_matrices_per_solver: int = 9
     """Number of dense matrices that a solver of a small pencil stores: A, its factors, and constants."""
     numbers_per_nonzero_entry: int = 11
-    """Number of stored numbers per nonzero entry of a large pencil: A with its pattern, its factors, and
-    constant matrices."""
+    """Number of stored numbers per nonzero entry of a large pencil: A with pattern, factors, constants."""
 
 
 KRYLOV_SETTINGS = KrylovSettings()

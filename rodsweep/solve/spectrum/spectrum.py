@@ -54,8 +54,7 @@ NumberPerRod = Any
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """Leading transverse eigenvalues of one rod, or of n rods; for n rods every array has an additional first
-    axis of length n."""
+    """Leading transverse eigenvalues of one rod, or of n rods, with an additional first axis of length n."""
 
     status: NumberPerRod
     """A `SpectrumStatus`, or an array of n integer values of `SpectrumStatus`, (n,)."""
@@ -93,10 +92,7 @@ class Spectrum:
 @dataclass(frozen=True, slots=True)
 class FollowedPoints:
     """Leading eigenvalues w and their absolute errors, (n, modes), at n successive points of a sweep.
-
-    unstable_count: number of unstable modes, (n,). is_accepted: whether the point is certified and accurate,
-    (n,).
-    """
+    unstable_count: number of unstable modes, (n,). is_accepted: whether certified and accurate, (n,)."""
 
     w: Complex
     error: Array
@@ -121,11 +117,8 @@ def modes_at_lobatto_nodes(
 def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w. w, error: arrays
     of equal shape. rod: the rod, or any rod of the path of these eigenvalues."""
-    rounding = (
-        SPECTRUM_ERROR_SETTINGS.rounding
-        if rod.is_uniform_and_linear
-        else SPECTRUM_ERROR_SETTINGS.rounding_of_arms
-    )
+    settings = SPECTRUM_ERROR_SETTINGS
+    rounding = settings.rounding if rod.is_uniform_and_linear else settings.rounding_of_arms
     return error + rounding * ROUND_OFF * np.abs(w)
 
 

@@ -6,6 +6,7 @@ wave. The number of requested eigenvalues is doubled until the leading eigenvalu
 certified.
 """
 
+import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -64,27 +65,23 @@ def _spectrum_or_raise(rod: Rod, request: SpectrumRequest) -> Spectrum:
     mesh: AnyMesh = problem.mesh_for(modes, mesh_tolerance)
     coarser_eigenvalues = _leading_eigenvalues(problem, mesh, modes)
     best_spectrum: Spectrum | None = None
+    smallest_error = math.inf
     for _ in range(TWO_MESH_SETTINGS.max_finer_meshes):
         mesh = problem.finer_mesh(mesh)
         if mesh.unknown_count > RESOLUTION_SETTINGS.max_unknowns:
             break
         eigenvalues = _leading_eigenvalues(problem, mesh, modes)
         if len(eigenvalues.w) >= modes and len(coarser_eigenvalues.w):
-            spectrum = _spectrum_of_mesh(
-                problem,
-                request,
-                mesh,
-                eigenvalues,
-                _errors_between_meshes(
-                    eigenvalues.w, coarser_eigenvalues.w, _eigenvalue_rounding_scale(problem)
-                ),
-            )
+            scale = _eigenvalue_rounding_scale(problem)
+            error = _errors_between_meshes(eigenvalues.w, coarser_eigenvalues.w, scale)
+            spectrum = _spectrum_of_mesh(problem, request, mesh, eigenvalues, error)
             if spectrum.status == SpectrumStatus.ok:
                 return spectrum
             # The finest mesh may have the largest rounding error.
-            best_spectrum = (
-                spectrum if best_spectrum is None else min(best_spectrum, spectrum, key=_largest_error)
-            )
+            largest_error = float((spectrum.error_estimate / np.abs(spectrum.eigenvalues)).max())
+            if best_spectrum is None or largest_error < smallest_error:
+                best_spectrum = spectrum
+                smallest_error = largest_error
         coarser_eigenvalues = eigenvalues
     if best_spectrum is None:
         meshes = meshes_text(1 + TWO_MESH_SETTINGS.max_finer_meshes, problem.finer_mesh(mesh))
@@ -116,8 +113,7 @@ def _eigenvalue_rounding_scale(problem: TransverseProblem) -> float:
 
 
 class _MeshEigenvalues(NamedTuple):
-    """Eigenvalues w of a mesh, (k,), sorted as defined in `rodsweep.model`, and their indices in SLEPc's
-    list, (k,)."""
+    """Eigenvalues w of a mesh, (k,), sorted as in `rodsweep.model`, and their indices in SLEPc's list."""
 
     w: Complex
     indices: NDArray[np.intp]
@@ -145,11 +141,6 @@ def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) 
             return _MeshEigenvalues(mesh_eigenvalues[:0], order[:0])
         previous_w = leading
         requested = 2 * requested
-
-
-def _largest_error(spectrum: Spectrum) -> float:
-    """Largest relative error estimate among the eigenvalues of a spectrum."""
-    return float((spectrum.error_estimate / np.abs(spectrum.eigenvalues)).max())
 
 
 def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:

@@ -46,11 +46,8 @@ class CheckpointStore(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Chains:
-    """All chains, lines of points each of which starts from its neighbour's solution, of a grid of shape
-    `shape` along its axis number `axis`.
-
-    is_upward: whether points are solved in order of increasing values on the axis.
-    """
+    """All chains, lines of points that start from a neighbour's solution, of a grid of shape `shape` along
+    its axis number `axis`. is_upward: whether points are solved in order of increasing values on the axis."""
 
     shape: tuple[int, ...]
     axis: int
@@ -89,10 +86,8 @@ class SweepChains:
 @dataclass(frozen=True, slots=True)
 class ChainSolver:
     """Function from the number of a chain to the outcomes of its missing points; resumes from checkpoints.
-
     work: the chains. missing: flat indices of the missing points. checkpoints: store of solver states. stop:
-    a stop request ends the chain after the current point.
-    """
+    a stop request ends the chain after the current point."""
 
     work: SweepChains
     missing: IndexSet

@@ -51,8 +51,7 @@ def rods_needing_flutter_force(
 
 
 def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
-    """Yields the arms of a config section to which the rod model applies, without load. Raises InputError for
-    an invalid arm."""
+    """Yields the arms of a config section to which the model applies, without load. Raises InputError."""
     for values in section.values_of_arms():
         try:
             yield section.arm_of(values)
@@ -63,8 +62,7 @@ def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
 
 
 def flutter_force_of_rod(rod: Rod) -> FlutterForce:
-    """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason; no
-    exception is raised."""
+    """Force of first flutter of one rod. If the search fails, F is nan and `failure` is the reason."""
     from ...verdict.relative_load import FlutterSearchFailed, first_hopf_force
 
     try:

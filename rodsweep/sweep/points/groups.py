@@ -19,19 +19,15 @@ GROUP_POINTS = 128
 """Maximum number of points in a stretch. Arms along a path share what is computed once per stretch; longer
 groups would leave fewer work items to the ranks."""
 MIN_GROUP_AXIS_VALUES = 8
-"""Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much
-to follow eigenvalues."""
-GROUPES_PER_BLOCK = 1 << 12
+"""Minimum number of values on the axis of groups. On a shorter axis, neighbouring points differ too much."""
+GROUPS_PER_BLOCK = 1 << 12
 """Number of groups tested for missing points in a single array operation, which bounds the memory."""
 
 
 @dataclass(frozen=True, slots=True)
 class GroupResult:
-    """Result of a group of n points solved together.
-
-    values: every variable of the result file at the points, (n, ...), by name. is_solved: mask of the points
-    that were solved together, (n,); all other points must be solved one by one.
-    """
+    """Result of a group of n points solved together. values: every variable of the result file at the points,
+    (n, ...), by name. is_solved: mask of points solved together, (n,); others must be solved one by one."""
 
     values: dict[str, NDArray]
     is_solved: NDArray[np.bool_]
@@ -61,9 +57,8 @@ class PointGroups:
 
     @property
     def count(self) -> int:
-        """Number of groups in the grid. PointGroups are ordered by position along the axis, and at equal
-        positions in row-major order of the remaining axes. Consecutive groups are therefore neighbours in the
-        file."""
+        """Number of groups in the grid. Groups are ordered by position along the axis, at equal positions in
+        row-major order of the remaining axes. Consecutive groups are therefore neighbours in the file."""
         return self.line_count * -(-self.shape[self.axis] // GROUP_POINTS)
 
     def indices(self, group: int) -> NDArray[np.int64]:
@@ -87,21 +82,20 @@ class PointGroups:
             return [(0, self.count)]
         missing_points = IndexSet(missing)
         ranges: list[IndexRange] = []
-        for start in range(0, self.count, GROUPES_PER_BLOCK):
-            end = min(start + GROUPES_PER_BLOCK, self.count)
+        for start in range(0, self.count, GROUPS_PER_BLOCK):
+            end = min(start + GROUPS_PER_BLOCK, self.count)
             incomplete = self.missing_counts((start, end), missing_points) > 0
             edges = start + np.flatnonzero(np.diff(incomplete, prepend=False, append=False))
             ranges += zip(map(int, edges[::2]), map(int, edges[1::2]), strict=True)
         return merged_ranges(ranges)
 
     def missing_total(self, groups: Sequence[IndexRange], missing: Sequence[IndexRange]) -> int:
-        """Number of missing points in the given groups. groups: ranges of group numbers. missing:
-        ranges of flat indices."""
+        """Number of missing points in groups. groups: ranges of their numbers. missing: of flat indices."""
         missing_points = IndexSet(missing)
         number = 0
         for start, end in groups:
-            for block_start in range(start, end, GROUPES_PER_BLOCK):
-                block = (block_start, min(block_start + GROUPES_PER_BLOCK, end))
+            for block_start in range(start, end, GROUPS_PER_BLOCK):
+                block = (block_start, min(block_start + GROUPS_PER_BLOCK, end))
                 number += int(self.missing_counts(block, missing_points).sum())
         return number
 
@@ -117,12 +111,9 @@ def groups_along_longest_axis(shape: tuple[int, ...], varied: Sequence[str]) -> 
 
 @dataclass(frozen=True, slots=True)
 class GroupSolver:
-    """Function from the number of a group of points to the results of its missing points.
-
-    groups: all groups of the grid. solve_group: solves the points of a group together. solve:
-    solves a point, given its flat index, that could not be solved together with its group. missing: flat
-    indices of the missing points.
-    """
+    """Function from the number of a group of points to the results of its missing points. groups: all groups
+    of the grid. solve_group: solves the points of a group together. solve: solves a point, given its flat
+    index, that could not be solved together with its group. missing: flat indices of the missing points."""
 
     groups: PointGroups
     solve_group: SolveGroup

@@ -96,8 +96,7 @@ def count_right_of(
 
 
 def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
-    """Whether eigenvalues right of a line at Re w <= 0 can be counted: the hull is bounded, and elements
-    resolve D."""
+    """Whether eigenvalues right of a line at Re w <= 0 are countable: bounded hull, elements resolve D."""
     if not math.isfinite(hull.a):
         return False
     try:

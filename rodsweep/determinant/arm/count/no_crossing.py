@@ -54,11 +54,9 @@ class ArmsOfInterval(NamedTuple):
 
 
 class LineNode(NamedTuple):
-    """The node w0 of a disc, with values of the middle arm.
-
-    w: w0. D: D(w0) exp(-S), S = `log_scale`. L: D'/D, with the eigenvalues divided out.
-    divided_indices: indices of the known eigenvalues that are divided out, (k,). exponent_and_slope: (Phi,
-    dPhi/dw) if h contains the dominant wave, else (0, 0)."""
+    """The node w0 of a disc, with values of the middle arm. w: w0. D: D(w0) exp(-S), S = `log_scale`. L:
+    D'/D, with the eigenvalues divided out. divided_indices: indices of the known eigenvalues that are divided
+    out, (k,). exponent_and_slope: (Phi, dPhi/dw) if h contains the dominant wave, else (0, 0)."""
 
     w: complex
     D: complex
@@ -92,7 +90,10 @@ def proves_no_crossing(
     family, hulls: as of the whole path.
     """
     w, error = eigenvalues_and_errors
-    top = _height_of_hulls(line, p, hulls)
+    overlaps = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
+    intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
+    # Largest |Im w| right of the line in the hulls of all arms.
+    top = max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
     if not math.isfinite(top) or not all(has_conjugate(here).all() for here in w):
         return False
     samples = [ArmDeterminant(rod).gauss_samples for rod in rods]
@@ -105,27 +106,14 @@ def proves_no_crossing(
     )
     if height < top and radius > 0:
         try:
-            arms = _arms_with_larger_w(
-                arms, rods, NO_CROSSING_SETTINGS.W_reserve_factor * abs(complex(line, top))
-            )
+            W = NO_CROSSING_SETTINGS.W_reserve_factor * abs(complex(line, top))
+            elements = elements_for(rods, coefficient_samples(rods), W)
+            larger = element_propagators([rod.F for rod in rods], elements.local, elements.lengths, W)
         except FloatingPointError:
             return False
+        arms = arms._replace(largest_w=W, propagators=larger)
         height, _ = covered_height(line, height, top, (radius, NO_CROSSING_SETTINGS.min_radius * unit), arms)
     return height >= top
-
-
-def _height_of_hulls(line: float, p: Array, hulls: PathHulls) -> float:
-    """Largest |Im w| at Re w >= `line` in the hulls of all arms between the smallest and the largest p."""
-    overlaps = (hulls.p[:-1] <= p.max()) & (hulls.p[1:] >= p.min())
-    intervals = zip(hulls.a[overlaps].tolist(), hulls.c[overlaps].tolist(), strict=True)
-    return max(EigenvalueHull(a, c).box(max(-line, 0.0))[1] for a, c in intervals)
-
-
-def _arms_with_larger_w(arms: ArmsOfInterval, rods: list[Rod], W: float) -> ArmsOfInterval:
-    """The arms with propagators for |w| <= W."""
-    elements = elements_for(rods, coefficient_samples(rods), W)
-    propagators = element_propagators([rod.F for rod in rods], elements.local, elements.lengths, W)
-    return arms._replace(largest_w=W, propagators=propagators)
 
 
 @compiled

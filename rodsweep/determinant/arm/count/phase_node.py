@@ -135,8 +135,7 @@ def _node_inside(
 
 @compiled
 def _valid_radius(rho: float, M: float, excess: float) -> float:
-    """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| on the circle of
-    radius rho."""
+    """Distance from w within which f changes by less than max_change |D|, if |f| <= M |D| at radius rho."""
     q = excess / M
     return rho * (math.sqrt(q * q + 4 * q) - q) / 2 if q > 0 else 0.0
 

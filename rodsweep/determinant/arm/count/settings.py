@@ -14,8 +14,7 @@ class ContourSettings(KernelConstants):
     """Settings for the nodes on the contour of a count, and for the circles about nodes inside the hull."""
 
     max_tangent_error: float = 1.5
-    """Largest allowed error of a tangent's phase, in radians. The errors of two tangents then sum to less
-    than pi."""
+    """Largest allowed error of a tangent's phase, in radians; errors of two tangents sum to less than pi."""
     circle_points: int = 8
     """Number of points of a circle at which |f| is evaluated; a multiple of 4."""
     circle_safety_factor: float = 1.5
@@ -29,8 +28,7 @@ class ContourSettings(KernelConstants):
     """Radii of circles are in units of max_log_slope/|L| if this is below the length over which D changes, so
     that circles get smaller close to a zero of D."""
     max_known_error: float = 1e-3
-    """A known eigenvalue is divided out of D only if its error is below this fraction of its distance from
-    the line."""
+    """A known eigenvalue is divided out of D only if its error is below this fraction of the distance."""
     max_known_distance: float = 1.0
     """Distance of a known eigenvalue w from the line, divided by max(|Im w|, |line|), below which the
     eigenvalue is divided out of D. D without farther eigenvalues would not follow the dominant wave."""
@@ -45,8 +43,7 @@ class ContourSettings(KernelConstants):
     radius_overlap: float = 0.95
     """Distance to the next node divided by the sum of the expected valid radii of both nodes."""
     max_radius_growth: float = 0.5
-    """Largest expected growth of the valid radius per distance; the next node is then at most 3.6 valid radii
-    away."""
+    """Largest expected growth of the valid radius per distance; the next node is at most 3.6 radii away."""
     min_radius_ratio: float = 0.2
     """If the valid radius is below this fraction of a circle's radius, a smaller circle is tried at once."""
     first_radius: float = 12.0
@@ -57,13 +54,11 @@ class ContourSettings(KernelConstants):
     max_circle_radius: float = 48.0
     """Radius of the largest circle at any node, in units of the length over which D changes."""
     max_wave_radius: float = 0.8
-    """Circles up to this radius, in units of Im w, use `dominant_wave`, which may have branch points on the
-    real axis."""
+    """Circles up to this radius, in units of Im w, use `dominant_wave`, branched on the real axis."""
     max_step_ratio: float = 0.9
     """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99
-    """A step within the valid radius of a node is at most this number times the valid radius, because of
-    rounding."""
+    """A step within the valid radius of a node is at most this times that radius, because of rounding."""
     ranges: ClassVar = {
         "max_tangent_error": (0.0, math.pi / 2),
         "max_change": (0.0, 1.0),
@@ -92,8 +87,7 @@ class NoCrossingSettings(KernelConstants):
     arm_count: int = 5
     """Number of arms of an interval at which D is evaluated, including the middle arm and both ends."""
     line_distance: float = 0.05
-    """Distance of the line to the left of the last requested eigenvalue w, or of the imaginary axis if w
-    grows, divided by |w|."""
+    """Distance of the line left of the last requested eigenvalue w, or of the axis if w grows, over |w|."""
     arms_safety_factor: float = 1.5
     """Safety factor on the largest change of f at these arms, for arms between them."""
     divided_distance: float = 3.0

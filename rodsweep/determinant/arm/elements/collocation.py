@@ -227,8 +227,8 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
 
 @compiled_for_vectors
 def _add_end_integrals(weights: Array, rates: Array, integrals: Array) -> None:
-    """Adds the integrals of rates, (MINORS, STAGES, WIDTH), to `integrals`, (MINORS, WIDTH). weights: Gauss
-    weights, (STAGES,)."""
+    """Adds integrals of rates, (MINORS, STAGES, WIDTH), to `integrals`, (MINORS, WIDTH); weights,
+    (STAGES,)."""
     for row in range(MINORS):
         for i in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
             p = weights[i]

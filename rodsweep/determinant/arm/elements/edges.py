@@ -72,9 +72,8 @@ def _elements_per_length(W: float, squares: Array, tapers: Array, points: Array)
 
 
 def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
-    """Boundaries after halving every element that does not resolve the coefficients of an arm; the object
-    `edges` itself if no element is halved. coefficients: coefficients of n arms at the Gauss points, (6, n,
-    elements, stages)."""
+    """Boundaries after halving every element that does not resolve the coefficients of an arm; `edges` itself
+    if none is halved. coefficients: of n arms at the Gauss points, (6, n, elements, stages)."""
     is_coarse = _is_coarse(coefficients, _last_legendre_matrix(ARM_ELEMENT_SETTINGS.stages))
     if not is_coarse.any():
         return edges

@@ -148,8 +148,7 @@ def apply_transposed_propagator(C: Array, x: Array, out: Array) -> None:
 @compiled_for_vectors
 def modulus_sum_of_form(a: Array, C: Array, x: Array) -> float:
     """The sum of |a_i| |C_ij| |x_j| for a propagator C, (2 or more, PADDED), and vectors a and x, (2,
-    MINORS). |real part| + |imaginary part| replaces each modulus, so that the sum is up to 2 sqrt(2) times
-    too large."""
+    MINORS). |real| + |imaginary part| replaces each modulus: up to 2 sqrt(2) times too large."""
     total = 0.0
     for j in range(MINORS):
         column = 0.0
@@ -203,8 +202,7 @@ def apply_real_propagator(C: Array, x: Array, out: Array) -> None:
 
 @compiled_for_vectors
 def apply_real_propagator_with_change(C: Array, t: Array, change: Array, x: Array, out: Array) -> None:
-    """out = C t + change x for real propagators C and change, (PADDED,), and real minors t, x, out,
-    (MINORS,)."""
+    """out = C t + change x for real propagators C, change, (PADDED,), and minors t, x, out, (MINORS,)."""
     for i in range(MINORS):
         out[i] = 0.0
     for j in range(MINORS):

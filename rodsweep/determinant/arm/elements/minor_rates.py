@@ -67,8 +67,7 @@ def add_theta_s_rates(F: float, start: float, coefficients: Array, values: Array
 
 @compiled_for_vectors
 def fill_theta_m_rates(coefficients: Array, values: Array, rates: Array) -> None:
-    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH). coefficients, values: see the
-    module docstring."""
+    """Writes the rates -g theta^s of the minor theta^m, (STAGES, WIDTH); arguments: see the module."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[TM, i, c] = -coefficients[G, i, c] * values[TS, i, c]
@@ -103,8 +102,7 @@ def fill_y_theta_rates(coefficients: Array, values: Array, rates: Array) -> None
 
 @compiled_for_vectors
 def add_rates_by_y_theta(F: float, coefficients: Array, values: Array, rates: Array) -> None:
-    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta. coefficients, values: see the
-    module docstring."""
+    """Adds to the rates of y^m, (STAGES, WIDTH), the term -F g y^theta; arguments: see the module."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
             rates[YM, i, c] -= F * coefficients[G, i, c] * values[YT, i, c]

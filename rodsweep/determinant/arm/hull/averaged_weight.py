@@ -34,8 +34,7 @@ class AveragedWeightSettings(KernelConstants):
     jump_distance: float = 1e-6
     """Two successive points closer than this distance, in L, lie on the two sides of a jump."""
     point_distance: float = 1e-12
-    """Distance, in L, between the two points added on the two sides of every u at which the slope of alpha
-    jumps."""
+    """Distance, in L, between the points added on both sides of u at which the slope of alpha jumps."""
 
     @property
     def trial_count(self) -> int:

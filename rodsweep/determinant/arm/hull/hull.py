@@ -125,11 +125,8 @@ def _slice_of_samples(arms: HullSamples, arm_indices: slice) -> HullSamples:
 
 class ChebyshevMatrices(NamedTuple):
     """Chebyshev points in [-1, 1], (points,), and the matrices that differentiate and integrate an
-    interpolant.
-
-    derivative, integral: from values at the points to values at the points, (points, points). Integrals start
-    at -1.
-    """
+    interpolant. derivative, integral: from values at the points to values at the points, (points, points).
+    Integrals start at -1."""
 
     points: Array
     derivative: Array

@@ -25,8 +25,7 @@ class HullSettings(KernelConstants):
     min_remainder: float = 0.1
     """Hulls with 1 - c below this number are not used: they are too large to be useful."""
     c_doubling_measure: float = 0.15
-    """The smallest hull is chosen by the measure a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this
-    c."""
+    """The smallest hull has the least a^2 (1 + (c/c_doubling_measure)^4), which is 2 a^2 at this c."""
     constant_weight_count: int = 41
     """Number of constant weights alpha tried, from smallest to largest |g/nu| along the arm, besides 1."""
     min_weight: float = 1e-3
@@ -44,11 +43,8 @@ HULL_SETTINGS = HullSettings()
 
 class EigenvalueHull(NamedTuple):
     """Region that contains all eigenvalues: Re w <= a n - (1 - c) n^2 and |Im w| <= a n + c n^2 for some n >=
-    0.
-
-    n is the weighted norm of the stresses of an eigenfunction divided by that of its displacements, see
-    `rodsweep.determinant.arm.hull.hull`. a = inf if no bound exists.
-    """
+    0. n is the weighted norm of the stresses of an eigenfunction divided by that of its displacements, see
+    `rodsweep.determinant.arm.hull.hull`. a = inf if no bound exists."""
 
     a: float
     """Largest growth rate divided by n, without damping."""
@@ -56,8 +52,7 @@ class EigenvalueHull(NamedTuple):
     """1 minus the damping rate divided by n^2."""
 
     def box(self, depth: float = 0.0) -> tuple[float, float]:
-        """Bounds (max Re w, max |Im w|) of all points of the hull with Re w >= -depth, depth >= 0; inf if no
-        bound exists."""
+        """Bounds (max Re w, max |Im w|) of the hull with Re w >= -depth, depth >= 0; inf if unbounded."""
         a = self.a
         b = 1 - self.c
         if not isfinite(a):

@@ -33,11 +33,8 @@ NO_EIGENVALUES: Complex = np.empty(0, complex)
 @dataclass(frozen=True)
 class CriticalModes:
     """Modes of the arm at path variable p: eigenvalues w and their slopes dw/dp, (modes,) each, and the
-    number of unstable modes.
-
-    w: either the leading eigenvalues, with both members of each pair, or the eigenvalues near the imaginary
-    axis, with one member of each pair.
-    """
+    number of unstable modes. w: either the leading eigenvalues, with both members of each pair, or the
+    eigenvalues near the imaginary axis, with one member of each pair."""
 
     p: float
     w: Complex
@@ -62,12 +59,9 @@ class CriticalModes:
 
 
 class CriticalModesOfPath:
-    """The modes of the arms of a path, computed when needed.
-
-    modes_by_p: the modes computed so far, by path variable p. outside_p_by_end: for p of each end of the
-    path, a path variable just outside, at which the modes are counted instead if the count at the end fails,
-    for example because a pair lies on the axis.
-    """
+    """The modes of the arms of a path, computed when needed. modes_by_p: the modes computed so far, by path
+    variable p. outside_p_by_end: for p of each end of the path, a path variable just outside, at which the
+    modes are counted instead if the count at the end fails, for example because a pair lies on the axis."""
 
     def __init__(self, problem: ArmPath, certify: bool):
         self.problem = problem
@@ -126,14 +120,11 @@ class CriticalModesOfPath:
         except FloatingPointError as unresolved:
             raise Unsolvable(f"{self.problem.path.text_at(p)}: {unresolved}") from None
 
-    def _modes_near_axis(self, p: float, start_guesses: Complex | None) -> CriticalModes | None:
+    def _modes_near_axis(self, p: float, guesses: Complex | None) -> CriticalModes | None:
         """The modes near the imaginary axis at path variable p, and a count of the unstable modes; None if
         the count is undecided. start_guesses: approximate eigenvalues of these modes, (n,), if available."""
-        guesses = (
-            self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES)
-            if start_guesses is None
-            else start_guesses
-        )
+        if guesses is None:
+            guesses = self.eigenvalues_near_axis(p, math.inf, NO_EIGENVALUES)
         refined = [self.problem.eigenvalue(guess, p) for guess in guesses.tolist()]
         w = np.array([root[0] for root in refined], complex)
         count = self.problem.counted_unstable_modes(p, w, np.array([root[2] for root in refined]))
@@ -143,17 +134,14 @@ class CriticalModesOfPath:
     def _leading_modes(self, p: float, expected_count: int) -> CriticalModes:
         """The leading modes at path variable p, at least two more than the unstable modes; raises Unsolvable
         if the count fails or too many modes grow. expected_count: expected number of unstable modes."""
-        modes = max(SPECTRUM_SAMPLE_SETTINGS.min_computed_modes, 2 + expected_count)
-        spectrum = self.problem.spectrum(
-            p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
-        )
+        settings = SPECTRUM_SAMPLE_SETTINGS
+        modes = max(settings.min_computed_modes, 2 + expected_count)
+        spectrum = self.problem.spectrum(p, SpectrumRequest(modes, settings.arm_accuracy, self.certify))
         while modes < _needed_modes(spectrum) <= AXIS_MODE_SETTINGS.max_computed_modes:
             if self.certify and spectrum.unstable_count < 0:
                 break  # more modes do not help a failed count
             modes = _needed_modes(spectrum)
-            spectrum = self.problem.spectrum(
-                p, SpectrumRequest(modes, SPECTRUM_SAMPLE_SETTINGS.arm_accuracy, self.certify)
-            )
+            spectrum = self.problem.spectrum(p, SpectrumRequest(modes, settings.arm_accuracy, self.certify))
         if spectrum.unstable_count < 0:
             is_undecided = (
                 spectrum.status != SpectrumStatus.ok

@@ -120,12 +120,9 @@ class CrossingSearch:
         else:
             fraction = 0.5
             crossings = self._crossings_between(left_modes, right_modes)
-            parts = (
-                self._intervals_between_crossings(crossings, left_modes, right_modes, intervals.length)
-                if crossings
-                else None
-            )
-            if parts is not None:
+            length = intervals.length
+            parts = self._intervals_between_crossings(crossings, left_modes, right_modes, length)
+            if crossings and parts is not None:
                 self.crossings_by_p.update(
                     (self.problem.path.coordinate(crossing.value), crossing) for crossing in crossings
                 )
@@ -202,7 +199,8 @@ class CrossingSearch:
         p = start.p
         w = complex(start.w[i])
         slope = complex(start.slopes[i])
-        for _ in range(ARM_CROSSING_SETTINGS.max_steps):
+        settings = ARM_CROSSING_SETTINGS
+        for _ in range(settings.max_steps):
             if slope.real == 0 or not math.isfinite(slope.real):
                 return None
             step = -w.real / slope.real
@@ -211,13 +209,12 @@ class CrossingSearch:
             if not p_ends[0] <= p <= p_ends[1]:
                 return None
             w, slope, error = self.problem.eigenvalue(guess, p)
-            p_error = error / abs(slope.real) + ARM_CROSSING_SETTINGS.rounding_error * abs(p)
-            if abs(w.real / slope.real) <= ARM_CROSSING_SETTINGS.converged_step_in_errors * p_error:
-                # With such an error no root of D is resolved.
-                has_many_modes = self.axis_modes.has_many_modes(
-                    p
-                ) and not p_error <= ARM_CROSSING_SETTINGS.count_distance * (p_ends[1] - p_ends[0])
-                return None if has_many_modes else self._crossing_at(p, w, slope, p_error, grows)
+            p_error = error / abs(slope.real) + settings.rounding_error * abs(p)
+            if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
+                max_error = settings.count_distance * (p_ends[1] - p_ends[0])
+                if self.axis_modes.has_many_modes(p) and not p_error <= max_error:
+                    return None  # no root of D is resolved
+                return self._crossing_at(p, w, slope, p_error, grows)
         return None
 
     def _crossing_at(

@@ -54,11 +54,8 @@ ARM_PATH_SETTINGS = ArmPathSettings()
 
 class ArmPath(PathProblem):
     """Path of arms that vary along the length or have a nonlinear law; the determinant D is computed from
-    propagators.
-
-    The leading eigenvalues are followed along the path once, and then from the nearest step to every
-    requested p.
-    """
+    propagators. The leading eigenvalues are followed along the path once, and then from the nearest step to
+    every requested p."""
 
     def __init__(self, path: ParameterPath):
         super().__init__(path)
@@ -114,10 +111,8 @@ class ArmPath(PathProblem):
 
     def followed_spectrum(self, p: float, modes: int) -> Spectrum | None:
         """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
-        if (
-            self._followed_arms is None
-            or self.expected_unstable_count(p) > ARM_PATH_SETTINGS.max_growing_modes
-        ):
+        settings = ARM_PATH_SETTINGS
+        if self._followed_arms is None or self.expected_unstable_count(p) > settings.max_growing_modes:
             return None
         spectrum = self._followed_arms.spectrum(p, modes)
         if spectrum is not None:
@@ -172,11 +167,9 @@ class ArmPath(PathProblem):
         slope_and_error = (
             self._followed_arms.eigenvalue_slope(guess, p) if self._followed_arms is not None else None
         )
-        return (
-            self._determinant_along_path.eigenvalue(guess, p)
-            if slope_and_error is None
-            else (guess, *slope_and_error)
-        )
+        if slope_and_error is None:
+            return self._determinant_along_path.eigenvalue(guess, p)
+        return (guess, *slope_and_error)
 
     def double_eigenvalue(self, x: float, p: float, expected_distance: float) -> LocatedEigenvalue:
         return self._determinant_along_path.double_eigenvalue(x, p, expected_distance)

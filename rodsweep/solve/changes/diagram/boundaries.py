@@ -112,31 +112,27 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
     point there with nearly the eigenvalue of the threshold."""
+    settings = BOUNDARY_ASSIGNMENT_SETTINGS
     if curve.eigenvalue_sign != seed.eigenvalue_sign:
         return math.inf
     x, y = (a.coordinate(v) for a, v in zip(plane.axes, seed.values, strict=True))
     points = curve.scaled_points
     side = points[:, 1] - y
     # A threshold on a point of the curve must not fall between two chords by rounding.
-    side[np.abs(side) < BOUNDARY_ASSIGNMENT_SETTINGS.coordinate_tolerance] = 0.0
+    side[np.abs(side) < settings.coordinate_tolerance] = 0.0
     if len(points) == 1:
-        return (
-            float(abs(points[0, 0] - x))
-            if abs(side[0]) < BOUNDARY_ASSIGNMENT_SETTINGS.max_threshold_distance
-            else math.inf
-        )
+        return float(abs(points[0, 0] - x)) if abs(side[0]) < settings.max_threshold_distance else math.inf
     distance = math.inf
     for i in np.flatnonzero(side[:-1] * side[1:] <= 0):
         a = points[i]
         b = points[i + 1]
         chord_distance = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
-        if chord_distance > BOUNDARY_ASSIGNMENT_SETTINGS.max_distance_beyond_chord:
+        if chord_distance > settings.max_distance_beyond_chord:
             continue
         point = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             point is not None
-            and abs(point[2] - math.log(abs(seed.eigenvalue)))
-            < BOUNDARY_ASSIGNMENT_SETTINGS.eigenvalue_tolerance
+            and abs(point[2] - math.log(abs(seed.eigenvalue))) < settings.eigenvalue_tolerance
         ):
             distance = min(distance, float(abs(point[0] - x)))
     return distance

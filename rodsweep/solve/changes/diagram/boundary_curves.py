@@ -149,13 +149,10 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
 
 def _tangent_error(boundary: Boundary) -> float:
     """Error of the components of a boundary's unit tangents."""
+    settings = BOUNDARY_CURVE_SETTINGS
     if not boundary.plane.are_rods_uniform_and_linear:
-        return BOUNDARY_CURVE_SETTINGS.arm_tangent_error
-    return (
-        BOUNDARY_CURVE_SETTINGS.double_tangent_error
-        if boundary.eigenvalue_sign
-        else BOUNDARY_CURVE_SETTINGS.hopf_tangent_error
-    )
+        return settings.arm_tangent_error
+    return settings.double_tangent_error if boundary.eigenvalue_sign else settings.hopf_tangent_error
 
 
 def _fold_at(boundary: Boundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:

@@ -99,8 +99,7 @@ class BoundaryCurveProblem:
         return StepResult(point, 0.0, float(point.tangent @ tangent))
 
     def boundary_point_near(self, guess: Array, normal: Array) -> BoundarySolution:
-        """The point of the boundary near `guess`, in the plane through `guess` with normal `normal`, both
-        (3,); raises Unsolvable."""
+        """The point of the boundary near `guess`, in the plane normal to `normal`, (3,); or Unsolvable."""
         solution = self.boundary.point_near(guess, normal)
         if solution is None:
             raise Unsolvable("no point of the boundary is near")
@@ -152,9 +151,9 @@ class BoundaryCurveProblem:
         if curve.end_reason is StopReason.max_solutions:
             return BoundaryEndReason.list_full
         if curve.end_reason is StopReason.zero_margin:
-            return (
-                BoundaryEndReason.crushed if curve.margin_index == CRUSHED_MARGIN else BoundaryEndReason.edge
-            )
+            if curve.margin_index == CRUSHED_MARGIN:
+                return BoundaryEndReason.crushed
+            return BoundaryEndReason.edge
         v, tangent = curve.solutions[-1]
         if self.margins(curve.solutions[-1])[:CRUSHED_MARGIN].min() <= BOUNDARY_CURVE_SETTINGS.edge_tolerance:
             return BoundaryEndReason.edge

@@ -73,8 +73,7 @@ class DiagramRow:
 
 
 def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
-    """The row of rods with the parameters of `rod` along the requested axis; a failure is returned as a
-    status, never raised."""
+    """The row of rods like `rod` along the requested axis; a failure is a status, never raised."""
 
     def failed(cause: str) -> DiagramRow:
         return _row_of_one_class(ThresholdStatus.failed, request.values, RodClass.undecided, cause)

@@ -36,11 +36,9 @@ def thresholds_of_solvable_part(
     first_attempt = _attempt(rod, name, row_ends, certify)
     if not first_attempt.failure and first_attempt.found is not None:
         return first_attempt.found
-    later_starts = (
-        [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
-        if name == "F"
-        else []
-    )
+    later_starts: list[float] = []
+    if name == "F":
+        later_starts = [*inner_values[inner_values < 0].tolist(), *([0.0] if start < 0 < stop else [])]
     last_attempt = _attempt(rod, name, (later_starts[-1], stop), certify) if later_starts else first_attempt
     if last_attempt.found is None:
         raise Unsolvable(last_attempt.failure)
@@ -60,9 +58,13 @@ def thresholds_of_solvable_part(
         else:
             solved_index = middle_index
             last_attempt = attempt
-    return _with_late_start(
-        last_attempt.found or first_attempt.found, (starts[failed_index], starts[solved_index]), failure
+    result = last_attempt.found or first_attempt.found
+    assert result is not None
+    message = (
+        f"the search begins at F = {starts[solved_index]:.12g}: from F = {starts[failed_index]:.12g} on, "
+        f"{failure}"
     )
+    return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))
 
 
 def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) -> Attempt:
@@ -75,13 +77,3 @@ def _attempt(rod: Rod, name: str, row_ends: tuple[float, float], certify: bool) 
         return Attempt(None, str(failure))
     ends_early = name == "F" and result.ended_early and result.searched_interval[1] < min(row_ends[1], 0)
     return Attempt(result, result.doubt_text if ends_early else "")
-
-
-def _with_late_start(
-    result: ThresholdSearchResult | None, forces: tuple[float, float], failure: str
-) -> ThresholdSearchResult:
-    """The result `result` with the reason for its late start. forces: last force from which the search
-    failed, first force from which it succeeded. failure: why it failed."""
-    assert result is not None
-    message = f"the search begins at F = {forces[1]:.12g}: from F = {forces[0]:.12g} on, {failure}"
-    return replace(result, ended_early=True, doubt_text="; ".join(filter(None, (message, result.doubt_text))))

@@ -18,11 +18,9 @@ from .carried_count import leading_eigenvalues
 
 
 class ArmCountCarrier:
-    """Carries counts along the arms of an interval, to fill `proved_modes` at points without a proof.
-
-    modes: number of requested modes. w, error: followed eigenvalues by descending real part, (points, m).
-    lines: real part of the rightmost line left of all requested eigenvalues, (points,).
-    """
+    """Carries counts along the arms of an interval, to fill `proved_modes` at points without a proof. modes:
+    number of requested modes. w, error: followed eigenvalues by descending real part, (points, m). lines:
+    real part of the rightmost line left of all requested eigenvalues, (points,)."""
 
     def __init__(self, path: ParameterPath, interval: ArmInterval, modes: int):
         self.path = path

@@ -28,8 +28,7 @@ class CarriedCountSettings(KernelConstants):
     """The number of rectangles (`moving_line`) of one proof is at most this number plus
     `rectangles_per_point` times the number of points covered."""
     rectangles_per_point: int = 20
-    """Number of rectangles allowed in a proof for each point covered: a new count at a point costs as much as
-    twenty rectangles."""
+    """Number of rectangles allowed in a proof for each point covered: a new count costs as much as twenty."""
     wide_gap: float = 0.2
     """Gaps are treated as equally wide if their relative half-width exceeds this; the leftmost of these gaps
     is taken. Relative half-width: half-width divided by the distance of the gap's middle from the imaginary

@@ -1,5 +1,4 @@
-"""Leading eigenvalues of arms along a path, followed once from point to point and then available at every
-path variable p."""
+"""Leading eigenvalues of arms along a path, followed once from point to point, then available at every p."""
 
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -42,8 +42,7 @@ NEIGHBOURING_RODS_SETTINGS = NeighbouringRodsSettings()
 
 @dataclass(frozen=True, slots=True)
 class NeighbouringRods:
-    """Neighbouring rods of a sweep that differ in one parameter: `path` names the parameter, `values`, (n,),
-    are its values."""
+    """Neighbouring rods of a sweep that differ in the parameter of `path`, with the `values`, (n,)."""
 
     path: ParameterPath
     values: Array

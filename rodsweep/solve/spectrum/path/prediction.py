@@ -35,10 +35,8 @@ EIGENVALUE_PREDICTION_SETTINGS = EigenvaluePredictionSettings()
 
 
 class FollowedEigenvalues(NamedTuple):
-    """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each.
-
-    descending_order: indices of the eigenvalues at each point by descending real part, then descending
-    frequency, (points, m)."""
+    """Followed eigenvalues w, their slopes dw/dp and absolute errors, (points, m) each. descending_order:
+    their indices at each point by descending real part, then descending frequency, (points, m)."""
 
     w: Complex
     slope: Complex
@@ -54,8 +52,7 @@ class KnownRoots(NamedTuple):
 
 
 def start_track(first: Complex, points: int) -> FollowedEigenvalues:
-    """A track of `points` points of which only the first is filled, with the eigenvalues `first`, (m,), in
-    descending order."""
+    """A track of `points` points; only the first is filled, with `first`, (m,), in descending order."""
     shape = (points, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
