@@ -69,8 +69,8 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
         local = cone.build_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
-        across = np.array([form(1.0, each)[1] for each in slenderness])
-        assert local.gamma2 == pytest.approx(across / form(1.0, 0.1 / radius)[1], rel=error)
+        across = np.array([form(each)[1] for each in slenderness])
+        assert local.gamma2 == pytest.approx(across / form(0.1 / radius)[1], rel=error)
     assert local.gamma3 == pytest.approx(values["gamma3"] * (1 - (1 - taper) * u) ** 2, rel=1e-12)
     radii = 1 - (1 - taper) * cone.build.breaks
     steps = np.maximum(radii[1:] / radii[:-1], radii[:-1] / radii[1:])
@@ -86,7 +86,7 @@ def test_factors_of_segments_by_hand():
     kappa = 9 * 1.5625 / (10 * 1.5625 + 26 * 0.25)
     k1 = 2.5 * (16 - 4) / 36
     axial, across = (
-        thin / thick for thin, thick in zip(cox_drag(1, 0.1 / 0.004), cox_drag(1, 0.1 / 0.006), strict=True)
+        thin / thick for thin, thick in zip(cox_drag(0.1 / 0.004), cox_drag(0.1 / 0.006), strict=True)
     )
     expected = (k1, k1 * kappa / 0.9, 2.5 * (256 - 16) / 1296, axial, across, 16 / 36)
     assert rows[2] == pytest.approx(expected, rel=1e-12)

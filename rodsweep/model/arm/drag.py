@@ -53,54 +53,40 @@ class Drag:
         return self.viscosity * self.rotational
 
 
-def cox_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Returns (gamma1, gamma2), in Pa s, of a straight rigid cylinder (Cox 1970; Batchelor 1970). viscosity:
-    in Pa s. slenderness: L/a."""
+def cox_drag(slenderness: float) -> tuple[float, float]:
+    """(gamma1, gamma2)/viscosity of a straight rigid cylinder (Cox 1970; Batchelor 1970); slenderness L/a."""
     logarithm = log(2 * slenderness)
-    return 2 * pi * viscosity / (logarithm - 1.5), 4 * pi * viscosity / (logarithm - 0.5)
+    return 2 * pi / (logarithm - 1.5), 4 * pi / (logarithm - 0.5)
 
 
-def gray_hancock_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Returns (gamma1, gamma2), in Pa s, for waves of length 4 L, the longest waves of a clamped rod. Gray
-    and Hancock (1955). viscosity: in Pa s. slenderness: L/a."""
+def gray_hancock_drag(slenderness: float) -> tuple[float, float]:
+    """(gamma1, gamma2)/viscosity for waves of length 4 L, the longest waves of a clamped rod (Gray and
+    Hancock 1955). slenderness: L/a."""
     logarithm = log(8 * slenderness)
-    return 2 * pi * viscosity / (logarithm - 0.5), 4 * pi * viscosity / (logarithm + 0.5)
+    return 2 * pi / (logarithm - 0.5), 4 * pi / (logarithm + 0.5)
 
 
-def lighthill_drag(viscosity: float, slenderness: float) -> tuple[float, float]:
-    """Returns (gamma1, gamma2), in Pa s, for helical waves of length L, which is near the wavelength of
-    flutter. Lighthill (1976). viscosity: in Pa s. slenderness: L/a."""
+def lighthill_drag(slenderness: float) -> tuple[float, float]:
+    """(gamma1, gamma2)/viscosity for helical waves of length L, which is near the wavelength of flutter
+    (Lighthill 1976). slenderness: L/a."""
     logarithm = log(0.18 * slenderness)
-    return 2 * pi * viscosity / logarithm, 4 * pi * viscosity / (logarithm + 0.5)
-
-
-def min_rotational_drag(viscosity: float, half_height: float) -> float:
-    """Smallest estimate of rotational drag, gamma3 = pi eta a^2, in Pa s m^2, for sections that turn about a
-    diameter.
-
-    viscosity: eta, in Pa s. half_height: a, in m, also for an ellipse. The surface velocity -Omega x2 of a
-    long cylinder is axial. The flow outside is harmonic and decays like 1/r; its traction eta Omega cos(phi)
-    has the torque gamma3 Omega.
-    """
-    return pi * viscosity * half_height**2
-
-
-def max_rotational_drag(viscosity: float, half_height: float) -> float:
-    """Largest estimate of rotational drag, gamma3 = 4 pi eta a^2, in Pa s m^2. viscosity: eta, in Pa s.
-    half_height: a, in m. The value for rotation about the axis of the cylinder (Powers 2010) is used for
-    rotation about a diameter."""
-    return 4 * pi * viscosity * half_height**2
+    return 2 * pi / logarithm, 4 * pi / (logarithm + 0.5)
 
 
 def drag_estimates(viscosity: float, length: float, radius: float, half_height: float) -> tuple[Drag, ...]:
-    """Drag estimates of one arm, in the order of DRAG_NAMES. The likeliest estimate has the geometric mean of
-    the smallest and largest gamma3. viscosity: in Pa s. length, radius, half_height: in m."""
+    """Drag estimates of one arm, in the order of DRAG_NAMES. viscosity: in Pa s. length, radius, half_height
+    (a, also for an ellipse): in m.
+
+    gamma3 is from pi eta a^2 to 4 pi eta a^2; the likeliest estimate has the geometric mean. The smallest is
+    for sections that turn about a diameter: the surface velocity -Omega x2 of a long cylinder is axial, and
+    the flow outside is harmonic and decays like 1/r; its traction eta Omega cos(phi) has the torque gamma3
+    Omega. The largest is that for rotation about the axis of the cylinder (Powers 2010).
+    """
     slenderness = length / radius
-    min_rotational = min_rotational_drag(1.0, half_height)
-    max_rotational = max_rotational_drag(1.0, half_height)
-    translations = (gray_hancock_drag(1.0, slenderness), lighthill_drag(1.0, slenderness))
-    # All estimates are for viscosity 1, because drag is proportional to the viscosity.
-    members = [(*cox_drag(1.0, slenderness), (min_rotational * max_rotational) ** 0.5)]
+    min_rotational = pi * half_height**2
+    max_rotational = 4 * pi * half_height**2
+    translations = (gray_hancock_drag(slenderness), lighthill_drag(slenderness))
+    members = [(*cox_drag(slenderness), (min_rotational * max_rotational) ** 0.5)]
     members += [
         (*translation, rotational)
         for translation in translations

@@ -29,7 +29,7 @@ from ...discretization.elements.resolution import (
     finer_resolution,
     resolution_for,
 )
-from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
+from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
 from ...discretization.straight.transverse_mesh import AnyMesh, finer_mesh
 from ...model.dispersion import most_amplified_local_waves, most_amplified_wave
 from ...model.rod import Rod
@@ -59,10 +59,10 @@ class TransverseProblem(ABC):
         """The next finer mesh after `mesh`, with about a third more unknowns."""
         return finer_mesh(self.rod, mesh)
 
-    @abstractmethod
     def finer_mesh_for_waves(self, mesh: Any, waves: Array, accuracy: float) -> Any:
         """The mesh to try after `mesh`. waves: wave numbers of the leading modes found, (modes,). accuracy:
         relative accuracy of the eigenvalues."""
+        return self.finer_mesh(mesh)
 
     def solver(self, mesh: AnyMesh) -> UniformSolver | ArmSolver:
         """The Krylov-Schur solver for a mesh."""
@@ -139,10 +139,6 @@ class ArmProblem(TransverseProblem):
 
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
-
-    def finer_mesh_for_waves(self, mesh: ArmMesh, waves: Array, accuracy: float) -> ArmMesh:
-        """The next finer mesh after `mesh`; `waves`, (modes,), and `accuracy` are ignored."""
-        return finer_arm_mesh(self.rod, mesh)
 
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); for a proof, only from those that it needs."""

@@ -10,11 +10,10 @@ from surveyed import RODS
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.spectrum.path import arm_count, arm_spectra, carried_arm_count
+from rodsweep.solve.spectrum.path import arm_count, carried_arm_count, neighbouring_rods
 from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
-from rodsweep.solve.spectrum.path.arm_spectra import follow_spectra_of_arms
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
-from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods
+from rodsweep.solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra_of_arms
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
 REQUEST = SpectrumRequest(4, 1e-10, certify=True)
@@ -102,7 +101,7 @@ def test_a_second_count_that_disagrees_takes_the_carried_counts_back(monkeypatch
     )
     single = []
     monkeypatch.setattr(
-        arm_spectra,
+        neighbouring_rods,
         "confirmed_count_at",
         lambda *words: single.append(words[2]) or confirmed_count_at(*words),
     )

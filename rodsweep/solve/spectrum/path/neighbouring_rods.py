@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....arrays import COMPLEX_NAN, Array, Complex
+from ....determinant.arm.hull.hull import hulls_along
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod, coefficients_of
@@ -22,7 +23,10 @@ from ..search import SpectrumRequest, SpectrumSearch
 from ..search import warm_up as warm_up_search
 from ..spectrum import FollowedPoints, Spectrum, errors_with_rounding
 from ..status import SpectrumStatus
-from .arm_spectra import follow_spectra_of_arms
+from .arm_count import confirmed_count_at
+from .arm_following_settings import ARM_FOLLOWING_SETTINGS
+from .arm_interval import follow_interval
+from .carried_arm_count import ArmCountCarrier
 from .carried_count import assess_points, carry_count, leading_eigenvalues, line_in_gap, widest_gap
 from .following import follow_eigenvalues
 from .prediction import FollowedEigenvalues, slice_track, start_track
@@ -151,6 +155,29 @@ def _followed_eigenvalues(
     reached_track = slice_track(track, 0, len(proved_counts))
     is_good, unstable_counts = assess_points(reached_track, proved_counts, modes, request.accuracy)
     return FollowedPoints(*leading_eigenvalues(reached_track, modes), unstable_counts, is_good)
+
+
+def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumRequest) -> FollowedPoints | None:
+    """Spectra of the arms at the path variables p, (n,), from the first point to the last point reached; None
+    if no point is reached. Followed eigenvalues are proved complete by D'/D, by a count carried along the
+    arms, or by a count at each arm."""
+    interval = follow_interval(path, p, request, counts_follow=True)
+    if interval is None:
+        return None
+    if (interval.proved_modes < request.modes).sum() >= ARM_FOLLOWING_SETTINGS.min_unproved_points:
+        number = ARM_FOLLOWING_SETTINGS.hulls_per_unproved_interval
+        hulls = hulls_along(path, interval.family.p_low, interval.family.p_high, number)
+        interval = interval._replace(hulls=hulls)
+    ArmCountCarrier(path, interval, request.modes).carry_counts()
+    for i in np.flatnonzero(interval.proved_modes < request.modes).tolist():
+        point_track = slice_track(interval.track, i, i + 1)
+        interval.proved_modes[i] = confirmed_count_at(
+            path, interval, float(interval.p[i]), request.modes, point_track
+        )
+    is_accepted, unstable_counts = assess_points(
+        interval.track, interval.proved_modes, request.modes, request.accuracy
+    )
+    return FollowedPoints(*leading_eigenvalues(interval.track, request.modes), unstable_counts, is_accepted)
 
 
 def _proved_counts_along(
