@@ -74,8 +74,7 @@ class Arm(SlenderArm):
     @refusing_wrong_arguments("arm.report()")
     def report(self) -> "ArmReport":
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
-        neglects.
-        """
+        neglects."""
         from ..verdict.arm import arm_report
 
         return arm_report(self)
@@ -116,8 +115,7 @@ class Arm(SlenderArm):
     @refusing_wrong_arguments("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
-        load.
-        """
+        load."""
         return self._answer("thresholds", options)
 
     @refusing_wrong_arguments("arm.spectrum(modes=4)")

@@ -78,8 +78,7 @@ def _open_result_file(path: Path) -> xr.Dataset:
 
 def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
-    this quantity.
-    """
+    this quantity."""
     for name in PARAMETER_STORED_ALONG:
         if (
             name in data.coords
@@ -107,8 +106,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
 def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
-    checksums in the file. header: header of the file.
-    """
+    checksums in the file. header: header of the file."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with damage_refusals(path):
         try:
@@ -125,8 +123,7 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
 
 def with_checksums(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with the checksums of its variables and attributes as an attribute, by which readers verify
-    a file written by xarray.
-    """
+    a file written by xarray."""
     variables = {
         str(name): variable_digest(
             v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]

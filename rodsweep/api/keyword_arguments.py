@@ -67,8 +67,7 @@ def _add_key(section: dict[str, Any], key: str, value: Any) -> None:
 
 def _write_out_arm(task: str, tree: ConfigTree) -> None:
     """Replaces an `rs.Arm` in the tree by its quantities, in place. The load is included only if the task
-    takes a load.
-    """
+    takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
@@ -90,8 +89,7 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
     """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is computed
-    first.
-    """
+    first."""
     if arm.share_of_flutter is None:
         return arm
     from ..verdict.planes import arm_with_absolute_load
@@ -141,8 +139,7 @@ def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
 
 def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
     """Name of the first section with the key `name`; None if no section has this key. sections: allowed keys
-    by name of the section.
-    """
+    by name of the section."""
     return next((section for section, allowed in sections.items() if name in allowed), None)
 
 
@@ -161,8 +158,7 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
 
 class AxisRange(TypedDict):
     """An axis of a sweep as a range. start, stop: first and last value; for a quantity of an arm, with a
-    unit. num: number of values. spacing: "linear" or "log".
-    """
+    unit. num: number of values. spacing: "linear" or "log"."""
 
     start: float | str
     stop: float | str
@@ -221,8 +217,7 @@ def plain_value(value: Any) -> Any:
 
 def plain_keyword(key: str, value: Any) -> Any:
     """`value` in the types of a YAML config; InputError for a masked value. key: name of the keyword, for the
-    message.
-    """
+    message."""
     try:
         return plain_value(value)
     except ValueError as error:
@@ -231,8 +226,7 @@ def plain_keyword(key: str, value: Any) -> Any:
 
 def _with_unit(value: Any, unit: str) -> Any:
     """Text of the number `value` with a unit; for a list, the list of these texts; `value` unchanged if
-    `unit` is empty.
-    """
+    `unit` is empty."""
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]
     return f"{value!r} {unit}" if unit else value

@@ -218,8 +218,7 @@ class SoftRod:
 
 def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:
     """The validated section `material` of a rod; None if all values in `values` are None. Raises InputError
-    for invalid values.
-    """
+    for invalid values."""
     tree = {
         name: plain_keyword(f"material.{name}", value) for name, value in values.items() if value is not None
     }

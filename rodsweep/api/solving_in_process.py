@@ -89,8 +89,7 @@ def _point_text_of(job: Job) -> Callable[[int], str]:
 
 def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
     """Attributes of a result whose solve ends now. start_time: time at which the solve started. reasons:
-    reasons why points failed.
-    """
+    reasons why points failed."""
     from ..solve.backend import petsc
 
     return {
@@ -109,8 +108,7 @@ def _solve_points(
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
     of the points first. messages: one message for each point. reasons: reasons why points failed. display:
-    progress display.
-    """
+    progress display."""
     reasons = FailureReasons(_point_text_of(job))
     count = job.points.count
     columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
@@ -156,8 +154,7 @@ def _solve_groups(
 
 def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Display) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
-    points. display: progress display.
-    """
+    points. display: progress display."""
     results = dict[int, NamedArrays]()
     while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
@@ -231,8 +228,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
 
 def display_listener(display: Display, name: str) -> RankListener:
     """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
-    KeyboardInterrupt.
-    """
+    KeyboardInterrupt."""
     return RankListener(
         SingleRankCommunication(
             lambda position: display.show_position(position.text, position.completed_fraction or 0.0)

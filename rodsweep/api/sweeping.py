@@ -74,8 +74,7 @@ def sweep(
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
     """Issues a RuntimeWarning with the traceback of an unforeseen exception. indices: flat indices of the
-    failed points.
-    """
+    failed points."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
     points = f"point {first}" if first == last_number else f"points {first} to {last_number}"
@@ -98,8 +97,7 @@ def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, displ
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
     directory. tree: config tree. strict: whether an unforeseen exception, a bug of rodsweep, is raised.
     display: progress display. Raises EnvironmentIncomplete if mpiexec cannot be started, or the exception of
-    `_run_failure_exception`.
-    """
+    `_run_failure_exception`."""
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
@@ -122,8 +120,7 @@ def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, displ
 
 def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple[int, str]:
     """Runs the command `words` in the directory `folder` and shows its progress; returns (exit status,
-    standard error).
-    """
+    standard error)."""
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=folder, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
@@ -161,8 +158,7 @@ def _run_failure_exception(launcher: str, status: int, errors: str, is_file_crea
 
 def _mpiexec_path() -> str:
     """Path of mpiexec in the folder of this Python, else on the search path; EnvironmentIncomplete if mpiexec
-    is not found.
-    """
+    is not found."""
     next_to_python = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     path = next_to_python or shutil.which("mpiexec")
     if path is None:

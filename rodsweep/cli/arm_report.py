@@ -41,8 +41,7 @@ QUANTITY_IN_SENTENCE = re.compile(
 
 def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
-    quantities.
-    """
+    quantities."""
     text = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     text = text.replace("--segments", "--segment")
     return text if text.startswith("--") else f"--{text}"

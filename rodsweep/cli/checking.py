@@ -116,8 +116,7 @@ def _wall_lines(arm: ArmConfig) -> list[str]:
 
 def _lines_on_points_without_rod(points: Points) -> list[str]:
     """Lines with the number of different rods, and with the number of points to which the rod model does not
-    apply, by reason.
-    """
+    apply, by reason."""
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:

@@ -1,6 +1,5 @@
 """Computations shared by all ranks before the result file exists: flutter forces, and variables that do not
-depend on points.
-"""
+depend on points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -21,8 +20,7 @@ from ..tasks.protocol import Task
 @dataclass(slots=True)
 class _SharedComputations:
     """Computations divided among the ranks of `ranks`. Each rank omits its remaining items after a stop
-    signal, recorded in `stop`.
-    """
+    signal, recorded in `stop`."""
 
     ranks: Ranks
     stop: StopRequest

@@ -95,9 +95,8 @@ class Axis(StrictConfigSection):
         return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
 
     def array(self) -> Array:
-        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to
-        QUANTITY_DIGITS digits.
-        """
+        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to QUANTITY_DIGITS
+        digits."""
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":

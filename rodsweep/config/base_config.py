@@ -50,8 +50,7 @@ class Config(StrictConfigSection):
     @property
     def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
-        in the config.
-        """
+        in the config."""
         return (*self.rod_parameters_used({}), *self.optional_parameters_in_use)
 
     @property
@@ -73,8 +72,7 @@ class Config(StrictConfigSection):
     @property
     def build(self) -> Build:
         """Constitutive law and profile of the rods, from the section `material`, else from the arm, else the
-        default.
-        """
+        default."""
         if self.stated_build is not None:
             return self.stated_build
         return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
@@ -97,8 +95,7 @@ class Config(StrictConfigSection):
     @property
     def options_without_effect(self) -> dict[str, str]:
         """Options without effect in this config, by name; the value is the setting with which the option
-        would have an effect.
-        """
+        would have an effect."""
         return {}
 
     def refuse_options_without_effect(self) -> None:
@@ -136,8 +133,7 @@ class Config(StrictConfigSection):
 
     def refuse_solved_parameter(self, name: str, reason: str) -> None:
         """Raises ValueError, with the reason `reason`, if the config gives the parameter `name`, for which
-        the task solves.
-        """
+        the task solves."""
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {reason}")
 

@@ -99,8 +99,7 @@ def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
     """Adds the docstrings of the keys of `section` as descriptions to `schema`, in place; removes pydantic's
-    titles.
-    """
+    titles."""
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
     meanings = parameters | key_docstrings(section)
     for name, key in schema["properties"].items():
@@ -121,8 +120,7 @@ def no_key_given(names: Iterable[str]) -> Schema:
 
 def all_keys_given(names: Iterable[str], *conditions: Schema) -> Schema:
     """JSON schema of the condition that all keys in `names` are given and all schemas in `conditions` are
-    satisfied.
-    """
+    satisfied."""
     return {"allOf": [*map(key_is_given, names), *conditions]}
 
 
@@ -130,8 +128,7 @@ def with_axis_bounds(
     schema: Schema, bound: Mapping[str, float], allowed_texts: tuple[str, ...] = ()
 ) -> Schema:
     """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
-    bounds. allowed_texts: allowed spellings of inf.
-    """
+    bounds. allowed_texts: allowed spellings of inf."""
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
         kinds = node.get("anyOf", [])

@@ -1,6 +1,5 @@
 """The section `material` of a config: constitutive law, cross-section, and a profile along the arm, which may
-be a CSV file.
-"""
+be a CSV file."""
 
 import csv
 from functools import cached_property
@@ -26,8 +25,7 @@ FactorColumn = Annotated[
 
 class ProfileTable(StrictConfigSection):
     """Table of factors that multiply stiffnesses and drags along the arm, in columns of equal length. An
-    omitted column is 1 along the whole arm.
-    """
+    omitted column is 1 along the whole arm."""
 
     u: Annotated[
         list[Number], Field(max_length=MAX_PROFILE_ROWS, description="a list of numbers from 0 to 1")

@@ -89,8 +89,7 @@ class ParametersSection(LinearAxes):
     @property
     def axes(self) -> dict[str, Axis]:
         """Axes of the swept parameters, by name: the given axes and, for a grid of parameters, axes computed
-        from the arm's quantities.
-        """
+        from the arm's quantities."""
         if self.arm is None or self.arm_axes:
             return self.given_axes
         axes = self.arm.dimensionless_axes() | self.given_axes

@@ -40,8 +40,7 @@ FILM_COMMANDS = """# the film of the arm:
 
 class ExportedLines(DataModel):
     """Config and Python lines that the buttons copy and save. These texts are updated at every change of the
-    controls, because they are not part of the page's layout.
-    """
+    controls, because they are not part of the page's layout."""
 
     config = String(default="")
     python = String(default="")
@@ -132,8 +131,7 @@ class ExportPanel:
 
     def _load_chosen_file(self, attribute: str, previous: str, content: str) -> None:
         """Passes the text of the chosen file to the page. content: content in base64; empty after a clearing.
-        The other arguments, from Bokeh, are not used.
-        """
+        The other arguments, from Bokeh, are not used."""
         if content:
             self._loaded(b64decode(content).decode(errors="replace"))
             self.file.clear()  # otherwise a browser does not report the same file when it is chosen again
@@ -141,8 +139,7 @@ class ExportPanel:
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
     """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file format.
-    arm: animated line of the arm.
-    """
+    arm: animated line of the arm."""
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
@@ -159,8 +156,7 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
 
 def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
-    invalid config, raises the same InputError as the command line.
-    """
+    invalid config, raises the same InputError as the command line."""
     source = "the loaded file"
     tree = parsed_yaml(text, source)
     if not isinstance(tree, dict):

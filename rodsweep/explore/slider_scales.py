@@ -52,14 +52,12 @@ class ControlScale:
     @property
     def ends(self) -> tuple[float, float]:
         """Slider positions of the two ends: `low` and `high`, or their common logarithms for a logarithmic
-        slider.
-        """
+        slider."""
         return (log10(self.low), log10(self.high)) if self.is_logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
         """Slider position for a text that the user typed, clipped to the ends; None if the text is invalid or
-        NaN.
-        """
+        NaN."""
         value = self.value(text)
         start, end = self.ends
         if value is None or isnan(value):

@@ -88,8 +88,7 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
 
 def _largest_force(config: Config, default: str) -> str:
     """Largest force of a search for thresholds, or of branches along F, as text; `default` for other
-    tasks.
-    """
+    tasks."""
     key = LARGEST_FORCE_KEYS.get(config.task)
     options: Any = getattr(config, config.task, None)
     if key is not None and getattr(options, "along", "F") == "F":
@@ -150,8 +149,7 @@ def _exact_number_text(value: float) -> str:
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     """Diagram of a result file over the load and the second parameter of `state`, at the middle values of all
-    other parameters; None if the file contains no such diagram.
-    """
+    other parameters; None if the file contains no such diagram."""
     second_name = state.second
     dims = set(data["status"].dims)
     if second_name not in dims or data.sizes[second_name] < 2:

@@ -217,8 +217,7 @@ def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBr
 def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
     """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
     into the range between the special points before and after them. is_special: mask of the special points,
-    (n,).
-    """
+    (n,)."""
     x = x.copy()
     for start, end in pairwise(np.flatnonzero(is_special)):
         interior = slice(start + 1, end)

@@ -55,8 +55,7 @@ class LocatedThreshold:
 @dataclass(frozen=True, slots=True)
 class UnlocatedThreshold:
     """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
-    low, high: parameter values of the two points.
-    """
+    low, high: parameter values of the two points."""
 
     low: float
     high: float
@@ -66,8 +65,7 @@ class UnlocatedThreshold:
 
 def sort_position(change: LocatedThreshold | UnlocatedThreshold) -> float:
     """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
-    interval.
-    """
+    interval."""
     return change.position if isinstance(change, LocatedThreshold) else change.low
 
 
@@ -96,8 +94,7 @@ class StoredThresholds:
     ) -> None:
         """Adds the onsets and changes of stability in the mask `is_chosen`, (changes,), of the variables
         whose names start with `prefix`. name: parameter along which the thresholds are located. v: variables
-        of the file.
-        """
+        of the file."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
         fields = (name, "error", "frequency", "kind")
         positions, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)

@@ -1,6 +1,5 @@
 """Distinction between curves of Hopf points that bound the region of stable straight rods, and curves of Hopf
-points of further modes.
-"""
+points of further modes."""
 
 import numpy as np
 
@@ -37,8 +36,7 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
 
 def _distance_along_row(x: Array, y: Array, position: float, height: float) -> float:
     """Distance, along the row y = `height`, between x = `position` and a curve; inf if the curve does not
-    cross the row. x, y: vertices of the curve, (n,).
-    """
+    cross the row. x, y: vertices of the curve, (n,)."""
     low = np.minimum(y[:-1], y[1:])
     high = np.maximum(y[:-1], y[1:])
     segments = np.flatnonzero((low <= height) & (height <= high))

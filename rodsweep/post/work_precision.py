@@ -71,8 +71,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
 
 def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
     """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
-    of a group. groups: group of each method.
-    """
+    of a group. groups: group of each method."""
     order = list(dict.fromkeys(groups.values()))
     curve_looks = {}
     for method, group in groups.items():

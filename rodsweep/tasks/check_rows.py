@@ -15,8 +15,7 @@ from .protocol import CheckRow
 
 def crushing_clause(config: Config) -> str:
     """Clause stating that a search along F ends below the crushing force (zero stretch); empty if no force
-    crushes the arm.
-    """
+    crushes the arm."""
     if config.is_uniform_and_linear:
         return ", or to just below k1"
     can_be_crushed = np.isfinite(config.build.constitutive_law.crushing_load)
@@ -35,8 +34,7 @@ def points_text(points: Points) -> str:
 
 def points_clause(points: Points, clause: str) -> str:
     """Text with the number of points and a clause on each point: "50 points (a list), each searched from
-    ...".
-    """
+    ..."."""
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
@@ -107,8 +105,7 @@ def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]
 
 def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
-    radius.
-    """
+    radius."""
     if (
         config.stated_build is None
         and config.parameters.arm is not None

@@ -46,8 +46,7 @@ def with_shapes(view: ResultView, numbers: Sequence[int]) -> ResultView:
 def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, Any]]:
     """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
     the point, from 1. Raises InputError if the cycle cannot be solved here, or ends in a state that differs
-    from the stored state.
-    """
+    from the stored state."""
     job = _job_of_point(view, number)
     try:
         solver = job.solver()
@@ -103,8 +102,7 @@ def _job_of_point(view: ResultView, number: int) -> Job:
 def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
     """Section `parameters` of a config with one point of a list of points: the parameters of a rod, or an arm
     and its follower force, with the parameters that the file's config gives in addition to the arm. number:
-    number of the point, from 1.
-    """
+    number of the point, from 1."""
     point_values = {name: float(column[number - 1]) for name, column in view.point_columns.items()}
     section = view.config["parameters"]
     if "arm" not in section:

@@ -62,8 +62,7 @@ class LimitCycleTask(Task):
     @property
     def chains(self) -> Chains | None:
         """Chains of points, each started from the cycle of the previous point; None if there are no
-        chains.
-        """
+        chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -72,8 +71,7 @@ class LimitCycleTask(Task):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Times of samples, shapes and transients, and material coordinates of shapes, (n,) each, by name of
-        the dimension.
-        """
+        the dimension."""
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
@@ -240,7 +238,6 @@ class LimitCycleTask(Task):
 
 def _values_of_arrays(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
     """Values of variables by name, from arrays in the order of the variables; NaN for all variables if
-    `arrays` is None.
-    """
+    `arrays` is None."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

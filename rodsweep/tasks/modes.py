@@ -40,8 +40,7 @@ class ModesTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices.
-        """
+        variables of the points by name, shape (points, own dimensions), readable by slices."""
         return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:

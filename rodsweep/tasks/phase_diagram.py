@@ -87,8 +87,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
-        motion.
-        """
+        motion."""
         linear = CertifiedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
@@ -173,8 +172,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def rod_of_row(self, index: int) -> Rod:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
-        along the row. index: flat index of the row.
-        """
+        along the row. index: flat index of the row."""
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":

@@ -63,13 +63,11 @@ class SweepWideSolver(Protocol):
 
     def initial_data(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
         """Initial data, by key, that this rank has cached for the work items numbered `item_numbers` of
-        `items`, to be sent to all ranks.
-        """
+        `items`, to be sent to all ranks."""
 
     def add_initial_data(self, starts: Mapping[Any, Any]) -> None:
         """Caches initial data received from a different rank. starts: initial data by key, as from
-        `initial_data`.
-        """
+        `initial_data`."""
 
     def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""
@@ -146,8 +144,7 @@ class Task(ABC):
     @property
     def chains(self) -> Chains | None:
         """Chains of points, each started from the solution of the previous point; None if there are no
-        chains.
-        """
+        chains."""
         return None
 
     @property
@@ -157,14 +154,12 @@ class Task(ABC):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension. By
-        default empty.
-        """
+        default empty."""
         return {}
 
     def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
-        among the ranks. By default empty.
-        """
+        among the ranks. By default empty."""
         return ()
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:

@@ -25,8 +25,7 @@ task limit_cycle."""
 @dataclass(frozen=True, kw_only=True)
 class ReleasedMotion:
     """Motion of a rod after its tip is released, and the limit cycle or state of rest that the motion
-    reaches.
-    """
+    reaches."""
 
     status: str
     """Status of the task limit_cycle."""

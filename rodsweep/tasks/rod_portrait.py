@@ -66,8 +66,7 @@ class PortraitRequest:
     ) -> Job:
         """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
         vary the force. default_accuracy: relative accuracy if the request has none; None for the default of
-        the task.
-        """
+        the task."""
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
         given_parameters = self.rod.parameters
         values: dict[str, Any] = {
@@ -145,8 +144,7 @@ def _cycle_at_force(
 
 def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
-    drawn.
-    """
+    drawn."""
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     first_forces = {}
     for kind in MODE_THRESHOLD_KINDS:

@@ -65,15 +65,13 @@ class SpectrumTask(CertifiedTask):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
-        no eigenvectors are requested.
-        """
+        no eigenvectors are requested."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
         uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
-        requested.
-        """
+        requested."""
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
@@ -108,8 +106,7 @@ class SpectrumTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices.
-        """
+        variables of the points by name, shape (points, own dimensions), readable by slices."""
         return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
@@ -175,8 +172,7 @@ class SpectrumTask(CertifiedTask):
 
     def _solve_group(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> GroupResult:
         """Results for the points of a group to which eigenvalues are followed. indices: flat indices,
-        (n,).
-        """
+        (n,)."""
         from ..determinant.parameter_path import ParameterPath
         from ..solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 

@@ -1,6 +1,5 @@
 """The task thresholds: forces at which the number of unstable modes or the kind of the leading mode
-changes.
-"""
+changes."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar

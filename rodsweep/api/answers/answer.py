@@ -228,8 +228,7 @@ def _is_dimensionless(column: Column) -> bool:
 
 def _scalar(column: Column) -> float | int | bool | str | None:
     """The value of a column with one row. None stands for a missing text or count, NaN for a missing real
-    number.
-    """
+    number."""
     if column.absent[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]

@@ -52,16 +52,14 @@ def as_python_arguments(sentence: str) -> str:
 
 def _at_argument_text(match: re.Match[str]) -> str:
     """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION. Only values that are not
-    numbers are quoted.
-    """
+    numbers are quoted."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
     return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def naming_python_arguments(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
-    options.
-    """
+    options."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -113,8 +111,7 @@ def _require_allowed_look(look: Mapping[str, object]) -> None:
 @dataclass(frozen=True, slots=True)
 class CachedShapeSolver:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
-    function that computes the shapes.
-    """
+    function that computes the shapes."""
 
     solve: ShapeFunction = with_shapes
     solved: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
@@ -155,8 +152,7 @@ class Picture:
     @refusing_wrong_arguments("picture.figure()")
     def figure(self) -> FigureClass:
         """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
-        animation.
-        """
+        animation."""
         figures: list[FigureClass] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, figure_callback=figures.append, **self.choices)
@@ -188,8 +184,7 @@ def plot(
     """Draws and returns the figure for the task of `data`: a Dataset, an Answer or a result file. Several
     results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write. roots,
     what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError for
-    invalid options and if there is nothing to draw.
-    """
+    invalid options and if there is nothing to draw."""
     _require_allowed_look(look)
     _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
     points = [points] if isinstance(points, int) else points

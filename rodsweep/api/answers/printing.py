@@ -155,8 +155,7 @@ def _folded_heading(printed: PrintedAnswer) -> list[str]:
 
 def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
-    number of rows. columns: columns of the list.
-    """
+    number of rows. columns: columns of the list."""
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
         f", {columns[0].meaning}" if count > 1 else ""
@@ -176,8 +175,7 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
-    value.
-    """
+    value."""
     max_lines = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
     pairs = _main_number_texts(printed)[: max(max_lines, MIN_ROWS)]
     if not pairs:

@@ -46,8 +46,7 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
 
 def view_of_result(data: Any, example: str) -> ResultView:
     """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
-    `data` is not a result.
-    """
+    `data` is not a result."""
     if isinstance(data, str | os.PathLike):
         return read_view(named_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):

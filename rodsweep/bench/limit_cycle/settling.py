@@ -77,8 +77,7 @@ class SettlingMethod:
 def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
-    WAITING_RACE. rounds: number of timed rounds.
-    """
+    WAITING_RACE. rounds: number of timed rounds."""
     waiting = {
         method: _integrate_until_periodic(reference, settings)
         for method, settings in by_method(contenders).items()

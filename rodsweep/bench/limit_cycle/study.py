@@ -1,7 +1,6 @@
 """The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation. The
 contenders of FOLLOWING_RACE and WAITING_RACE integrate an `IntegrationTask` and return a `Trajectory`. The
-settings of each method are tolerances, from the loosest.
-"""
+settings of each method are tolerances, from the loosest."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -121,8 +121,7 @@ def measure_following(
     reference: ReferenceCycle, contenders: Iterable[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
-    divided by the number of periods. rounds: number of timed rounds.
-    """
+    divided by the number of periods. rounds: number of timed rounds."""
     task = IntegrationTask(reference.beam, reference.state, FOLLOWED_PERIODS * reference.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
@@ -162,8 +161,7 @@ class TipReturns:
 
 def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
-    largest y from the run repeated with small steps.
-    """
+    largest y from the run repeated with small steps."""
     row = tip_angle_row(beam)
     y = beam.tip_coordinates(run.states)[1]
     angle = run.states @ row

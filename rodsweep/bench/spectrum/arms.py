@@ -96,8 +96,7 @@ def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measu
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds.
-    """
+    TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds."""
     return (
         f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
         "that "

@@ -121,8 +121,7 @@ def equal_error_table(
 ) -> str:
     """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
     `target`, and returns the table of the methods. methods: contenders of all methods, by ascending size.
-    exact: exact eigenvalues of each rod.
-    """
+    exact: exact eigenvalues of each rod."""
     fit = [cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {

@@ -81,8 +81,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
-    directory `directory`. points: number of points. kind: kind of solver.
-    """
+    directory `directory`. points: number of points. kind: kind of solver."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -189,8 +188,7 @@ def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bo
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed.
-    """
+    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed."""
     output, errors = process.communicate()
     match = re.search(r"points? in ([\d.]+) s on", output)
     stopped = match is None or "stopped by" in output

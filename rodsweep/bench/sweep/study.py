@@ -78,8 +78,7 @@ def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
 
 def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
     """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn. folder:
-    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks.
-    """
+    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks."""
     rounds, cycle_rounds = (
         (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     )

@@ -179,8 +179,7 @@ def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
-    or HOPF. rounds: number of timed rounds.
-    """
+    or HOPF. rounds: number of timed rounds."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
@@ -190,8 +189,7 @@ def measure_rods(
 
 def threshold_error(case: ThresholdCase, kind: str, computed_threshold: FirstThreshold) -> dict[str, Any]:
     """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `kind`: error,
-    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed).
-    """
+    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed)."""
     error = case.error_of(kind, computed_threshold.force)
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))

@@ -127,8 +127,7 @@ class _RankRun:
     def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
         points are still missing, with their work items. count: number of points to be solved in this run.
-        contributions: reports of all ranks.
-        """
+        contributions: reports of all ranks."""
         self.seconds = time.monotonic() - self.clock_at_start
         if count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())

@@ -112,9 +112,8 @@ class ShardSolver:
     def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a group) to its results. missing:
-        flat indices of all missing points. directory: journal directory.
-        """
+        """Function from the number of a work item (a point, a chain or a group) to its results. missing: flat
+        indices of all missing points. directory: journal directory."""
         solver = self.solver
         if solver.grouped:
             return GroupSolver(*solver.grouped, solver.solve, missing)

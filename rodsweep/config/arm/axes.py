@@ -59,6 +59,5 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
 
 def parameter_of_axis(axis: str) -> str:
     """Name of the only parameter that changes along an axis of an arm's grid; "" if several parameters or no
-    parameter change.
-    """
+    parameter change."""
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")

@@ -15,8 +15,7 @@ from ..values import as_float, short_repr
 
 def quantity_axis(value: Any, validation: ValidationInfo) -> Axis:
     """The `Axis`, in SI units, from a quantity, or a list or range of quantities, as the user wrote it;
-    ValueError otherwise.
-    """
+    ValueError otherwise."""
     name = str(validation.field_name)
     if isinstance(value, Axis):
         return value
@@ -38,8 +37,7 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
-    quantity. span: the range as a mapping.
-    """
+    quantity. span: the range as a mapping."""
     ends = [end for end in RANGE_ENDS if end in span]
     unitless = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -50,8 +48,7 @@ def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
 
 def _si_number(name: str, value: Any) -> float:
     """Number in SI units from `value`, a number or a text with a unit; ValueError for other values. name:
-    name of the quantity.
-    """
+    name of the quantity."""
     if not isinstance(value, str):
         return as_float(value)
     try:
@@ -89,8 +86,7 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
 
 def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
     """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
-    absolute value. is_relative: whether any value is relative to flutter.
-    """
+    absolute value. is_relative: whether any value is relative to flutter."""
     ratios = [None if written is None else load_over_flutter(written) for written in _written_values(value)]
     return ratios, any(ratio is not None for ratio in ratios)
 
@@ -120,8 +116,7 @@ def drag_names(values: list[float]) -> list[str]:
 
 def typed_unit(name: str, axis: Axis) -> str:
     """First unit that the user typed for the values of an axis of the quantity `name`; the SI unit if no unit
-    was typed.
-    """
+    was typed."""
     units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 

@@ -26,8 +26,7 @@ RUBBER_POISSON = 0.5
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
     """Segments of a config value as texts; None if the value is None. Raises ValueError for an invalid list
-    of segments.
-    """
+    of segments."""
     if value is None:
         return None
     try:
@@ -38,8 +37,7 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 def with_length(section: dict[str, Any]) -> dict[str, Any]:
     """The keys and values `section` of an arm; if segments are given without `length`, their total length is
-    added.
-    """
+    added."""
     if section.get("segments") is None or section.get("length") is not None:
         return section
     texts = as_segments(section["segments"]) or ()
@@ -71,8 +69,7 @@ def build_of(arm: "ArmConfig") -> Build:
 
 def builds_of(arm: "ArmConfig") -> Iterator[Build]:
     """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
-    section.
-    """
+    section."""
     for values in arm.values_of_arms():
         with suppress(ArmOutsideModel):
             yield arm.arm_of(values).build
@@ -80,8 +77,7 @@ def builds_of(arm: "ArmConfig") -> Iterator[Build]:
 
 def tapers_of(arm: "ArmConfig") -> set[float]:
     """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius or no
-    base radius is given.
-    """
+    base radius is given."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
@@ -105,8 +101,7 @@ def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> 
 
 def refuse_compressible(arm: "ArmConfig", section: str) -> None:
     """Raises ValueError if the cross-section `section` is "swelling" but a Poisson's ratio of the arm is not
-    0.5.
-    """
+    0.5."""
     ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:

@@ -68,8 +68,7 @@ def read_config_text(path: Path) -> str:
 
 def parsed_yaml(text: str, source: str) -> Any:
     """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
-    source: name of the text, with which the message begins.
-    """
+    source: name of the text, with which the message begins."""
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{source}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)

@@ -52,8 +52,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 def validated_config(tree: dict[str, Any]) -> Config:
     """Config from `tree`, nested dicts of keys and values; InputError, which states the first error, if
-    invalid.
-    """
+    invalid."""
     config = CONFIGS[_task_name(tree)]
     try:
         return config.model_validate(tree)
@@ -65,8 +64,7 @@ def validated_config(tree: dict[str, Any]) -> Config:
 
 def resolved_config(config: Config) -> dict[str, Any]:
     """The resolved config, as JSON values: with all defaults and with the axes computed from an arm; inf
-    becomes "inf".
-    """
+    becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.json_value for name, axis in config.parameters.axes.items()}
@@ -146,8 +144,7 @@ def config_yaml(config: Config) -> str:
 
 def _config_notation(axis: Any) -> Any:
     """An axis in the notation of a config file (a number, a list or a range); for an arm, a mapping of the
-    quantities to this notation. Other values are returned unchanged. axis: resolved.
-    """
+    quantities to this notation. Other values are returned unchanged. axis: resolved."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -159,8 +156,7 @@ def _config_notation(axis: Any) -> Any:
 
 def _apply_override(tree: dict, override: str) -> None:
     """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
-    value. Raises InputError if the override is invalid.
-    """
+    value. Raises InputError if the override is invalid."""
     where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
@@ -217,8 +213,7 @@ def with_file_contents(tree: Any, directory: Path) -> Any:
 
 def _with_optional_columns(tree: Any, directory: Path) -> Any:
     """The parsed config `tree`, with `parameters.columns` added if the file of points has optional
-    parameters.
-    """
+    parameters."""
     parameters = tree.get("parameters") if isinstance(tree, dict) else None
     if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
         return tree

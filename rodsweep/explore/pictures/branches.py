@@ -23,8 +23,7 @@ STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 
 class BranchPicture:
     """Branches of cycles and of the straight rod against the load. Filled marks are Hopf points, folds and
-    torus points.
-    """
+    torus points."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -70,8 +69,7 @@ class BranchPicture:
     def show(self, answer: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of the answer `answer`, with separately solved cycles as dots; the title is the
         meaning of the status if the task did not succeed, else the source of the answer. load: horizontal
-        axis. length: vertical axis.
-        """
+        axis. length: vertical axis."""
         pieces = answer["pieces"]
         self.branch_source.data = {
             "F": [forces * load.factor for forces, _, _ in pieces],

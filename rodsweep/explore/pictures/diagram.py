@@ -1,6 +1,5 @@
 """Picture of the stability diagram over the load and a second parameter. A click selects new values of the
-two parameters.
-"""
+two parameters."""
 
 from itertools import groupby
 from math import nan
@@ -29,8 +28,7 @@ DARKEST_COUNT = 6
 
 class DiagramCell(NamedTuple):
     """Rectangle around neighbouring grid points of a row that have equal numbers of unstable modes. left,
-    right, bottom, top: edges, in the units of the axes.
-    """
+    right, bottom, top: edges, in the units of the axes."""
 
     left: float
     right: float
@@ -41,8 +39,7 @@ class DiagramCell(NamedTuple):
 
 def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around n increasing positive values, (n,): the geometric means of
-    neighbouring values, and an edge beyond each end.
-    """
+    neighbouring values, and an edge beyond each end."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -52,15 +49,13 @@ def cell_edges(values: Array) -> Array:
 
 def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
-    (rows,). counts: numbers of unstable modes, (rows, columns).
-    """
+    (rows,). counts: numbers of unstable modes, (rows, columns)."""
     return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
 
 
 def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes in rows of cells. edges: edges of the columns, (columns +
-    1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
-    """
+    1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns)."""
     cells = []
     for row, line in enumerate(counts):
         start = 0
@@ -90,8 +85,7 @@ def unstable_count_words(count: int) -> str:
 
 class DiagramPicture:
     """Stability of the straight rod over two parameters. Blue: stable. Orange: flutter, darker for more
-    unstable modes. Grey: crushed, or not known.
-    """
+    unstable modes. Grey: crushed, or not known."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -140,8 +134,7 @@ class DiagramPicture:
 
     def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
         """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
-        units the axes have.
-        """
+        units the axes have."""
         x = answer["x"] * load.factor
         y = answer["y"] * row_scale.factor
         regions = region_table(answer)
@@ -195,8 +188,7 @@ class DiagramPicture:
 
 def _curves_of_answer(answer: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
     """Returns (x, y, kinds), lists with one entry per curve of the answer `answer`. x, y: arrays, (points,).
-    name: prefix of the curves' variables, such as "curve".
-    """
+    name: prefix of the curves' variables, such as "curve"."""
     numbers = np.asarray(answer[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
     x, y = ([answer[f"{name}_{axis}"][line] for line in lines] for axis in "xy")

@@ -26,8 +26,7 @@ THRESHOLD_LOOKS = {
 
 class GrowthPicture:
     """Growth rates of the leading modes against the load. Dotted vertical lines mark thresholds; the thick
-    vertical line marks the load of the page.
-    """
+    vertical line marks the load of the page."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -80,8 +79,7 @@ class GrowthPicture:
 
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
-        title. load: horizontal axis.
-        """
+        title. load: horizontal axis."""
         frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
         rows = [
             (F * load.factor, *THRESHOLD_LOOKS[kind], frequency)

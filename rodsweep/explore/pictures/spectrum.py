@@ -11,8 +11,7 @@ from .numbers import SI_NAMES
 
 class SpectrumPicture:
     """Eigenvalues of the straight rod in the complex plane. Eigenvalues to the right of the imaginary axis
-    (the dashed line) are unstable.
-    """
+    (the dashed line) are unstable."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -28,8 +27,7 @@ class SpectrumPicture:
 
     def show(self, answer: dict[str, Any]) -> None:
         """Draws the eigenvalues of `answer`, an answer of the task `spectrum`; if no eigenvalue is known,
-        shows the meaning of the status instead.
-        """
+        shows the meaning of the status instead."""
         names = [
             SI_NAMES[name] if SI_NAMES[name] in answer else name for name in ("growth_rate", "frequency")
         ]
@@ -55,8 +53,7 @@ class SpectrumPicture:
 
 def unstable_count_sentence(answer: dict[str, Any]) -> str:
     """Sentence that states the number of unstable modes of the answer `answer`, and whether this number is
-    certified; the meaning of the status if the number is unknown.
-    """
+    certified; the meaning of the status if the number is unknown."""
     count = int(answer["unstable_count"])
     if count < 0:
         return answer["sentence"]
@@ -89,8 +86,7 @@ class ModePicture:
 
     def show(self, answer: dict[str, Any]) -> None:
         """Draws the leading mode of `answer`, an answer of the task `spectrum`; if the mode is not known,
-        shows the meaning of the status instead.
-        """
+        shows the meaning of the status instead."""
         real_part = answer["Y_real"][0]
         imaginary = answer["Y_imag"][0]
         if not np.isfinite(real_part).all():

@@ -1,6 +1,5 @@
 """Stability diagram of a page: number of unstable modes of the straight rod over the load and a second
-parameter.
-"""
+parameter."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -96,8 +95,7 @@ def has_uniform_linear_rods(state: PageState) -> bool:
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
     over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the current value is
-    finite and positive.
-    """
+    finite and positive."""
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
     value = float_or_text(state.rod[state.second])
@@ -125,8 +123,7 @@ def _cached_rod_diagram(
     second_parameter: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
     """Diagram up to the load `F_max` on the values `rows` of the parameter `second_parameter`; callers must
-    not change it. keywords: further keywords of the sweep.
-    """
+    not change it. keywords: further keywords of the sweep."""
     axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(rows)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
     return diagram_from_phase_result(
@@ -136,8 +133,7 @@ def _cached_rod_diagram(
 
 def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `phase_diagram` or
-    `spectrum` over F and the parameter `second_parameter`.
-    """
+    `spectrum` over F and the parameter `second_parameter`."""
     counts = data["unstable_count"].transpose(second_parameter, "F").values
     if "class" in data:
         is_crushed = flag_words(data["class"].transpose(second_parameter, "F")) == "crushed"
@@ -160,8 +156,7 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
 
 def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
     """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram_answer`,
-    from the task `thresholds`.
-    """
+    from the task `thresholds`."""
     keywords: dict[str, Any] = {
         **_fixed_parameters(state),
         state.second: second_parameter_values(state, SLOW_ROW_COUNT),
@@ -176,8 +171,7 @@ def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
 
 def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """Diagram of arms, with the variables of `diagram_answer`, from the task `thresholds` for values around
-    the second quantity of `state`.
-    """
+    the second quantity of `state`."""
     quantities = {name: text for name, text in state.arm.items() if name != "pressure"} | MATERIAL_CHOICES[
         state.law
     ]
@@ -243,8 +237,7 @@ def _empty_curves() -> dict[str, Any]:
 
 def flag_words(array: Dataset) -> Any:
     """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
-    the attributes of the array; an unlisted flag has the word "none".
-    """
+    the attributes of the array; an unlisted flag has the word "none"."""
     names = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), names, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

@@ -66,8 +66,7 @@ class Reply(NamedTuple):
 
 def answer_variables(answer: Answer) -> AnswerVariables:
     """All variables of `answer` by name, and its `status`, `sentence` (meaning of the status), `message` and
-    `units` (by variable).
-    """
+    `units` (by variable)."""
     variables: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
     return variables | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
@@ -115,8 +114,7 @@ def cycle_answer(state: PageState) -> AnswerVariables:
 
 def film_answer(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
-    Raises InputError if the rod has no cycle.
-    """
+    Raises InputError if the rod has no cycle."""
     answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
@@ -142,8 +140,7 @@ def branch_answer(state: PageState) -> AnswerVariables:
 
 def crushing_force(rod: Mapping[str, float]) -> float:
     """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
-    rod: parameters by name.
-    """
+    rod: parameters by name."""
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 
@@ -168,8 +165,7 @@ TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
 
 def answer_to(request: SolveRequest) -> AnswerVariables:
     """Answer to a request, as variables by name. Raises InputError for invalid values in the state of the
-    page.
-    """
+    page."""
     if request.stored is not None:
         return film_of_cycle(request.stored)
     if request.tip is not None:

@@ -43,8 +43,7 @@ OMITTED_STATUSES = {"missing": "are not computed", "failed": "failed"}
 
 def _style_context(look: FigureLook) -> AbstractContextManager[None]:
     """Context in which matplotlib uses the settings for all figures and the style that the user has chosen.
-    Raises InputError for an unknown style.
-    """
+    Raises InputError for an unknown style."""
     package_style = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(package_style)

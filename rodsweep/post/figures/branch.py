@@ -55,8 +55,7 @@ BRANCH_COLOURS = (
 def draw_branch(request: FigureRequest) -> str:
     """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
     several rods; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn.
-    """
+    nothing can be drawn."""
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
     rods_with_cycles = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
@@ -99,8 +98,7 @@ def draw_branch_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
     """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
-    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically.
-    """
+    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically."""
     marker_handles: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
         parameter_values, y, period, stable = smooth_curve_of_branch(curve)
@@ -130,8 +128,7 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
     """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles.
-    drawn_count: number of drawn rods.
-    """
+    drawn_count: number of drawn rods."""
     hidden = sum(rod.hidden_count for rod in rods)
     hidden_clause = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (
         hidden > 0
@@ -149,8 +146,7 @@ def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: in
 
 def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
-    and up to 1.1 times the largest parameter of the branches.
-    """
+    and up to 1.1 times the largest parameter of the branches."""
     [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
@@ -161,8 +157,7 @@ def _draw_pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
-    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib.
-    """
+    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib."""
     for vertices, kind in stability_runs(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
@@ -171,8 +166,7 @@ def _mark_special_points(
     upper: Axes, lower: Axes, curve: StoredBranch, marker_handles: dict[str, Line2D]
 ) -> None:
     """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
-    `marker_handles`.
-    """
+    `marker_handles`."""
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
         if kind not in SPECIAL_POINT_MARKS:

@@ -1,6 +1,5 @@
 """Criticality of the Hopf points of rods, and predicted amplitudes of cycles near Hopf points, as a map or as
-lines.
-"""
+lines."""
 
 from math import floor, log10
 
@@ -55,8 +54,7 @@ LINEAR_FRACTION = 0.1
 def draw_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
-    the task does not have, and if nothing can be drawn.
-    """
+    the task does not have, and if nothing can be drawn."""
     view = request.only_view()
     style.require_content(
         view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
@@ -76,8 +74,7 @@ def draw_criticality(request: FigureRequest) -> str:
 
 def _curves_figure(view: ResultView, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
-    `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
-    """
+    `name`. Markers show the criticality. Raises InputError if nothing can be drawn."""
     x = view.point_columns[name]
     is_finite = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
@@ -103,8 +100,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
 
 def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) -> list[Line2D]:
     """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
-    crossings). criticality: signs of Re c, (rods, crossings).
-    """
+    crossings). criticality: signs of Re c, (rods, crossings)."""
     x_of_values = np.broadcast_to(x[:, None], values.shape)
     handles = []
     for number, (word, colour, marker) in CRITICALITY_MARKS.items():
@@ -119,8 +115,7 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
 
 def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
-    whether the maps are stacked. Raises InputError if nothing can be drawn.
-    """
+    whether the maps are stacked. Raises InputError if nothing can be drawn."""
     criticality = view.by_point("criticality")[points.point_indices]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
@@ -164,8 +159,7 @@ def _class_indices(criticality: Array) -> Array:
 
 def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
-    rods. Raises InputError if nothing can be drawn.
-    """
+    rods. Raises InputError if nothing can be drawn."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     rods_with_prediction = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require_content(view, rods_with_prediction.size, "Hopf point with a normal form")

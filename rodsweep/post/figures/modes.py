@@ -1,6 +1,5 @@
 """Figures of the leading mode of the straight rod, with deformations and adjoint mode, as in the paper's
-Figs. 7 to 9.
-"""
+Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -25,8 +24,7 @@ MODE_PANELS = (
 def draw_modes(request: FigureRequest) -> str:
     """Draws a row of panels for each point: leading mode, deformations of this mode, and adjoint mode;
     returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
@@ -59,8 +57,7 @@ def draw_modes(request: FigureRequest) -> str:
 
 def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
     """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
-    (dotted). points: indices of the drawn points, (n,).
-    """
+    (dotted). points: indices of the drawn points, (n,)."""
     oscillates = view.by_point("frequency")[points, 0].any()
     line_styles = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in line_styles]
@@ -68,8 +65,7 @@ def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
 
 def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:
     """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
-    height. point: index of the point. fields: (field, label) of the two fields.
-    """
+    height. point: index of the point. fields: (field, label) of the two fields."""
     u = view.variables["u"]
     twins = panel, panel.twinx()
     limits = []

@@ -1,6 +1,5 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
-curves. line, row: parameters along a row, and constant on a row.
-"""
+curves. line, row: parameters along a row, and constant on a row."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -39,8 +38,7 @@ from .stability.row_classes import classes_between_crossings, pixel_classes_of_r
 class ClassMap:
     """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
     computed point, (rows, columns). crushing_ratio: force divided by the crushing force (zero stretch), at
-    every pixel, (pixels, pixels).
-    """
+    every pixel, (pixels, pixels)."""
 
     plane: DrawnPlane
     classes: Array
@@ -56,8 +54,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     """Draws the class of the rod, or its stable states if they are stored, as a map over two parameters with
     boundary curves; as one bar per row if fewer than two rows have a finite value of the row parameter.
     Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
@@ -101,8 +98,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: str, row: str) -> list[Any]:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
-    their legend entries. line, row: parameters along a row, and constant on a row.
-    """
+    their legend entries. line, row: parameters along a row, and constant on a row."""
     handles: list = []
     if "curve_number" in view.variables:
         handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
@@ -115,8 +111,7 @@ def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: st
 
 def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
-    criticality. line, row: parameters on the axes.
-    """
+    criticality. line, row: parameters on the axes."""
     fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
@@ -138,8 +133,7 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]
 
 def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
-    parameter. line, row: parameters along a row, and constant on a row.
-    """
+    parameter. line, row: parameters along a row, and constant on a row."""
     x = view.variables[line]
     y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")

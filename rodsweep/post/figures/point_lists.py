@@ -1,6 +1,5 @@
 """Lists of points in figures: conversion to a grid if the points form a grid, and axes with the number of the
-point.
-"""
+point."""
 
 from dataclasses import replace
 
@@ -70,8 +69,7 @@ def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
 
 def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
-    varies.
-    """
+    varies."""
     own_quantities = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
     return [
         _name_and_value_texts(name, values)
@@ -82,8 +80,7 @@ def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAG_NAMES.
-    """
+    in DRAG_NAMES."""
     if name == "drag":
         return quantity_words(name), [DRAG_NAMES[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit

@@ -70,8 +70,7 @@ class FigureLook:
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         """Scales a figure to the width `width_in_inches`, if given, and lays out the figure, see
-        `fit_layout`. min_aspect: smallest ratio of height to width of a panel.
-        """
+        `fit_layout`. min_aspect: smallest ratio of height to width of a panel."""
         if self.width_in_inches is not None:
             width_inches, height_inches = figure.get_size_inches()
             figure.set_size_inches(
@@ -83,8 +82,7 @@ class FigureLook:
 
 def _inches(width: str) -> float:
     """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
-    for a width outside MIN_WIDTH to MAX_WIDTH.
-    """
+    for a width outside MIN_WIDTH to MAX_WIDTH."""
     if width in WIDTHS:
         return WIDTHS[width]
     message = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
@@ -101,8 +99,7 @@ def _inches(width: str) -> float:
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
     """Result files `views` to draw, output file, and options of `rodsweep plot` (roots, what, points: see
-    `FigureChoices`; look: appearance).
-    """
+    `FigureChoices`; look: appearance)."""
 
     views: Sequence[ResultView]
     output: Path
@@ -119,16 +116,14 @@ class FigureRequest:
 
     def only_view(self, *kinds: str) -> ResultView:
         """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
-        of --what that is not in `kinds`, and for an invalid output name.
-        """
+        of --what that is not in `kinds`, and for an invalid output name."""
         self.refuse_choices(self.views[0], kinds)
         self.require_output()
         return self.views[0]
 
     def refuse_choices(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
-        values of --what that the task has.
-        """
+        values of --what that the task has."""
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
@@ -138,8 +133,7 @@ class FigureRequest:
 
     def refuse_points(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
         """Raises InputError for chosen points, and for a value of --what that is not in `kinds`. view: file
-        whose task does not have these options.
-        """
+        whose task does not have these options."""
         if self.points:
             raise InputError(
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
@@ -155,8 +149,7 @@ class FigureRequest:
 
     def require_output(self, *suffixes: str) -> None:
         """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
-        images), or if `is_protected` is true.
-        """
+        images), or if `is_protected` is true."""
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")

@@ -141,8 +141,7 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
 
 def _jump_polynomial(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
-    the slope of the steepest chord. x, values: (m,) each.
-    """
+    the slope of the steepest chord. x, values: (m,) each."""
     left, right = (
         Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
     )
@@ -162,8 +161,7 @@ def _cumulative_chord_lengths(
 
 def _largest_cubic_deviation(s: Array, points: Array) -> float:
     """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
-    the point. s: variable, (n,). points: points, (n, columns).
-    """
+    the point. s: variable, (n,). points: points, (n, columns)."""
     neighbour_steps = (-2, -1, 1, 2)
     deviations = [
         points[i]
@@ -177,8 +175,7 @@ def _largest_cubic_deviation(s: Array, points: Array) -> float:
 
 def slopes_at_cycles(s: Array, points: Array) -> Array:
     """Derivatives of the points with respect to s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT
-    neighbouring points. s: (n,). points: points, (n, columns).
-    """
+    neighbouring points. s: (n,). points: points, (n, columns)."""
     count = min(SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(points)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):

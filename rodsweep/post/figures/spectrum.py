@@ -59,8 +59,7 @@ GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 def draw_spectrum(request: FigureRequest) -> str:
     """Draws spectra along lines, a map, or the eigenvalues of single points, depending on the files; returns
-    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn.
-    """
+    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn."""
     if len(request.views) > 1:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view())
@@ -87,8 +86,7 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
     """Raises InputError if the user's choice of roots is neither None nor in `allowed`. figure: noun for the
-    figure of `view`, which does not follow roots.
-    """
+    figure of `view`, which does not follow roots."""
     if roots not in (None, *allowed):
         raise InputError(
             f"{view.path}: --roots {roots} is for spectra along a line of points, and this is {figure}"
@@ -119,8 +117,7 @@ def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws a panel for each file; returns a sentence. Raises InputError if a file is not a line of
-    spectra.
-    """
+    spectra."""
     request.refuse_points(request.views[0])
     request.require_output()
     if len(request.views) > MAX_PANELS:
@@ -135,8 +132,7 @@ def _draw_files(request: FigureRequest) -> str:
 
 def _line_of_spectra(view: ResultView, request: FigureRequest) -> ResultView:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
-    a line of spectra.
-    """
+    a line of spectra."""
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid_if_possible(view)
@@ -188,8 +184,7 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
-    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny).
-    """
+    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny)."""
     limits = axes.axis()
     x_grid, y_grid = np.meshgrid(x, y, indexing="ij")
     axes.scatter(x_grid.ravel(), y_grid.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
@@ -198,8 +193,7 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
     """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. is_narrow:
-    whether the panels are stacked.
-    """
+    whether the panels are stacked."""
     columns = 1 if is_narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8

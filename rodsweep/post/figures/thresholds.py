@@ -1,6 +1,5 @@
 """Figures of the task `thresholds`: curves against parameters, maps over two parameters, or bars for single
-rods.
-"""
+rods."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -34,8 +33,7 @@ SEARCH_DIGITS = 4
 def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds against one parameter or over two parameters, or a bar of classes for each
     rod; returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     if request.views[1:]:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view("lines", "map"))
@@ -68,8 +66,7 @@ def draw_thresholds(request: FigureRequest) -> str:
 def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
     sentence. Raises InputError for too many files, for unsuitable options, and unless the files have one task
-    and vary in one common parameter only.
-    """
+    and vary in one common parameter only."""
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()
     views = request.views
@@ -104,8 +101,7 @@ def searched_range_clause(*views: ResultView) -> str:
 def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
     `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
-    Raises InputError if nothing can be drawn.
-    """
+    Raises InputError if nothing can be drawn."""
     points = point_map(view)
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False

@@ -31,8 +31,7 @@ QUOTED_TEXT = re.compile("`([^`]*)`")
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
     """Raises InputError if `output` is not a valid name for an HTML page, see `require_output_path`. inputs:
-    result files, which must not be overwritten.
-    """
+    result files, which must not be overwritten."""
     require_output_path(output, (".html",), "page", inputs)
 
 
@@ -63,8 +62,7 @@ def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> s
 
 def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **contents: Any) -> str:
     """HTML text made from a template of this package. template: file name. page_pictures: all pictures of the
-    page. contents: variables of the template.
-    """
+    page. contents: variables of the template."""
     environment = Environment(
         loader=PackageLoader(__name__),
         autoescape=True,

@@ -39,8 +39,7 @@ FRAME_MARGIN = 1.0
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
     """A value in a figure with the text shown for it. x, y: position relative to the upper left corner of the
-    figure, in points.
-    """
+    figure, in points."""
 
     x: float
     y: float
@@ -50,8 +49,7 @@ class HoverPoint:
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
     """Texts for n values of a curve. positions: positions relative to the lower left corner of the figure, in
-    pixels, (n, 2). texts: texts of the values.
-    """
+    pixels, (n, 2). texts: texts of the values."""
 
     positions: Array
     texts: Sequence[str]
@@ -95,8 +93,7 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
     """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has a single
-    text, its legend entry, at the middle. names: labels of the two axes.
-    """
+    text, its legend entry, at the middle. names: labels of the two axes."""
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # zero has no position on a logarithmic axis
         pixels = line.get_transform().transform(data)
@@ -132,8 +129,7 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
 
 def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
-    colour, and coordinates. names: labels of the two axes. meanings: legend entries by colour.
-    """
+    colour, and coordinates. names: labels of the two axes. meanings: legend entries by colour."""
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -162,8 +158,7 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
 
 def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
-    labels of the two axes. meanings: legend entries by colour.
-    """
+    labels of the two axes. meanings: legend entries by colour."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -178,8 +173,7 @@ def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) ->
 
 def axis_name(axes: Axes, letter: Literal["x", "y"]) -> str:
     """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `letter` if
-    there is no label.
-    """
+    there is no label."""
     shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
     for panel in (axes, *shared_axes.get_siblings(axes), *_panels_with_same_axis(axes, letter)):
         label = panel.get_xlabel() if letter == "x" else panel.get_ylabel()
@@ -225,15 +219,13 @@ def _series_name(label: object) -> str:
 
 def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
     """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
-    data: points in data coordinates, (n, 2).
-    """
+    data: points in data coordinates, (n, 2)."""
     return ["\n".join(filter(None, (series, _coordinates_text(names, point)))) for point in data]
 
 
 def _coordinates_text(names: tuple[str, str], point: Array) -> str:
     """Coordinates of a point as text, one line each. names: labels of the axes. point: point in data
-    coordinates, (2,).
-    """
+    coordinates, (2,)."""
     return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, point, strict=True))
 
 

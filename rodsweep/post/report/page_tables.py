@@ -1,6 +1,5 @@
 """Tables of a result on an HTML page: rounded numbers, with all digits under the pointer, without empty
-columns.
-"""
+columns."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -45,8 +44,7 @@ class PageTable:
 
 def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
-    then the other tables.
-    """
+    then the other tables."""
     tables = Tables(view)
     names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
     for name in names:
@@ -58,8 +56,7 @@ def page_tables(view: ResultView) -> Iterator[PageTable]:
 
 def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
-    listed separately.
-    """
+    listed separately."""
     filled_columns = [column for column in table.columns if not column.absent.all()]
     constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
     varied_columns = [column for column in filled_columns if column not in constant_columns]
@@ -90,8 +87,7 @@ def _cells(column: Column) -> list[Cell]:
 
 def _cell(column: Column, text: str, value: float) -> Cell:
     """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
-    missing.
-    """
+    missing."""
     is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
     if not text or not is_number:
         return Cell(text)

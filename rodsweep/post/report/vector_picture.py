@@ -1,6 +1,5 @@
 """SVG element of a matplotlib figure for an HTML page, with texts under the pointer and colours for dark
-pages.
-"""
+pages."""
 
 import re
 from dataclasses import dataclass
@@ -41,8 +40,7 @@ class VectorPicture:
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     """The figure as an SVG element. number: number of the picture on the page. caption: description for
-    readers who cannot see the picture.
-    """
+    readers who cannot see the picture."""
     written = BytesIO()
     # Pictures of a page must not share the names of their clipping paths.
     with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):
@@ -65,8 +63,7 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
 
 def _remove_element(root: ElementTree.Element, element_path: str) -> None:
     """Removes the first element at a path below `root`. element_path: path of element names, such as
-    "defs/style".
-    """
+    "defs/style"."""
     *parents, name = element_path.split("/")
     parent = root.find("/".join(f"{{{SVG}}}{tag}" for tag in parents)) if parents else root
     if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
@@ -86,8 +83,7 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
 
 def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
     """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of the
-    circle is the text under the pointer.
-    """
+    circle is the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
         circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
@@ -126,8 +122,7 @@ def dark_page_colour(colour: str) -> str:
 
 def _contrast(channels: list[float]) -> float:
     """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. channels: red,
-    green and blue, from 0 to 255.
-    """
+    green and blue, from 0 to 255."""
     return (_luminance(channels) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
 
 

@@ -1,6 +1,5 @@
 """Paragraph of the portrait of a rod: thresholds, criticality, branches, coexisting states, cycles, missing
-results.
-"""
+results."""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -51,8 +50,7 @@ def paragraph(results: RodResults) -> str:
 
 def _rod_sentence(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the parameters of the rod and the searched range of the load, and for an arm
-    further sentences.
-    """
+    further sentences."""
     end = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
     end_text = units.load_text(end)
@@ -115,8 +113,7 @@ def _criticality_clause(results: RodResults, F: float) -> str:
 
 def _branch_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the branches of cycles, their special points, and the ranges in which cycles are
-    stable.
-    """
+    stable."""
     rod = results.branches
     if rod is None:
         return
@@ -201,8 +198,7 @@ def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
 
 def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
     """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
-    branches of the rod.
-    """
+    branches of the rod."""
     load_texts = {
         rounded_text(factor * special.at, factor * special.error): None
         for curve in curves

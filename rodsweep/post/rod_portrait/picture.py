@@ -1,6 +1,5 @@
 """Portrait of a rod as a figure: thresholds along F, branches of cycles, modes at the thresholds, three
-cycles.
-"""
+cycles."""
 
 import textwrap
 from collections.abc import Sequence
@@ -88,8 +87,7 @@ def _has_branches(results: RodResults) -> bool:
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
     """Converts the panels of the thresholds, the largest y and the period to the units of the portrait.
-    panels: these three panels.
-    """
+    panels: these three panels."""
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):

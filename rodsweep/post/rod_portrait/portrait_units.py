@@ -25,8 +25,7 @@ LABELLED_NUMBERS = (1.0, 2.0, 5.0)
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
     """Unit of a portrait. name: symbol of the unit. factor: value, in this unit, of a quantity whose
-    dimensionless value is 1.
-    """
+    dimensionless value is 1."""
 
     name: str
     factor: float = 1.0
@@ -39,8 +38,7 @@ class Unit:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitUnits:
     """Units of force, length, time and frequency in the portrait of a rod or an arm. load: kind of the arm's
-    load; empty for a rod.
-    """
+    load; empty for a rod."""
 
     force: Unit
     length: Unit
@@ -54,8 +52,7 @@ class PortraitUnits:
 
     def load_phrase(self, text: str) -> str:
         """Phrase for the load: "F = 50" for a rod, "a pressure of 400 Pa" for an arm. text: one or more
-        loads, as numbers in the unit of the portrait.
-        """
+        loads, as numbers in the unit of the portrait."""
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
     def load_text(self, F: float, error: float = 0.0) -> str:
@@ -64,8 +61,7 @@ class PortraitUnits:
 
     def load_ranges_text(self, ranges: Sequence[ParameterRange], errors: Mapping[float, float]) -> str:
         """Ranges of the load as text. ranges: ranges of the dimensionless force. errors: absolute errors of
-        the ends, by end.
-        """
+        the ends, by end."""
         factor = self.force.factor
         scaled_ranges = [(factor * low, factor * high) for low, high in ranges]
         return self.load_phrase(
@@ -105,8 +101,7 @@ ROD_UNITS = PortraitUnits(
 
 def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits:
     """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
-    the prefix of the load is chosen.
-    """
+    the prefix of the load is chosen."""
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))
@@ -125,8 +120,7 @@ def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
     """Multiplies the coordinates of all curves and marks in a panel by the factors x and y, and the
     horizontal coordinates of all bars and spans by x. Resets the tick labels of a logarithmic y axis if y is
-    not 1.
-    """
+    not 1."""
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))
     for area in axes.patches:

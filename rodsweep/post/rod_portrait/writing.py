@@ -33,8 +33,7 @@ def require_portrait(output: Path) -> None:
 
 def write_portrait(results: RodResults, output: Path) -> str:
     """Writes the portrait to the file `output`, and returns a sentence about the file. Raises InputError for
-    an invalid file name.
-    """
+    an invalid file name."""
     require_portrait(output)
     if output.suffix == PAGE_SUFFIX:
         with atomic_write(output) as stream:

@@ -1,6 +1,5 @@
 """Summary of a result file, for `rodsweep show` and `rodsweep report`: answer, reliability, further results,
-parameters and provenance.
-"""
+parameters and provenance."""
 
 import os
 from collections.abc import Callable, Iterable, Sequence
@@ -53,8 +52,7 @@ POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phas
 
 def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     """Summary of a result file. every_status: whether the list of statuses includes statuses that no point
-    has.
-    """
+    has."""
     view = view.as_list
     status = view.variables["status"]
     computed = status != MISSING_STATUS
@@ -114,8 +112,7 @@ def show_summary(view: ResultView, every_status: bool = False) -> None:
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
     """Prints lines, wrapped at the width of the terminal window. Lines written to a pipe or a file are not
-    wrapped.
-    """
+    wrapped."""
     for line in lines:
         console.print(rewrap_line(line, console.width) if wraps_lines(console) else line, soft_wrap=True)
 
@@ -137,8 +134,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
 
 def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. computed: mask of the computed
-    points, of the shape of the points. summary: lines of the task.
-    """
+    points, of the shape of the points. summary: lines of the task."""
     if not view.quantities or not computed.any():
         return [*summary.answer]
     lines = [*arm_answer(view, computed), *summary.arm_sentences, *arm_lines(view, computed)]
@@ -147,8 +143,7 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
 
 def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
-    missing: number of missing points. noun: noun for a point.
-    """
+    missing: number of missing points. noun: noun for a point."""
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
@@ -176,8 +171,7 @@ def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
 
 def _failure_sentences(view: ResultView) -> Iterable[str]:
     """Yields one sentence for each distinct reason for which points failed, with one failed point as an
-    example.
-    """
+    example."""
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS_ATTRIBUTE, "")).splitlines():
         points_text, _, outcome = line.partition(": ")
@@ -200,8 +194,7 @@ def _terminal_table(table: TextTable) -> Table:
 
 def _axes_table(view: ResultView) -> TextTable:
     """Table of the quantities of an arm and of the parameters, with their values or ranges over the
-    points.
-    """
+    points."""
     rows = []
     for name, values in view.quantities.items():
         if name == "drag":
@@ -230,8 +223,7 @@ def _axes_table(view: ResultView) -> TextTable:
 
 def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
-    values. NaN is ignored. `largest` is empty if all values are equal.
-    """
+    values. NaN is ignored. `largest` is empty if all values are equal."""
     # Twelve digits, because values computed from an arm may differ by rounding.
     distinct = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, distinct))
@@ -241,8 +233,7 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
 
 def _status_rows(view: ResultView, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
     """Yields (status, number of points, meaning of the status). is_every_shown: whether statuses that no
-    point has are included.
-    """
+    point has are included."""
     sentences = view.sentences | {"missing": "not computed yet"}
     counts = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:

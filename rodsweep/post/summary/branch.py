@@ -97,8 +97,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
 
 def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
     """Number of cycles on a branch, range of the parameter `parameter`, and range of the largest tip y, as
-    text. errors: relative errors of y, (cycles,).
-    """
+    text. errors: relative errors of y, (cycles,)."""
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
@@ -146,8 +145,7 @@ def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
 
 def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
-    empty if there is no cycle.
-    """
+    empty if there is no cycle."""
     v = view.variables
     if not np.isfinite(v["period"][computed]).any():
         return ""
@@ -194,8 +192,7 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
 
 def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
-    parameter: followed parameter.
-    """
+    parameter: followed parameter."""
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
         unknown = counted(len(rods) - len(complete), "rod")
@@ -213,8 +210,7 @@ def _lines_on_rods_with(
     rods: Sequence[RodBranches], parameter: str, phrase: str, ranges: Sequence[list[ParameterRange]]
 ) -> Iterator[str]:
     """Yields a line with the number of rods that have ranges with the property `phrase`, and a line for each
-    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property.
-    """
+    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property."""
     unknown = sum(
         not (rod_ranges or rod.coexistence_is_decided) for rod, rod_ranges in zip(rods, ranges, strict=True)
     )

@@ -90,8 +90,7 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
     """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf point.
-    v: variables of this rod.
-    """
+    v: variables of this rod."""
     indices = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in indices)
     rows = []
@@ -104,8 +103,7 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
-    smaller, and whether the cycles are stable. v: variables of this rod.
-    """
+    smaller, and whether the cycles are stable. v: variables of this rod."""
     sign = int(v["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
@@ -126,8 +124,7 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
 
 def _subcritical_lines(view: ResultView) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
-    first.
-    """
+    first."""
     criticality = view.by_point("criticality")
     rods = np.flatnonzero((criticality == 1).any(axis=-1))
     rods = rods[np.argsort(criticality[rods, 0] != 1, kind="stable")]
@@ -148,16 +145,14 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
 
 def _count_text(signs: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. signs: signs of Re c, of any
-    shape.
-    """
+    shape."""
     counts = {word: int((signs == value).sum()) for value, word in CRITICALITY_WORDS.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
 def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the searched range of F, and on the completeness of the list of Hopf points. computed: mask of
-    the computed points.
-    """
+    the computed points."""
     v = view.variables
     certified = int(v["certified"][computed].sum())
     rods = int(computed.sum())

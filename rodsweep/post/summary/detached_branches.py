@@ -34,8 +34,7 @@ def rows_without_cycles_of_curve(
 ) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
     has this special point. line: parameter that varies along a row. row: parameter that is constant on a row.
-    indices: indices of the points of the curve, (points,).
-    """
+    indices: indices of the points of the curve, (points,)."""
     v = view.variables
     if len(indices) < 2:
         return []

@@ -47,8 +47,7 @@ END_SUFFIXES = ("start", "end")
 
 def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
-    cycles. line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    cycles. line: parameter that varies along a row. row: parameter that is constant on a row."""
     v = view.variables
     lines = fold_lines(view, line, row)
     if "curve_criticality" in v:
@@ -62,8 +61,7 @@ def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line:
-    parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    parameter that varies along a row. row: parameter that is constant on a row."""
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
@@ -130,8 +128,7 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
 
 def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
-    list was full. line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    list was full. line: parameter that varies along a row. row: parameter that is constant on a row."""
     v = view.variables
     lines = []
     for end in ("not_followed", "list_full"):
@@ -155,8 +152,7 @@ def _on_no_curve_clause(count: int, noun: str) -> str:
 
 def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
-    line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    line: parameter that varies along a row. row: parameter that is constant on a row."""
     v = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
@@ -173,8 +169,7 @@ def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
-    variables, "fold" or "bautin". names: parameters.
-    """
+    variables, "fold" or "bautin". names: parameters."""
     v = view.variables
     return ", ".join(
         f"{name} = {number_with_error(v[f'{prefix}_{name}'][i], v[f'{prefix}_{name}_error'][i])}"
@@ -203,8 +198,7 @@ def criticality_lines(view: ResultView) -> list[str]:
 
 def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
-    line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    line: parameter that varies along a row. row: parameter that is constant on a row."""
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "

@@ -60,8 +60,7 @@ measured on a torus."""
 
 def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
-    error. v: variables of the file.
-    """
+    error. v: variables of the file."""
     stem, _, part_name = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
         if stem in COMPLEX_VARIABLES and part_name != "error" and f"{stem}_error" in v:
@@ -71,8 +70,7 @@ def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
-    shape of the variable. NumPy may warn of infinite values. v: variables of the file.
-    """
+    shape of the variable. NumPy may warn of infinite values. v: variables of the file."""
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part_name] for part_name in STRAIGHT_EIGENVALUE))
@@ -119,7 +117,6 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
     """Range of the variable `name` over the points in `mask`, (...,), as text, rounded according to the
-    errors; unknown values of transient_time are left out. v: variables of the file.
-    """
+    errors; unknown values of transient_time are left out. v: variables of the file."""
     selected = mask & is_known(v, name) if name == "transient_time" else mask
     return span_text(v[name][selected], absolute_errors(v, name)[selected])

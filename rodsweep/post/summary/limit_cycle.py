@@ -103,8 +103,7 @@ def outcome_line(
 
 def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
-    varied parameters if F is not varied.
-    """
+    varied parameters if F is not varied."""
     names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
     arm_sentences = list[str]()
@@ -119,8 +118,7 @@ def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
 
 def _proof_lines(view: ResultView) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
-    searched.
-    """
+    searched."""
     v = view.variables
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
@@ -141,8 +139,7 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     """Table of the numbers of the only cycle in a file, with errors. v: variables of the file, (1, ...)
-    each.
-    """
+    each."""
     rows = []
     for label, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
@@ -153,8 +150,7 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
-    is stable but the motion ended in no stable state. computed: mask of the computed points.
-    """
+    is stable but the motion ended in no stable state. computed: mask of the computed points."""
     v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
@@ -182,15 +178,13 @@ def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
     """Clause on the number of points in the mask `computed` that are also in the mask `mask`; empty if
-    `computed` has a single point.
-    """
+    `computed` has a single point."""
     return "" if computed.sum() == 1 else f" at {count_of_total(mask.sum(), computed.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
-    h1 of the cycles. v: variables of the file. is_cycle: mask of the points with a cycle.
-    """
+    h1 of the cycles. v: variables of the file. is_cycle: mask of the points with a cycle."""
     tips = (
         f"{label} {known_range_text(v, f'tip_{name}', is_cycle)} {unit}"
         for label, name, unit in (
@@ -214,8 +208,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]
 def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
     no frequency of a leading mode is known. v: variables of the file. is_cycle: mask of the points with a
-    cycle.
-    """
+    cycle."""
     oscillates = is_cycle & (np.abs(v["linear_frequency"]) > 0)
     steady = is_cycle & (v["linear_frequency"] == 0)
     clause = ""
@@ -230,8 +223,7 @@ def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray
 
 def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Line on the largest errors of the cycles. v: variables of the file. is_cycle: mask of the points with a
-    cycle.
-    """
+    cycle."""
     names = {
         "period": "period_error",
         "largest y of the tip": "amplitude_error",

@@ -47,8 +47,7 @@ def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 
 def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
-    fewer if no growth is stored. computed: mask of the computed points, of the shape of the points.
-    """
+    fewer if no growth is stored. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     condition = v["condition"][computed][:, 0]
     error = absolute_errors(v, "condition")[computed][:, 0]

@@ -38,8 +38,7 @@ def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 
 def stable_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
-    computed: mask of the computed points, of the shape of the points.
-    """
+    computed: mask of the computed points, of the shape of the points."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     masks_by_word = {word: computed & mask for word, mask in masks.items() if (computed & mask).any()}
@@ -68,8 +67,7 @@ def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 def threshold_lines(view: ResultView) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
-    empty lists if F does not vary.
-    """
+    empty lists if F does not vary."""
     lines, arm_sentences = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     location_note = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {location_note}"] if lines else [], arm_sentences
@@ -99,8 +97,7 @@ def unstable_count_line(view: ResultView) -> str:
 
 def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
-    computed points, of the shape of the points.
-    """
+    computed points, of the shape of the points."""
     v = view.variables
     size = np.hypot(v["growth_rate"][computed], v["frequency"][computed])
     relative = v["error_estimate"][computed] / size
@@ -114,8 +111,7 @@ def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the number of unknowns per point, and on the number of points without a mesh.
-    computed: mask of the computed points, of the shape of the points.
-    """
+    computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     unknowns = 3 * v["elements"][computed].astype(int) * v["order"][computed]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
@@ -131,9 +127,8 @@ def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 def stability_line(view: ResultView, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
-    estimate; the number of points at which it is unknown. computed: mask of the computed points, of the
-    shape of the points.
-    """
+    estimate; the number of points at which it is unknown. computed: mask of the computed points, of the shape
+    of the points."""
     unstable = view.variables["unstable_count"][computed]
     points = int(computed.sum())
     if (unstable < 0).all():

@@ -31,8 +31,7 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
     points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter
-    constant on a row.
-    """
+    constant on a row."""
     v = view.variables
     row_values = view.point_columns[row].reshape(computed.shape)
     states = v["stable_states"]

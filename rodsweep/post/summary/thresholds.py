@@ -36,8 +36,7 @@ LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable
 
 def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
     """Places, in a list of crossings, of the starts and ends of all windows of flutter after the first
-    window. kinds: kinds of the crossings, in the order of the force.
-    """
+    window. kinds: kinds of the crossings, in the order of the force."""
     indices = []
     expected = "restabilization"
     for index, kind in enumerate(kinds):
@@ -66,8 +65,7 @@ def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
     with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
-    points.
-    """
+    points."""
     phrase = FORCE_THRESHOLD_WORDS[event]
     rate_name, noun, unit = FIRST_THRESHOLD_RATES[event]
     v = view.variables
@@ -94,8 +92,7 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
 
 def unknown_beyond_clause(view: ResultView, F: float) -> str:
     """Clause that says that the search for a single rod ended early at the force F; empty for a complete
-    search.
-    """
+    search."""
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
     return clause if view.has_status(ENDED_EARLY).all() else ""
 
@@ -103,8 +100,7 @@ def unknown_beyond_clause(view: ResultView, F: float) -> str:
 def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndarray:
     """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
     not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
-    force_name: variable with the forces of the list.
-    """
+    force_name: variable with the forces of the list."""
     table, errors = map(view.by_point, (force_name, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
@@ -154,8 +150,7 @@ def crossing_table(view: ResultView) -> TextTable | None:
 
 def completeness_lines(view: ResultView) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
-    the only rod in a file.
-    """
+    the only rod in a file."""
     v = view.point_values(0)
     unlisted = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
@@ -177,8 +172,7 @@ def unknown_clause(count: int) -> str:
 
 def unstored_clause(count: int) -> str:
     """Clause on the number `count` of crossings that are not stored because the list was full; empty for
-    0.
-    """
+    0."""
     verb = "is" if count == 1 else "are"
     return f"; {count} more {verb} not stored, raise the option crossings" if count > 0 else ""
 

@@ -24,8 +24,7 @@ RowCells = tuple[str, ...]
 
 def wrap_cell_text(text: str, indent: str = "  ", width: int = LINE_WIDTH) -> str:
     """`text` wrapped to lines of at most `width` characters; all lines except the first start with
-    `indent`.
-    """
+    `indent`."""
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
@@ -44,8 +43,7 @@ def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
     """Cells of a column padded to equal length. Numbers are aligned at their decimal points; if a cell is not
-    a number, all cells are aligned at the left.
-    """
+    a number, all cells are aligned at the left."""
     if not all(NUMBER_PATTERN.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]
@@ -61,8 +59,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 def column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`. heading_lines: texts of the heading lines.
-    """
+    `point_aligned`. heading_lines: texts of the heading lines."""
     aligned_cells = point_aligned(cells)
     width = max(map(len, (*heading_lines, *aligned_cells)))
     return [f"{cell:{width}}" for cell in (*heading_lines, *aligned_cells)]
@@ -92,8 +89,7 @@ def _table_lines(columns: Sequence[Sequence[str]]) -> list[str]:
 
 def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[str]:
     """Lines of a table whose last column is prose. The prose is wrapped to the right of the other columns, or
-    below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line.
-    """
+    below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line."""
     if not rows:
         return []
     *columns, proses = zip(*rows, strict=True)

@@ -1,6 +1,5 @@
 """Rows and columns of the tables of a result: one row for each item of a list, with the parameters of the
-point of the item.
-"""
+point of the item."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -39,8 +38,7 @@ def point_columns(
     view: ResultView, variables: Sequence[Variable], points: NDArray[np.int64]
 ) -> Iterator[Column]:
     """Yields the columns of points: parameters, quantities of an arm, then the variables `variables`. points:
-    index of the point of each row, (rows,).
-    """
+    index of the point of each row, (rows,)."""
     for name, values in view.point_columns.items():
         yield coordinate_column(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
@@ -59,8 +57,7 @@ def list_columns(
     view: ResultView, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
 ) -> Iterator[Column]:
     """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
-    is_sweep_wide: whether the list belongs to the whole file, not to single points.
-    """
+    is_sweep_wide: whether the list belongs to the whole file, not to single points."""
     names = variables[0].extra
     for name, item_indices in zip(names, rows[1:], strict=True):
         yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][item_indices])
@@ -114,8 +111,7 @@ def si_columns(
 
 def line_columns(view: ResultView, rows: Rows) -> Iterator[Column]:
     """Yields columns of the quantities of an arm that vary along a row of a diagram, such as the pressure if
-    F varies. rows: indices of the grid points.
-    """
+    F varies. rows: indices of the grid points."""
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and PARAMETER_STORED_ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
@@ -129,8 +125,7 @@ def quantity_column(name: str, values: NDArray) -> Column:
 
 def _is_of_points(view: ResultView, variable: Variable) -> bool:
     """Whether a variable of a list is stored for each point. The declaration of such a variable omits the
-    dimensions of the points.
-    """
+    dimensions of the points."""
     return variable.extra[0] not in ("point", *view.parameters)
 
 
@@ -141,8 +136,7 @@ def _axis_indices(view: ResultView, parameter: str) -> NDArray[np.int64]:
 
 def quantities_at_points(view: ResultView) -> dict[str, NDArray]:
     """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
-    a diagram.
-    """
+    a diagram."""
     count = view.variables["status"].size
     columns = {}
     for name, values in view.quantities.items():

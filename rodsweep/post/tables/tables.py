@@ -19,8 +19,7 @@ from .rows_and_columns import Rows, item_rows, line_columns, list_columns, point
 @dataclass(frozen=True, slots=True)
 class Table:
     """Table of results. name: name of the table. columns: columns of equal length. empty_points: number of
-    points without a row.
-    """
+    points without a row."""
 
     name: str
     columns: tuple[Column, ...]
@@ -81,8 +80,7 @@ class Tables:
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
         """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
-        row, (rows,); None if the rows belong to no point. columns: columns of the items.
-        """
+        row, (rows,); None if the rows belong to no point. columns: columns of the items."""
         if name == table_names.POINTS:
             return np.arange(self.view.variables["status"].size), []
         if name == table_names.BRANCHES:
@@ -92,8 +90,7 @@ class Tables:
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
         """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
-        columns in SI units.
-        """
+        columns in SI units."""
         is_sweep_wide = name in self.contents.sweep_wide_lists
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, is_sweep_wide)
@@ -104,8 +101,7 @@ class Tables:
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
         """Returns (point_indices, columns) of the table `branches`: cycles, with special points between the
-        cycles. point_indices: index of the point of each row, (rows,).
-        """
+        cycles. point_indices: index of the point of each row, (rows,)."""
         cycles, of_cycles = self._list("cycles")
         special_rows, special_columns = self._list("special_points")
         points, cycle_indices, at_special = merged_rows(self.view, cycles, special_rows)
@@ -163,8 +159,7 @@ def merged_columns(
 
 def _special_point_variable(cycle_variable: str, parameter: str) -> str:
     """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles.
-    parameter: followed parameter.
-    """
+    parameter: followed parameter."""
     if cycle_variable == f"branch_{parameter}":
         return "special_at"
     if parameter == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
@@ -174,6 +169,5 @@ def _special_point_variable(cycle_variable: str, parameter: str) -> str:
 
 def _values_at_items(view: ResultView, name: str, count: int, rows: Rows) -> NDArray:
     """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
-    of the items.
-    """
+    of the items."""
     return view.variables[name].reshape(count, -1)[rows]

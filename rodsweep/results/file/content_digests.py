@@ -53,8 +53,7 @@ def variable_digest(
     blocks: Iterable[Any],
 ) -> str:
     """Digest of a variable of the NumPy type `kind` and the shape `shape`. dimensions: names of its
-    dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order.
-    """
+    dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order."""
     described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
@@ -72,8 +71,7 @@ def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
 
 def digests_of(file: h5py.File) -> Digests:
     """Digests of an open file. Raises ValueError, with a clause as message, for content that rodsweep does
-    not write.
-    """
+    not write."""
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBER_KINDS or data.shape is None:
@@ -172,8 +170,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
 
 def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
     """Yields the numbers of a variable as buffers. Contiguous numbers are read from the file without HDF5;
-    other numbers, and big-endian numbers, come as one buffer of little-endian numbers.
-    """
+    other numbers, and big-endian numbers, come as one buffer of little-endian numbers."""
     start = data.id.get_offset()
     size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":

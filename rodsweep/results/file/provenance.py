@@ -43,8 +43,7 @@ def utc_time() -> str:
 
 def provenance() -> dict[str, str]:
     """Versions of rodsweep, Python and libraries (except PETSc and SLEPc), the git commit, and the system, by
-    name of the attribute.
-    """
+    name of the attribute."""
     return {
         "rodsweep_version": __version__,
         "git_commit": git_commit(),
@@ -110,8 +109,7 @@ def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) ->
 
 def kernels_sentence(attribute: str) -> str:
     """Warning that several BLAS kernels computed the points of a file; empty for a single kernel. attribute:
-    value of KERNELS_ATTRIBUTE.
-    """
+    value of KERNELS_ATTRIBUTE."""
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""
@@ -123,8 +121,7 @@ def kernels_sentence(attribute: str) -> str:
 
 def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     """Attributes of a merged file that describe the runs that computed its points. attribute_sets: attributes
-    of each source.
-    """
+    of each source."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],

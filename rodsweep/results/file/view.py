@@ -57,8 +57,7 @@ class FileVariables(Mapping[str, np.ndarray]):
 @dataclass(frozen=True, slots=True)
 class ResultView:
     """Contents of a result file and its journals. path: the file. attributes: its attributes. variables: its
-    variables as NumPy arrays, by name.
-    """
+    variables as NumPy arrays, by name."""
 
     path: Path
     attributes: dict[str, Any]
@@ -113,8 +112,7 @@ class ResultView:
     @property
     def as_list(self) -> "ResultView":
         """This view with a grid over an arm's quantities turned into a list of points; for all other points,
-        this view unchanged.
-        """
+        this view unchanged."""
         if not self.arm_axes:
             return self
         shape = self.variables["status"].shape
@@ -156,8 +154,7 @@ class ResultView:
 
     def point_values(self, index: int) -> dict[str, np.ndarray]:
         """Values of every variable of points at a flat index, by name, with the shape of the variable's extra
-        dimensions.
-        """
+        dimensions."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.by_point(name)[index] for name in names}
@@ -165,8 +162,7 @@ class ResultView:
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
         """Value of each parameter at every point, by name, (points,) each; in a grid the last axis is
-        fastest.
-        """
+        fastest."""
         columns = [self.variables[name] for name in self.parameters]
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]

@@ -80,8 +80,7 @@ def with_si_variables(layout: Layout, config: Mapping[str, Any]) -> Layout:
 
 def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
-    variable.
-    """
+    variable."""
     is_force = load_kind_of(config["parameters"]["arm"]) == "force"
     units = ((variable, _stored_si_unit(variable, is_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}

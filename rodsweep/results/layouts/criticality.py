@@ -24,8 +24,7 @@ c."""
 
 def criticality_variable(name: str, decided_by: str) -> Variable:
     """Variable for the criticality of Hopf points. decided_by: name of the number whose sign is the
-    criticality.
-    """
+    criticality."""
     meaning = (
         "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
         "unstable; subcritical: cycles exist where the pair is stable; "

@@ -1,6 +1,5 @@
 """Layout of the task limit_cycle: the cycle at each point, and Hopf points located between neighbouring
-points.
-"""
+points."""
 
 from collections.abc import Collection
 from typing import Any

@@ -28,8 +28,7 @@ class SIUnit(NamedTuple):
 
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
         """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
-        or (n,) each.
-        """
+        or (n,) each."""
         numerator, denominator = (
             prod(quantities[name] for name in names) for names in (self.factors, self.divisors)
         )

@@ -27,8 +27,7 @@ from .variables import (
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
     """Variables for the real and the imaginary part of a complex field of every mode, along the rod. name:
-    name of the field. units, long_name: unit and long name of the field.
-    """
+    name of the field. units, long_name: unit and long name of the field."""
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
@@ -78,8 +77,7 @@ def longitudinal_variables(
 ) -> tuple[Variable, ...]:
     """Variables of the longitudinal eigenvalues, with an error estimate unless `is_closed_form`: the
     eigenvalues then have a closed form. gamma1: axial drag of all rods. dimensions: dimensions of the
-    parameters on which the rates depend, or the dimension of all points.
-    """
+    parameters on which the rates depend, or the dimension of all points."""
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real("longitudinal_rate", "1/tau2", meaning, *dimensions, "mode")
     error = "estimate of the relative error of longitudinal_rate"
@@ -125,8 +123,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEEDS_NEW_SO
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables of a file of the task spectrum that belong to all points together. config: the resolved
-    config. is_grid: whether the points are a grid.
-    """
+    config. is_grid: whether the points are a grid."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGE_VARIABLES

@@ -42,8 +42,7 @@ class StateWithArrays(Protocol):
 
 class ArrayStore:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
-    identified by a number. pattern: pattern of the names of the files.
-    """
+    identified by a number. pattern: pattern of the names of the files."""
 
     pattern: ClassVar[str]
 
@@ -89,8 +88,7 @@ class Checkpoints(ArrayStore):
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
         """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
-        state from its arrays (the result of the state's method `arrays`).
-        """
+        state from its arrays (the result of the state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -117,8 +115,7 @@ class Checkpoints(ArrayStore):
 
 class ItemResults(ArrayStore):
     """Store of the results of finished work items, until the variables that depend on all points are
-    computed.
-    """
+    computed."""
 
     pattern = ITEM_RESULT_GLOB
 

@@ -1,6 +1,5 @@
 """Points of an arm: points to which the rod model does not apply get a status, and each rank solves equal
-rods only once.
-"""
+rods only once."""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
@@ -60,8 +59,7 @@ class OutsideModelStatus(PointStatus):
 @dataclass(frozen=True, slots=True)
 class OutcomeOutsideModel:
     """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
-    text on the reason, or empty.
-    """
+    text on the reason, or empty."""
 
     status: OutsideModelStatus
     message: str = ""
@@ -70,8 +68,7 @@ class OutcomeOutsideModel:
 @dataclass(frozen=True, slots=True)
 class RepeatedOutcome:
     """Outcome of a point whose rod was already solved at an earlier point. outcome: outcome of the earlier
-    solve.
-    """
+    solve."""
 
     outcome: Any
 
@@ -132,16 +129,14 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
 @dataclass(slots=True)
 class _OutcomeCache:
     """Cache of the outcomes of a rank's latest solves. max_outcomes: maximum number of outcomes. outcomes:
-    cached outcomes by key, the least recently used first.
-    """
+    cached outcomes by key, the least recently used first."""
 
     max_outcomes: int
     outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def get_or_solve(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
         """Returns (result, was_cached). result: outcome with the key `key`, from the cache or else from
-        calling `solve`.
-        """
+        calling `solve`."""
         if key in self.outcomes:
             self.outcomes.move_to_end(key)
             return self.outcomes[key], True

@@ -65,8 +65,7 @@ class ArmMotion:
 
 def _motion_of_modes(record: Record) -> ArmMotion:
     """Motion of the oscillating mode with the largest growth rate. The frequency is NaN if no mode
-    oscillates.
-    """
+    oscillates."""
     frequency = np.abs(record["frequency"])
     first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first_oscillating, axis=-1)[..., 0]
@@ -75,8 +74,7 @@ def _motion_of_modes(record: Record) -> ArmMotion:
 
 def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
-    point. F_name: name of the variable with the force at crossings.
-    """
+    point. F_name: name of the variable with the force at crossings."""
 
     def motion(record: Record) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
@@ -91,16 +89,14 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 
 def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
-    flutter.
-    """
+    flutter."""
     has_flutter = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
     return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
 
 def _motion_at_flutter(record: Record) -> ArmMotion:
     """Motion at the first Hopf point, read from F_hopf, because a full list of crossings may lack this
-    point.
-    """
+    point."""
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
@@ -205,8 +201,7 @@ class ArmValidity:
 
     def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load. index: index of the point, or indices, (n,).
-        """
+        if the arm has no load. index: index of the point, or indices, (n,)."""
         k1 = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
         if F is None or k1 is None:
@@ -217,8 +212,7 @@ class ArmValidity:
     def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
-        in `variables_of_points`.
-        """
+        in `variables_of_points`."""
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
@@ -228,8 +222,7 @@ class ArmValidity:
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter. index: index of the point, or indices, (n,).
-        """
+        have this parameter. index: index of the point, or indices, (n,)."""
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])

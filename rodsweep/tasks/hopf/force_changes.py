@@ -66,8 +66,7 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
 
 def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
-    variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
-    """
+    variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets."""
     F_axis = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != F_axis]
     longest_axis = max(others, key=lambda axis: points.shape[axis])
@@ -88,9 +87,8 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
 
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """For a list of points, yields each set of points that differ only in F. values: variables of the
-    points by name, shape (points, own dimensions), arrays or HDF5 datasets.
-    """
+    """For a list of points, yields each set of points that differ only in F. values: variables of the points
+    by name, shape (points, own dimensions), arrays or HDF5 datasets."""
     eigenvalues = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_along(points.columns_by_name, "F"):

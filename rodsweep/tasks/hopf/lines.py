@@ -39,8 +39,7 @@ class HopfLine:
 
     def hopf_points(self) -> "ThresholdSearchResult | None":
         """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
-        all rods on such a line are crushed, or if the search fails.
-        """
+        all rods on such a line are crushed, or if the search fails."""
         from ...determinant.arm.determinant import forget_arm_determinants
         from ...determinant.parameter_path import ParameterPath
         from ...solve.changes.search_range import CRUSHING_END_SETTINGS

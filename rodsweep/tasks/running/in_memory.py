@@ -79,8 +79,7 @@ def stored_variables(
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
     """Returns (coordinates, variables) of the file of a plan, by name. values: variables of the layout by
     name, shape (points, own dimensions). sweep_wide: variables that do not belong to single points, with
-    values.
-    """
+    values."""
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:

@@ -71,8 +71,7 @@ class Job:
 
     def solver(self) -> Solver:
         """The solver of the task; for an arm, the results also contain values in SI units and the validity of
-        the model. Starts PETSc.
-        """
+        the model. Starts PETSc."""
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
@@ -86,8 +85,7 @@ class Job:
 
     def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
-        point.
-        """
+        point."""
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = quantities_at_points(self.quantities, self.points)
         is_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
@@ -208,8 +206,7 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
 
 def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
     """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points.
-    statuses: all statuses that a point can have.
-    """
+    statuses: all statuses that a point can have."""
     from ...solve.backend import petsc
 
     attributes = {

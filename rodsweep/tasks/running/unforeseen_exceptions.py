@@ -43,8 +43,7 @@ the solver."""
 @dataclass(frozen=True, slots=True)
 class RecordedOutcome:
     """Outcome of a point that is ready to be stored. status, message: as in the solver's outcome. values: all
-    variables of the layout by name.
-    """
+    variables of the layout by name."""
 
     status: PointStatus
     message: str
@@ -63,8 +62,7 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> 
 @dataclass(frozen=True, slots=True)
 class _GuardedSolver:
     """Implementation of `guarded_solver`. guarded: the solver whose exceptions are caught. layout: variables
-    of a point. note_exception: function called with every exception that is caught.
-    """
+    of a point. note_exception: function called with every exception that is caught."""
 
     guarded: Solver
     layout: Layout
@@ -80,8 +78,7 @@ class _GuardedSolver:
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[RecordedOutcome, State]:
         """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
-        solve or the record gives a failed outcome and no state.
-        """
+        solve or the record gives a failed outcome and no state."""
         began = time.perf_counter()
         try:
             outcome, state = solve()
@@ -96,8 +93,7 @@ class _GuardedSolver:
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
         """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
-        point.
-        """
+        point."""
         status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
@@ -134,14 +130,12 @@ def log_file(output: Path) -> Path:
 
 class TracebackLog:
     """Log of unforeseen exceptions: a file in the folder of the result file, to which all ranks append
-    tracebacks.
-    """
+    tracebacks."""
 
     def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
         """output: the result file. rank: number of this rank. point_text: function from the flat index of a
         point to a text with its parameters. is_strict: whether every exception is raised again after it is
-        logged.
-        """
+        logged."""
         self.strict = is_strict
         self.path = log_file(output)
         self.rank = rank
@@ -152,8 +146,7 @@ class TracebackLog:
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
         """Appends the exception of points to the log, with their parameters. indices: flat indices of the
-        points.
-        """
+        points."""
         points = self.point_text(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.point_text(indices[-1])}"

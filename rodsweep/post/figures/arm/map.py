@@ -56,8 +56,7 @@ MAP_HATCH_COLOUR = "0.35"
 def draw_arm_map(request: FigureRequest) -> str:
     """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
     for each result; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn.
-    """
+    nothing can be drawn."""
     view = replace(request, what=None).only_view()
     long = [name for name in view.arm_axes if len(view.variables[name]) > 1]
     if DRAG_AXIS in long and long[1:]:  # drawn as a band, or for the likeliest drag
@@ -106,8 +105,7 @@ def _section_text(view: ResultView, indices: dict[str, int]) -> str:
 
 def can_draw_arm_map(request: FigureRequest) -> bool:
     """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary in the only file, and the
-    user has not chosen another kind of figure.
-    """
+    user has not chosen another kind of figure."""
     view = request.views[0]
     has_other_options = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)
@@ -136,8 +134,7 @@ def _new_panels(count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[A
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
     """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
-    index: index of the drawn points in the grid.
-    """
+    index: index of the drawn points in the grid."""
     (x, x_label), (y, y_label) = (_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
     style.draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
@@ -153,8 +150,7 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str]
 
 def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
     """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
-    points in the grid.
-    """
+    points in the grid."""
     x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
@@ -180,8 +176,7 @@ def _draw_drag_band(
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
     as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
     of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
-    horizontal axis.
-    """
+    horizontal axis."""
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
     drag = view.arm_axes.index(DRAG_AXIS)
@@ -201,8 +196,7 @@ def _cover_invalid_cells(
 ) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
     a value; returns legend entries. names: quantities on x and y. index: index of the drawn points in the
-    grid.
-    """
+    grid."""
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []

@@ -18,8 +18,7 @@ class Panel:
     """Content of one panel. label: name and unit of the result. values: result at all points of the file.
     threshold_lines: several results that are drawn against one quantity in one panel, by legend entry; empty
     if only `values` are drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour
-    is drawn.
-    """
+    is drawn."""
 
     label: str
     values: Array
@@ -33,8 +32,7 @@ class Panel:
 
 def _threshold_panels(view: ResultView) -> list[Panel]:
     """Panels of the task `thresholds`: load at flutter (as lines, also at onset of oscillation and
-    restabilization), and frequency at flutter.
-    """
+    restabilization), and frequency at flutter."""
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
     load, si, unit_quantity = (
         ("force", "N", "force") if view.load_kind == "force" else ("pressure", "Pa", "young")

@@ -25,8 +25,7 @@ number."""
 
 def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
-    `si` (by default the unit of the quantity), of any shape.
-    """
+    `si` (by default the unit of the quantity), of any shape."""
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed_units.get(name, si)
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
@@ -34,8 +33,7 @@ def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> t
 
 def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
-    SI units; for a drag, index in DRAG_NAMES.
-    """
+    SI units; for a drag, index in DRAG_NAMES."""
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"
     converted, unit = in_typed_unit(view, name, np.array([value]))

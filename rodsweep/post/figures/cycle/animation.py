@@ -37,8 +37,7 @@ MAX_GHOST_AGE = 0.2
 
 def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
     """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
-    a description. points: numbers of the chosen points. Raises InputError for too few shapes.
-    """
+    a description. points: numbers of the chosen points. Raises InputError for too few shapes."""
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
@@ -76,8 +75,7 @@ def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingA
 
 def _film_writer(output: Path, rate: int) -> AbstractMovieWriter:
     """Matplotlib writer for the suffix of `output`, with `rate` frames per second. Raises
-    EnvironmentIncomplete for an MP4 without ffmpeg.
-    """
+    EnvironmentIncomplete for an MP4 without ffmpeg."""
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):

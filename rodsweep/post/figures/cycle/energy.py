@@ -46,8 +46,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
-    panels, rounded according to its error.
-    """
+    panels, rounded according to its error."""
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = relative_power_error(cycle.values)
     mean_text = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))

@@ -58,8 +58,7 @@ panel."""
 def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
     Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the panels are
-    stacked. Raises InputError if no point has a cycle.
-    """
+    stacked. Raises InputError if no point has a cycle."""
     points = point_map(view)
     statuses = view.status_names[points.point_indices]
     cycles = np.isin(statuses, CYCLE_STATUSES)
@@ -86,8 +85,7 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
 
 def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) -> str:
     """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
-    are equal at all points.
-    """
+    are equal at all points."""
     if not is_in_si:
         return style.parameter_text(points.common_parameters)
     varied_quantities = {
@@ -99,8 +97,7 @@ def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) 
 
 def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
     """Returns (figure, panels) with `count` panels that share axes, stacked if `is_narrow`, else side by
-    side.
-    """
+    side."""
     layout = ConstrainedLayoutEngine(
         wspace=0.0 if is_narrow else 0.06
     )  # room for the first colour bar's label
@@ -111,8 +108,7 @@ def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
-    labels.
-    """
+    labels."""
     for axes in panels:
         style.scale_axis(axes, "x", points.x)
         style.scale_axis(axes, "y", points.y)
@@ -121,8 +117,7 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
 
 def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> list[Artist]:
     """Fills the cells without a cycle with colours and hatches by status; returns legend entries. statuses:
-    status of each cell, (ny, nx).
-    """
+    status of each cell, (ny, nx)."""
     unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(statuses).tolist()]):
@@ -141,8 +136,7 @@ def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> 
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
     """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
-    entry. The list is empty if no cell is marked.
-    """
+    entry. The list is empty if no cell is marked."""
     if not unstable.any():
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
@@ -154,8 +148,7 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
 
 def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
     """(left edge, width) of each run of neighbouring chosen cells in a row. mask: mask of the cells, (n,).
-    edges: edges of the cells, (n + 1,).
-    """
+    edges: edges of the cells, (n + 1,)."""
     steps = np.diff(np.concatenate(([0], mask.astype(int), [0])))
     starts = edges[np.flatnonzero(steps > 0)]
     ends = edges[np.flatnonzero(steps < 0)]

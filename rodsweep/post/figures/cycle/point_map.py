@@ -1,6 +1,5 @@
 """Points of a file as a map over two parameters: values on the axes, edges of cells, and the index of the
-point in each cell.
-"""
+point in each cell."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -36,8 +35,7 @@ class PointMap:
 
 def point_map(view: ResultView) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
-    do not form a grid over two parameters with at least two finite values each.
-    """
+    do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
     if len(names) != 2:
         raise InputError(
@@ -82,8 +80,7 @@ def _varied_parameters_clause(names: list[str]) -> str:
 
 def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
     """Returns (coordinates, inverse): the values, (n,), on the linear or logarithmic scale of their axis, and
-    the function that converts coordinates to values.
-    """
+    the function that converts coordinates to values."""
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
 
 
@@ -98,8 +95,7 @@ def cell_edges(values: Array) -> Array:
 
 def cell_centres(edges: Array) -> Array:
     """Values, (n,), whose cells have the edges `edges`, (n + 1,): the inverse of `cell_edges` for a linear
-    scale.
-    """
+    scale."""
     centres = np.empty(len(edges) - 1)
     centres[0] = (edges[0] + edges[1]) / 2
     for i in range(1, len(centres)):

@@ -123,8 +123,7 @@ def _new_panels(
 
 def drawn_shape_indices(stored: int) -> tuple[range, float]:
     """Returns (indices, step): indices of the drawn shapes, and time between two drawn shapes, in periods.
-    stored: number of stored shapes per period.
-    """
+    stored: number of stored shapes per period."""
     stride = -(-stored // MAX_SHAPES)
     return range(0, stored, stride), stride / stored
 
@@ -133,8 +132,7 @@ def _draw_phase_bar(
     figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, is_below: bool
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
-    two shapes, in periods. is_below: whether the bar is below the panels.
-    """
+    two shapes, in periods. is_below: whether the bar is below the panels."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
@@ -165,8 +163,7 @@ def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
     """Draws the follower force as an arrow of the colour `colour` that ends at the tip, along -(cos theta,
     sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
-    L, in the unit of the axes.
-    """
+    L, in the unit of the axes."""
     tangent = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     arrow = -ARROW_LENGTH * length * tangent
     return axes.quiver(
@@ -216,8 +213,7 @@ def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float]
 
 def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
-    has this time scale.
-    """
+    has this time scale."""
     from ....discretization.elements.trigonometric import (
         interpolate_samples,  # compiled code, which few figures need
     )

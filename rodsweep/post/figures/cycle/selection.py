@@ -52,8 +52,7 @@ class StoredCycle:
     @property
     def tau1(self) -> float:
         """Short time scale tau1 = gamma3/k2, in tau2; 0 for a rod without this time scale, and for an arm in
-        SI units.
-        """
+        SI units."""
         if self.units.in_si:
             return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
@@ -72,8 +71,7 @@ class StoredCycle:
 
     def _period(self, value: float, unit: str, symbol: str = "") -> str:
         """A period with its unit as TeX. value: the period in `unit`. symbol: symbol before the equals sign,
-        or empty.
-        """
+        or empty."""
         error = float(self.values["period_error"])
         return rf"${symbol}{{=}}$ ${power_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
@@ -117,8 +115,7 @@ class CycleSelection:
 def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
     empty. variable_names: variables that the figure needs. Raises InputError if a point, a cycle or a
-    variable is missing, or for more than MAX_CYCLES points.
-    """
+    variable is missing, or for more than MAX_CYCLES points."""
     _refuse_missing(view, variable_names)
     statuses = view.status_names
     _refuse_bad_points(view, points)
@@ -132,8 +129,7 @@ def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Seque
 def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection:
     """Motions from the initial state at the points with the numbers `points`, or the first stored motions, at
     most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
-    missing, if a point does not exist, or if more than MAX_CYCLES points are chosen.
-    """
+    missing, if a point does not exist, or if more than MAX_CYCLES points are chosen."""
     _refuse_missing(view, TRANSIENT_VARIABLE_NAMES)
     _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
@@ -147,8 +143,7 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
 
 def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
     """Raises InputError if one of the variables `variable_names` is missing; the message names the option
-    with which the variable is stored.
-    """
+    with which the variable is stored."""
     for name in variable_names:
         if name not in view.variables:
             key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
@@ -159,8 +154,7 @@ def _selected_cycles(
     view: ResultView, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable.
-    """
+    empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable."""
     available = np.flatnonzero(drawable)
     statuses = view.status_names
     if not available.size:
@@ -188,8 +182,7 @@ def _selected_cycles(
 
 def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
     """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
-    exist.
-    """
+    exist."""
     count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
         raise InputError(
@@ -202,8 +195,7 @@ def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
 
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
-    parameters of each mapping.
-    """
+    parameters of each mapping."""
     common = {n: v for n, v in parameters[0].items() if all(values[n] == v for values in parameters)}
     labels = [parameter_text({n: v for n, v in each.items() if n not in common}) for each in parameters]
     return parameter_text(common), labels
@@ -211,8 +203,7 @@ def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, l
 
 def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters that are equal at all points, and text of the other
-    parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1.
-    """
+    parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1."""
     if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns

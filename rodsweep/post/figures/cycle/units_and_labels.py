@@ -89,8 +89,7 @@ class CycleUnits:
     @property
     def power_of_rate(self) -> float:
         """Ratio of the figure's units of energy and time, (energy unit)/(time unit), in the figure's unit of
-        power.
-        """
+        power."""
         return self.power * self.time / self.energy
 
     def time_text(self, time: float) -> str:
@@ -114,8 +113,7 @@ PLAIN_UNITS = CycleUnits()
 
 def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
-    numbers: numbers of the points, from 1.
-    """
+    numbers: numbers of the points, from 1."""
     (units,) = units_of_files([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
@@ -125,8 +123,7 @@ def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits
 
 def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
-    indices: indices of the points of each file, (n,).
-    """
+    indices: indices of the points of each file, (n,)."""
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
@@ -153,6 +150,5 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
 
 def _largest_in_units(view: ResultView, name: str, indices: NDArray[np.int64], factors: Array) -> float:
     """Maximum of |v| f over the points with the indices `indices`, (n,); 0 if no value is finite. v: variable
-    `name`. f: `factors`, (n,).
-    """
+    `name`. f: `factors`, (n,)."""
     return float(np.nanmax(np.abs(view.variables[name].ravel()[indices]) * factors, initial=0.0))

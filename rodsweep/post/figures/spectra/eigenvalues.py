@@ -1,6 +1,5 @@
 """Figures of eigenvalues without lines between points: one point in the complex plane, or a list of
-points.
-"""
+points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -27,8 +26,7 @@ MAX_NUMBERED = 8
 
 def draw_eigenvalues(view: ResultView) -> Figure:
     """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
-    the modes. Raises InputError if nothing can be drawn.
-    """
+    the modes. Raises InputError if nothing can be drawn."""
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
     require_content(view, np.isfinite(growth).any(), "computed point")
@@ -74,8 +72,7 @@ def _heading(view: ResultView) -> str:
 
 def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> list[Line2D]:
     """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. is_growing:
-    mask of growing modes, of the same shape.
-    """
+    mask of growing modes, of the same shape."""
     handles = []
     for kind, (colour, marker, word) in MODE_LOOKS.items():
         is_drawn = (is_growing == kind) & np.isfinite(y)
@@ -88,8 +85,7 @@ def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarr
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes an axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
-    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged.
-    """
+    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():

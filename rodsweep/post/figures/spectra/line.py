@@ -1,6 +1,5 @@
 """Figures of spectra along a line of points: two roots, or all stored roots, against the parameter and in the
-complex plane, as in the paper's Fig. 2.
-"""
+complex plane, as in the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -61,8 +60,7 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
 
 def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
-    parameter, (n,). w: followed roots, (n, 2).
-    """
+    parameter, (n,). w: followed roots, (n, 2)."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
     # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.
@@ -105,8 +103,7 @@ def _followed_roots(view: ResultView, roots: str) -> Complex:
 
 def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
     """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
-    label of the colour bar.
-    """
+    label of the colour bar."""
     x_of_roots = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
@@ -142,8 +139,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
 
 def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
-    2), or all roots, (n, modes). roots: choice of the roots.
-    """
+    2), or all roots, (n, modes). roots: choice of the roots."""
     x = view.parameter_values[name]
     w = _followed_roots(view, roots)
     if roots != "all":
@@ -181,8 +177,7 @@ def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
 
 def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     """Draws an arrow at the middle of the path w, (n,), of a root, in the direction of the path. If w has
-    gaps, the part with the most points is used.
-    """
+    gaps, the part with the most points is used."""
     unbroken_parts = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((unbroken_part[np.isfinite(unbroken_part)] for unbroken_part in unbroken_parts), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)

@@ -87,8 +87,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
     """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
-    of the bar. is_vertical: whether the bar is vertical.
-    """
+    of the bar. is_vertical: whether the bar is vertical."""
     intervals = list(classes_over_force(view, rod))
     undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):

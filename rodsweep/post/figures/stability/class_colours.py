@@ -56,8 +56,7 @@ def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
 @dataclass(frozen=True, slots=True)
 class Palette:
     """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
-    each value. colours: colour of each word.
-    """
+    each value. colours: colour of each word."""
 
     variable: str
     words: tuple[tuple[int, str], ...]

@@ -1,6 +1,5 @@
 """Regions of a plane that are bounded by curves. Each pixel has the class of a known point in the same
-region.
-"""
+region."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,8 +30,7 @@ class DrawnPlane:
 
     def fractions_of_axes(self, x: Array, y: Array) -> Array:
         """Points as fractions of the axes, (n, 2), with 0 and 1 at the edges, linear or logarithmic as the
-        axes. x, y: coordinates, (n,) each.
-        """
+        axes. x, y: coordinates, (n,) each."""
         columns = []
         for values, axis in ((x, self.x), (y, self.y)):
             if is_logarithmic(axis):
@@ -60,8 +58,7 @@ class ClassifiedPoints:
 
     def with_regions(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
-        the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
-        """
+        the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT)."""
         is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
         coordinates = self.coordinates[is_inside]
         return ClassifiedPoints(coordinates, self.classes[is_inside]), regions[
@@ -114,8 +111,7 @@ def pixel_classes(
 
 def _nearest_classes(pixels: tuple[NDArray[Any], ...], points: Array, classes: NDArray[Any]) -> NDArray[Any]:
     """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. points: points as
-    fractions of the axes, (m, 2). classes: classes of the points, (m,).
-    """
+    fractions of the axes, (m, 2). classes: classes of the points, (m,)."""
     if (classes == classes[0]).all():
         return classes[0]
     centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXEL_COUNT

@@ -76,8 +76,7 @@ def _uncrushed_row(view: ResultView, build: Build, line: str, index: int) -> tup
 
 def class_above_crossing(kind: int, unstable: int) -> str:
     """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
-    modes above the crossing; -1 if unknown.
-    """
+    modes above the crossing; -1 if unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
@@ -117,8 +116,7 @@ def pixel_classes_of_row(
 
 def _class_changes(view: ResultView, variable: str, line: str, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
-    `stable_states`. line: parameter along the row. index: index of the row.
-    """
+    `stable_states`. line: parameter along the row. index: index of the row."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     positions = v["crossing_at"]

@@ -74,8 +74,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
 
 def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter `x_name`, with a
-    colour for each file. search: clause on the searched range.
-    """
+    colour for each file. search: clause on the searched range."""
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
     tables = np.concatenate([_first_force_table(view, x_name, None) for view in views])
@@ -127,8 +126,7 @@ def draw_selected_lines(
 
 def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
-    `other`, see `_label_line_indices`; returns the number of values.
-    """
+    `other`, see `_label_line_indices`; returns the number of values."""
     table = _first_force_table(view, x_name, other)
     indices = _label_line_indices(table)
     for line, group in zip(
@@ -146,9 +144,8 @@ def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
 
 
 def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Array:
-    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for
-    a missing threshold. x_name, other: parameters; `other` is None if there is no second parameter.
-    """
+    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for a
+    missing threshold. x_name, other: parameters; `other` is None if there is no second parameter."""
     names = list(view.parameter_values)
     kept_axes = [names.index(name) for name in (other, x_name) if name]
     other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
@@ -162,8 +159,7 @@ def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Arra
 
 def _abscissa_values(view: ResultView, x_name: str) -> Array:
     """Values on the horizontal axis: values of the parameter `x_name`, or 1/gamma3 instead of gamma3, as in
-    the paper.
-    """
+    the paper."""
     values = view.parameter_values[x_name]
     return 1 / values if x_name == "gamma3" else values
 
@@ -171,8 +167,7 @@ def _abscissa_values(view: ResultView, x_name: str) -> Array:
 def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
     """Draws lines of the three kinds of thresholds; returns legend entries of the kinds with a finite force.
     x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
-    keywords for matplotlib that replace the look in CRITICAL_FORCES.
-    """
+    keywords for matplotlib that replace the look in CRITICAL_FORCES."""
     is_finite = np.isfinite(x)
     handles = []
     for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
@@ -185,8 +180,7 @@ def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, A
 
 def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
-    at 0. table: drawn forces.
-    """
+    at 0. table: drawn forces."""
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
@@ -209,8 +203,7 @@ def _kind_entries(table: Array) -> list[Line2D]:
 
 def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
-    finite.
-    """
+    finite."""
     omissions = [
         f"{name} = {value:g}"
         for name in names
@@ -221,8 +214,7 @@ def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
 
 def _label_line_indices(table: Array) -> list[int]:
     """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
-    (lines, 3, n).
-    """
+    (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))
@@ -234,8 +226,7 @@ def _label_line_indices(table: Array) -> list[int]:
 
 def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
     """Groups of lines that cannot be distinguished in the figure, as lists of keys. lines: forces, (3,
-    points) each, by key.
-    """
+    points) each, by key."""
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():

@@ -1,6 +1,5 @@
 """Loads of arms in words: flutter as a force at the tip, the arms with extreme flutter loads, and the loads
-that compress an arm beyond the limit of the model.
-"""
+that compress an arm beyond the limit of the model."""
 
 import numpy as np
 

@@ -47,8 +47,7 @@ class StoredPointMap:
 
     def __call__(self, index: Indices) -> Indices:
         """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
-        computed again.
-        """
+        computed again."""
         places = [
             positions[i]
             for positions, i in zip(self.axis_positions, np.unravel_index(index, self.shape), strict=True)
@@ -151,8 +150,7 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
 
 
 def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
-    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
-    point."""
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
         kinds = [
@@ -215,8 +213,7 @@ def _positions_before_first_change(positions: Indices, count: int, upward: bool)
 
 def _is_stretch_unchanged(positions: Indices, count: int) -> NDArray[np.bool_]:
     """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
-    each old value, (n,). count: number of values on the new axis.
-    """
+    each old value, (n,). count: number of values on the new axis."""
     indices = np.arange(len(positions))
     stretch_starts = indices // GROUP_POINTS * GROUP_POINTS
     same_length = np.minimum(stretch_starts + GROUP_POINTS, len(positions)) == np.minimum(

@@ -39,8 +39,7 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
 
 def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     """Text on the difference of two resolved configs with different fingerprints. stored: config of the file.
-    given: config of the run.
-    """
+    given: config of the run."""
     if stored["task"] != given["task"]:
         return config_difference(stored["task"], given["task"], "task")
     configs = config_from_resolved(stored), config_from_resolved(given)
@@ -96,8 +95,7 @@ def config_difference(
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
     """Difference of two lists that are too long to show: their lengths, and the first pair that differs.
-    origins: names of the origins of `stored` and `given`.
-    """
+    origins: names of the origins of `stored` and `given`."""
     sizes = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
     pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

@@ -173,8 +173,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
     """Returns (joined list, map from each list to the joined list). The joined list has the points of all
-    lists without repetition.
-    """
+    lists without repetition."""
     numbers: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     maps = [np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in table]) for table in rows]

@@ -26,8 +26,7 @@ BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the
-line."""
+"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
 
 def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tuple[Figure, str]:
@@ -83,8 +82,7 @@ def _draw_branches(
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
     """Draws all lines in all panels; returns legend entries. texts: legend entry of each line.
-    direction_labels: result of `_legend_entries_of_files`.
-    """
+    direction_labels: result of `_legend_entries_of_files`."""
     handles = []
     unknown_statuses = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
@@ -131,8 +129,7 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str) -> None:
     """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
-    upward: whether the parameter increased.
-    """
+    upward: whether the parameter increased."""
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
         finite_indices = np.flatnonzero(np.isfinite(values))
@@ -148,8 +145,7 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: boo
 def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
-    axis.
-    """
+    axis."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
         names = {
@@ -162,8 +158,7 @@ def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tup
 
 def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
     """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible.
-    labels: labels of the vertical axes. name: parameter on the horizontal axis.
-    """
+    labels: labels of the vertical axes. name: parameter on the horizontal axis."""
     for axes, label in zip(panels, labels, strict=True):
         if not np.isfinite(axes.dataLim.y1):
             axes.text(0.5, 0.5, "no cycle", color="0.5", ha="center", transform=axes.transAxes)
@@ -179,8 +174,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
-    without a known amplitude. keywords: keywords for matplotlib.
-    """
+    without a known amplitude. keywords: keywords for matplotlib."""
     unstable = branch.status_names == "unstable"
     unknown_statuses: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
