@@ -90,10 +90,7 @@ def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
 
 
 def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
-    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically.
-
-    config: the config as a tree of keys.
-    """
+    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically."""
     layout_variables = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
     order = {
         name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in layout_variables)])
@@ -106,7 +103,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
 def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
-    checksums in the file. header: header of the file."""
+    checksums in the file."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with damage_refusals(path):
         try:

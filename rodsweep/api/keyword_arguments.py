@@ -144,11 +144,9 @@ def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | Non
 
 
 def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The allowed key that is most similar to the unknown key `name`.
-
-    For a quantity of an arm, whose section is not in `sections`, the first allowed key may be returned:
-    validation then names the right section. Raises InputError with a list of all keys if no key is similar.
-    """
+    """The allowed key that is most similar to the unknown key `name`. For a quantity of an arm, whose section
+    is not in `sections`, the first allowed key may be returned: validation then names the right section.
+    Raises InputError with a list of all keys if no key is similar."""
     allowed = [key for keys in sections.values() for key in keys]
     similar = similar_keys(name, allowed)
     if not similar and name not in ArmConfig.model_fields:
@@ -216,8 +214,7 @@ def plain_value(value: Any) -> Any:
 
 
 def plain_keyword(key: str, value: Any) -> Any:
-    """`value` in the types of a YAML config; InputError for a masked value. key: name of the keyword, for the
-    message."""
+    """`value` in the types of a YAML config; InputError for a masked value."""
     try:
         return plain_value(value)
     except ValueError as error:

@@ -88,8 +88,7 @@ def _point_text_of(job: Job) -> Callable[[int], str]:
 
 
 def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a result whose solve ends now. start_time: time at which the solve started. reasons:
-    reasons why points failed."""
+    """Attributes of a result whose solve ends now."""
     from ..solve.backend import petsc
 
     return {
@@ -107,8 +106,7 @@ def _solve_points(
     job: Job, solver: Solver, plan: FilePlan, display: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
-    of the points first. messages: one message for each point. reasons: reasons why points failed. display:
-    progress display."""
+    of the points first. messages: one message for each point. reasons: reasons why points failed."""
     reasons = FailureReasons(_point_text_of(job))
     count = job.points.count
     columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
@@ -135,10 +133,7 @@ def _solve_groups(
     groups: PointGroups, solve_group: SolveGroup, columns: dict[str, np.ndarray], display: Display
 ) -> Sequence[int]:
     """Fills the variables of all points that are solved together; returns the flat indices of all other
-    points.
-
-    columns: variables by name, (points, ...). display: progress display.
-    """
+    points. columns: variables by name, (points, ...)."""
     unsolved: list[int] = []
     solved_count = 0
     for indices in map(groups.indices, range(groups.count)):
@@ -154,7 +149,7 @@ def _solve_groups(
 
 def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Display) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
-    points. display: progress display."""
+    points."""
     results = dict[int, NamedArrays]()
     while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
@@ -167,7 +162,7 @@ def _change_points(
     result: SweepWideResult, job: Job, plan: FilePlan, values: dict[str, np.ndarray], messages: list[str]
 ) -> None:
     """Replaces variables and messages of the points that change. values: variables by name, with the
-    dimensions of the points first. messages: message of each point."""
+    dimensions of the points first."""
     for index, changed in result.changed_points.items():
         position = np.unravel_index(index, job.points.shape)
         for variable in plan.layout.variables:
@@ -179,10 +174,7 @@ def _solve_outcomes(
     unsolved: Sequence[int], count: int, solver: Solver, display: Display
 ) -> Iterator[tuple[int, Any]]:
     """Solves the points with flat indices `unsolved`; yields (flat index, outcome) of each point. Along a
-    chain, each point starts from the solution of the previous point.
-
-    count: number of all points. display: progress display.
-    """
+    chain, each point starts from the solution of the previous point. count: number of all points."""
     solved_count = count - len(unsolved)
 
     @contextmanager
@@ -217,7 +209,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     """Progress display of a solve, which appears after a second.
 
     progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
-    None if unknown. title: text before the bar. Raises InputError for any other value of `progress`.
+    None if unknown. Raises InputError for any other value of `progress`.
     """
     progress = plain_keyword("progress", progress)
     if not (progress is None or isinstance(progress, bool)):

@@ -73,8 +73,7 @@ def sweep(
 
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception. indices: flat indices of the
-    failed points."""
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
     points = f"point {first}" if first == last_number else f"points {first} to {last_number}"
@@ -95,9 +94,8 @@ def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
 
 def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, display: Display) -> xr.Dataset:
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
-    directory. tree: config tree. strict: whether an unforeseen exception, a bug of rodsweep, is raised.
-    display: progress display. Raises EnvironmentIncomplete if mpiexec cannot be started, or the exception of
-    `_run_failure_exception`."""
+    directory. strict: whether an unforeseen exception, a bug of rodsweep, is raised. Raises
+    EnvironmentIncomplete if mpiexec cannot be started, or the exception of `_run_failure_exception`."""
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
@@ -142,11 +140,8 @@ def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple
 
 
 def _run_failure_exception(launcher: str, status: int, errors: str, is_file_created: bool) -> Exception:
-    """Exception for a run that did not complete.
-
-    is_file_created: whether the ranks had created the result file. launcher: path of mpiexec. status: exit
-    status of the launcher. errors: standard error of the run.
-    """
+    """Exception for a run that did not complete. is_file_created: whether the ranks had created the result
+    file. errors: standard error of the run."""
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))

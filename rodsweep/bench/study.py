@@ -132,7 +132,7 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
 
 def timing_order(rounds: Sequence[int]) -> Iterator[int]:
     """Indices of functions in the order of timing: round by round, so that a slow period of the machine
-    affects all functions. rounds: number of rounds of each function."""
+    affects all functions."""
     for round_number in range(max(rounds)):
         yield from (i for i, round_count in enumerate(rounds) if round_number < round_count)
 
@@ -173,16 +173,15 @@ class CaseWithErrorMeasure(NamedTuple):
 def measure_case(
     name: str, case: Any, contenders: Sequence[TimedMethod], rounds: int, judge: Judge
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. name: name of the case. judge: function from
-    a method's result to the fields of `Measurement`. rounds: number of timed rounds."""
+    """Measurements of all contenders on one case, timed in turn. judge: function from a method's result to
+    the fields of `Measurement`."""
     return measure_cases([CaseWithErrorMeasure(name, case, judge)], contenders, rounds)
 
 
 def measure_cases(
     entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on all cases `entries`, timed in turn. rounds: number of timed
-    rounds."""
+    """Measurements of all contenders on all cases `entries`, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     times = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])

@@ -89,10 +89,8 @@ def main() -> None:
 
 def _prepare_streams() -> None:
     """Opens /dev/null for standard streams that were closed before the start, as by `>&-` in a shell.
-
     Otherwise the next opened file would get the file descriptor of a closed stream, and C libraries would
-    write messages into this file.
-    """
+    write messages into this file."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))

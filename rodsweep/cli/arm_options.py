@@ -56,8 +56,7 @@ def arm_options(
 
 
 def _quantity_option(name: str, required: bool) -> Callable[[CommandFunction], CommandFunction]:
-    """Decorator that adds the option of one quantity of an arm. name: name of the quantity. required: whether
-    the option is required."""
+    """Decorator that adds the option of one quantity of an arm."""
     meaning = QUANTITIES[name].meaning
     help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")

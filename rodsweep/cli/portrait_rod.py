@@ -29,9 +29,8 @@ def rod_of_options(
 ) -> "DescribedRod":
     """The rod described by options; InputError for options outside their ranges.
 
-    parameters: parameters of the rod. quantities: quantities of an arm, poisson and segments. material: law,
-    section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
-    the arm's parameter.
+    quantities: quantities of an arm, poisson and segments. material: law, section and profile. Values of
+    omitted options are None. A parameter given in addition to an arm replaces the arm's parameter.
     """
     from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm

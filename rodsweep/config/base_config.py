@@ -89,7 +89,7 @@ class Config(StrictConfigSection):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Names of the parameters of a rod that the task uses. options: options of the task, by name."""
+        """Names of the parameters of a rod that the task uses."""
         return NONLINEAR_PARAMETERS
 
     @property

@@ -127,8 +127,8 @@ def all_keys_given(names: Iterable[str], *conditions: Schema) -> Schema:
 def with_axis_bounds(
     schema: Schema, bound: Mapping[str, float], allowed_texts: tuple[str, ...] = ()
 ) -> Schema:
-    """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
-    bounds. allowed_texts: allowed spellings of inf."""
+    """Copy of the JSON schema of an axis, with bounds on every number. allowed_texts: allowed spellings of
+    inf."""
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
         kinds = node.get("anyOf", [])
@@ -141,10 +141,7 @@ def with_axis_bounds(
 
 
 def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
-    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place.
-
-    axis: JSON schema of an axis without bounds.
-    """
+    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place."""
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
@@ -156,10 +153,7 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
     """Adds the conditions of an arm to its JSON schema `section`, in place: unit and sign of every quantity,
-    exactly one kind of cross-section, and at most one load.
-
-    axis: JSON schema of an axis without bounds.
-    """
+    exactly one kind of cross-section, and at most one load."""
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
         if "anyOf" in key:
@@ -190,8 +184,8 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
 def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
-    parameter_names: names of the parameters of the task. lists: whether the task accepts a file of points. If
-    F is needed, either the arm has a load or F is given; otherwise both are forbidden.
+    lists: whether the task accepts a file of points. If F is needed, either the arm has a load or F is given;
+    otherwise both are forbidden.
     """
     axes = tuple(name for name in parameter_names if PARAMETERS[name].default is None)
     loads = [all_keys_given([name]) for name in LOAD_KEYS]

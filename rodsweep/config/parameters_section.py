@@ -153,10 +153,8 @@ class ParametersSection(LinearAxes):
             )
 
     def _require_arm(self, arm: ArmConfig, needs_force: bool) -> None:
-        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
-
-        needs_force: whether F is a parameter of the task.
-        """
+        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines
+        points."""
         arm.require_allowed_values()
         refuse_conflicting_keys(arm, needs_force, self.given_axes)
         varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}

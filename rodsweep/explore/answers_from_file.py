@@ -98,11 +98,8 @@ class AnswersFromFile:
         return values
 
     def _matching_points(self, state: PageState, free_controls: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices, (n,), of the points of the file that have the parameters of `state`.
-
-        The parameters in `free_controls`, and the parameter along a row of a phase diagram, may have any
-        value.
-        """
+        """Indices, (n,), of the points of the file that have the parameters of `state`. The parameters in
+        `free_controls`, and the parameter along a row of a phase diagram, may have any value."""
         is_matching = np.ones(self.data["status"].size, dtype=bool)
         along_rows = {name for name in state.values if self._is_along_rows(name)}
         for name, text in state.values.items():

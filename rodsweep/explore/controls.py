@@ -121,7 +121,7 @@ class Controls:
 
     def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
-        force. axis: axis of the load."""
+        force."""
         pressure = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
         self.F_max.title = LARGEST_FORCE + pressure
 

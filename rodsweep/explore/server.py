@@ -129,8 +129,7 @@ class ExploreServer:
 
 
 def _page_query(arguments: dict[str, list[bytes]]) -> str:
-    """Query string of the page's address, without Bokeh's own arguments. arguments: values by name, from the
-    HTTP request."""
+    """Query string of the page's address, without Bokeh's own arguments."""
     from urllib.parse import urlencode
 
     values_by_name = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}

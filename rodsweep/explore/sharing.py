@@ -138,8 +138,8 @@ class ExportPanel:
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
-    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file format.
-    arm: animated line of the arm."""
+    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file
+    format."""
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)

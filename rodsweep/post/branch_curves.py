@@ -189,7 +189,7 @@ def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
 
 
 def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBranch:
-    """Branch with the given number, from 1. v: variables of the rod. parameter: followed parameter."""
+    """Branch with the given number, from 1."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
     special_before = special[v["special_point"][special] == 0]
@@ -227,7 +227,7 @@ def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
-    """Special point at index `index` of the stored list. v: variables of the rod."""
+    """Special point at index `index` of the stored list."""
     values = {field.name: v[f"special_{field.name}"][index].item() for field in fields(StoredSpecialPoint)}
     texts = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
     return StoredSpecialPoint(**values | texts)

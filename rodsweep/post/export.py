@@ -48,8 +48,7 @@ def export(view: ResultView, output: Path, request: ExportRequest) -> str:
 
 
 def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table to `stream` as CSV. separator: character between columns. units: whether headings
-    contain units."""
+    """Writes a table to `stream` as CSV. units: whether headings contain units."""
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(column.heading_with_unit if units else column.name for column in table.columns)
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):

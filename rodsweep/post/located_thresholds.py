@@ -93,8 +93,7 @@ class StoredThresholds:
         self, v: Mapping[str, np.ndarray], name: str, prefix: str, is_chosen: NDArray[np.bool_]
     ) -> None:
         """Adds the onsets and changes of stability in the mask `is_chosen`, (changes,), of the variables
-        whose names start with `prefix`. name: parameter along which the thresholds are located. v: variables
-        of the file."""
+        whose names start with `prefix`. name: parameter along which the thresholds are located."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
         fields = (name, "error", "frequency", "kind")
         positions, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)

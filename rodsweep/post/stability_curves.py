@@ -1,5 +1,5 @@
 """Distinction between curves of Hopf points that bound the region of stable straight rods, and curves of Hopf
-points of further modes."""
+points of further modes. line: parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -13,7 +13,7 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
-    row. line: parameter along a row. row: parameter constant on a row.
+    row.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()

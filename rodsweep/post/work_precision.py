@@ -33,7 +33,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
     `target` to the file `output`.
 
     measurements: table with columns case, method, group, seconds and error. Rows without a finite error are
-    left out. xlabel: label of the time axis. Raises EnvironmentIncomplete if the file cannot be written.
+    left out. Raises EnvironmentIncomplete if the file cannot be written.
     """
     columns = {name: np.array(measurements[name]) for name in ("case", "method", "group", "seconds", "error")}
     cases, methods, groups, seconds, errors = (
@@ -71,7 +71,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
 
 def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
     """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
-    of a group. groups: group of each method."""
+    of a group."""
     order = list(dict.fromkeys(groups.values()))
     curve_looks = {}
     for method, group in groups.items():

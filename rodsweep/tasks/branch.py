@@ -81,8 +81,7 @@ class BranchTask(HopfPointTask):
 def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_count: int) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
-    parameter: the followed parameter. points: length of the list of cycles. special_count: length of the list
-    of special points.
+    points: length of the list of cycles. special_count: length of the list of special points.
     """
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle_values(point, parameter) | {"branch": number} for number, point in numbered]
@@ -114,7 +113,6 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
     Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
-    curves: all branches of a rod.
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
@@ -129,7 +127,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
 
 
 def _cycle_values(point: "BranchPoint", parameter: str) -> dict[str, Any]:
-    """A cycle of a branch as variables of the file. parameter: the followed parameter."""
+    """A cycle of a branch as variables of the file."""
     attribute_names = {
         f"branch_{parameter}": "parameter_value",
         f"branch_{parameter}_error": "parameter_value_error",
@@ -149,11 +147,9 @@ SPECIAL_POINT_FIELDS = {
 def _special_point_values(
     point: "SpecialPoint", first_cycle_index: int, crossing: "Threshold | None"
 ) -> dict[str, Any]:
-    """Variables of the file for one special point.
-
-    first_cycle_index: index, among all cycles of the rod, of the first cycle of the point's branch. crossing:
-    crossing of the straight rod at the point, None if the point is not a Hopf point.
-    """
+    """Variables of the file for one special point. first_cycle_index: index, among all cycles of the rod, of
+    the first cycle of the point's branch. crossing: crossing of the straight rod at the point, None if the
+    point is not a Hopf point."""
     values = {
         "special_point": first_cycle_index + point.index_of_cycle_before + 1
         if point.index_of_cycle_before >= 0

@@ -72,7 +72,6 @@ def arms_line(
     linear material.
 
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
-    first_mesh: function that returns the initial mesh.
     """
     if config.is_uniform_and_linear:
         return ""

@@ -71,11 +71,9 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
 
 def _job_of_point(view: ResultView, number: int) -> Job:
     """Job that solves one point of the file again with SHAPE_COUNT shapes and SAMPLE_COUNT samples.
-
     Parameters, material, accuracy, harmonics and start are those of the file, for a start from a mode also
     amplitude and most_periods; a start from a neighbour becomes a start from the leading mode. number: number
-    of the point, from 1.
-    """
+    of the point, from 1."""
     stored_options = view.config["limit_cycle"]
     options = {
         "shapes": SHAPE_COUNT,

@@ -150,11 +150,7 @@ class LimitCycleTask(Task):
 
     def _stored_values_row(self, description: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
         """Row of `check` on variables that are stored only on request, with number and size of the stored
-        values.
-
-        description: description of the variables. option: name of the option of limit_cycle with the number
-        of values per point.
-        """
+        values. option: name of the option of limit_cycle with the number of values per point."""
         options = self.config.limit_cycle
         count: int = getattr(options, option)
         if not count:

@@ -64,9 +64,8 @@ class PortraitRequest:
         F: float | None = None,
         default_accuracy: float | None = None,
     ) -> Job:
-        """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
-        vary the force. default_accuracy: relative accuracy if the request has none; None for the default of
-        the task."""
+        """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
+        relative accuracy if the request has none; None for the default of the task."""
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
         given_parameters = self.rod.parameters
         values: dict[str, Any] = {
@@ -129,10 +128,7 @@ def _cycle_at_force(
 ) -> ResultView | None:
     """The limit cycle at the force F, solved from the Hopf point or, if no cycle is found, from a large
     deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
-    gave None.
-
-    solve: function (task, options, F) that solves a task, and returns None for invalid input.
-    """
+    gave None. solve: function (task, options, F) that solves a task, and returns None for invalid input."""
     result = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
         view = solve("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)

@@ -88,11 +88,9 @@ class SpectrumTask(CertifiedTask):
         return tuple((variable, table[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
-        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ.
-
-        dimensions: names of the dimensions of these points. shape: their lengths. columns: values of the
-        parameters on which the rates depend, by name, flattened to (points,).
-        """
+        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ. dimensions:
+        names of the dimensions of these points. shape: their lengths. columns: values of the parameters on
+        which the rates depend, by name, flattened to (points,)."""
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
         parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
@@ -187,10 +185,7 @@ class SpectrumTask(CertifiedTask):
 
 
 def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
-    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm.
-
-    values: parameters by name.
-    """
+    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
     except Crushed:

@@ -134,10 +134,7 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
-        """Values of a variable or a coordinate of a list, with one entry per item of the list.
-
-        table: name of the list. name: name of the variable or coordinate.
-        """
+        """Values of a variable or a coordinate of a list, with one entry per item of the list."""
         dimensions = self._tables.contents.dimensions(table)
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
@@ -214,7 +211,7 @@ class Answer:
 
 @cache
 def _statuses(task: str, names: tuple[str, ...]) -> type[StrEnum]:
-    """Enumeration of all statuses of a task. names: names of the statuses."""
+    """Enumeration of all statuses of a task."""
     new_enum: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     enum = new_enum("Status", {word: word for word in names})
     enum.__name__ = "".join(part.title() for part in task.split("_")) + "Status"

@@ -84,18 +84,15 @@ class FigureOptions(TypedDict, total=False):
 
 
 def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument whose value is not allowed.
-
-    choices: (value, allowed values) by name of the argument; the value None is always allowed.
-    """
+    """Raises InputError for the first argument whose value is not allowed. choices: (value, allowed values)
+    by name of the argument; the value None is always allowed."""
     for name, (value, allowed) in choices.items():
         if value is not None and value not in allowed:
             raise InputError(f"{name} = {value!r} is not allowed; choose {', '.join(allowed)}")
 
 
 def _require_allowed_look(look: Mapping[str, object]) -> None:
-    """Raises InputError for an unknown option of the appearance, and for a title that is not a bool. look:
-    keyword arguments of a call of `plot`."""
+    """Raises InputError for an unknown option of the appearance, and for a title that is not a bool."""
     for name in look:
         if name not in FigureOptions.__annotations__:
             raise unknown_argument_error(

@@ -72,8 +72,7 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
     """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. The
     first line says if the model does not apply to an arm, or is doubtful.
 
-    name: text of the rod. sentence: meaning of the status. message: message of the solve. If the result has
-    no sentence, the meaning of the status comes first.
+    name: text of the rod. If the result has no sentence, the meaning of the status comes first.
     """
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
@@ -155,7 +154,7 @@ def _folded_heading(printed: PrintedAnswer) -> list[str]:
 
 def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
-    number of rows. columns: columns of the list."""
+    number of rows."""
     count = len(columns[0].values)
     return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
         f", {columns[0].meaning}" if count > 1 else ""
@@ -186,12 +185,9 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
 
 
 def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
-    """Returns (columns of the main list, number of rows of the complete list).
-
-    max_rows: maximum number of rows in a column. A column consists of the cells name, unit, and values;
-    errors form a separate column. The first column that would make a line longer than LINE_WIDTH, and all
-    later columns, are omitted. Returns ([], 0) for a task without a main list.
-    """
+    """Returns (columns of the main list, number of rows of the complete list). A column consists of the cells
+    name, unit, and values; errors form a separate column. The first column that would make a line longer than
+    LINE_WIDTH, and all later columns, are omitted. Returns ([], 0) for a task without a main list."""
     digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
         return [], 0

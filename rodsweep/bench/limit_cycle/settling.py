@@ -58,7 +58,7 @@ class SettlingMethod:
         return isfinite(self.return_count)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
-        """Values of a row of `settling_table`, by name. timed: times of `run`."""
+        """Values of a row of `settling_table`, by name."""
         about_text = "about " if self.time_factor != 1 else ""
         return {
             "force": self.force,
@@ -77,7 +77,7 @@ class SettlingMethod:
 def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
-    WAITING_RACE. rounds: number of timed rounds."""
+    WAITING_RACE."""
     waiting = {
         method: _integrate_until_periodic(reference, settings)
         for method, settings in by_method(contenders).items()
@@ -96,7 +96,7 @@ def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod
 
 def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:
     """Table in Markdown, after a paragraph that explains it: returns, time and error of each method in
-    `methods`. times: times of each method."""
+    `methods`."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "
@@ -151,8 +151,7 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Time
 
 def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
-    periodic is estimated from the largest Floquet multiplier. settled_contenders: contender of each
-    integrator."""
+    periodic is estimated from the largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)

@@ -79,7 +79,7 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the race FOLLOWING_RACE for the report. rounds: number of timed rounds."""
+    """Description of the race FOLLOWING_RACE for the report."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "

@@ -121,7 +121,7 @@ def measure_following(
     reference: ReferenceCycle, contenders: Iterable[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
-    divided by the number of periods. rounds: number of timed rounds."""
+    divided by the number of periods."""
     task = IntegrationTask(reference.beam, reference.state, FOLLOWED_PERIODS * reference.period)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
@@ -133,7 +133,7 @@ def measure_following(
 
 def run_errors(reference: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
-    the first return, and steps per period. reference: reference cycle."""
+    the first return, and steps per period."""
     returns = tip_returns(reference.beam, run)
     period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
     amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)

@@ -85,8 +85,8 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the eigenproblem.
-    peers: contenders of the peers. rounds: number of timed rounds."""
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the
+    eigenproblem."""
     measurements = []
     for name, rod in ARM_RODS.items():
         judge = partial(relative_error_by_name, exact_arm_spectrum(rod))
@@ -96,7 +96,7 @@ def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measu
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds."""
+    TARGET_ERROR, after a paragraph that explains the table."""
     return (
         f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
         "that "
@@ -107,7 +107,7 @@ def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
 
 
 def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
-    """Cell of `arm_table` for one method on one arm. measurements: at all sizes."""
+    """Cell of `arm_table` for one method on one arm."""
     accurate = [m for m in measurements if m.error <= TARGET_ERROR]
     if not accurate:
         return f"no better than {min(m.error for m in measurements):.0e}"

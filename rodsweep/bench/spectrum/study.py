@@ -102,7 +102,7 @@ def cheapest_contenders(
     """For every method that reaches the error `target` on a rod: the contender with the smallest size that
     reaches this error, by name of the method.
 
-    methods: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
+    methods: contenders of all methods, by ascending size.
     """
     cheapest: dict[str, TimedMethod] = {}
     for contender in methods:
@@ -120,8 +120,7 @@ def equal_error_table(
     rounds: int,
 ) -> str:
     """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
-    `target`, and returns the table of the methods. methods: contenders of all methods, by ascending size.
-    exact: exact eigenvalues of each rod."""
+    `target`, and returns the table of the methods."""
     fit = [cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {
@@ -154,7 +153,7 @@ def equal_error_table(
 
 
 def measure_hard_rods(methods: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
-    """Measurements of the contenders `methods` on all HARD_RODS. rounds: number of timed rounds."""
+    """Measurements of the contenders `methods` on all HARD_RODS."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
@@ -174,8 +173,7 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
 
 def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `hard_rod_table` for one method on one rod: the smallest error at any size, and the shortest
-    time of a size with at most ten times this error; "failed" if all sizes failed. measurements: at all
-    sizes."""
+    time of a size with at most ten times this error; "failed" if all sizes failed."""
     min_error = min(m.error for m in measurements)
     fastest = min((m for m in measurements if m.error <= 10 * min_error), key=lambda m: m.seconds)
     return "failed" if isinf(min_error) else f"{min_error:.0e}, {1e3 * fastest.seconds:.2f} ms"

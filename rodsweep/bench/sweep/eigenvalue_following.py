@@ -66,8 +66,7 @@ def measure_followed_sweeps(
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
     then ALONE_METHOD.
 
-    folder: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
-    small grids.
+    run: see `RunCase` of `rodsweep.bench.sweep.study`.
     """
     measurements = []
     for axis in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
@@ -101,8 +100,7 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> M
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it. measurements:
-    as returned by `measure_followed_sweeps`."""
+    """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it."""
     rows = []
     for followed, unfollowed in zip(measurements[::2], measurements[1::2], strict=True):
         speedup = unfollowed.extra["microseconds_solving"] / followed.extra["microseconds_solving"]

@@ -69,8 +69,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
     """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
     new directory `directory`.
 
-    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4. kind:
-    kind of solver.
+    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4.
     """
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
@@ -81,7 +80,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
-    directory `directory`. points: number of points. kind: kind of solver."""
+    directory `directory`."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -140,7 +139,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run that
     is not to be killed fails.
 
-    command: first arguments of the measured command. fresh: whether to replace an existing result file.
+    command: first arguments of the measured command.
     """
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
@@ -188,7 +187,7 @@ def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bo
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed."""
+    was killed on purpose. Raises EnvironmentIncomplete if the command failed."""
     output, errors = process.communicate()
     match = re.search(r"points? in ([\d.]+) s on", output)
     stopped = match is None or "stopped by" in output

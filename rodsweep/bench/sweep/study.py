@@ -77,8 +77,7 @@ def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
 
 
 def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn. folder:
-    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks."""
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn."""
     rounds, cycle_rounds = (
         (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     )
@@ -99,9 +98,8 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
 def measure_instant_sweeps(
     folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
 ) -> list[Measurement]:
-    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder:
-    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks; killed
-    and resumed sweeps have one rank."""
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. ranks:
+    numbers of ranks; killed and resumed sweeps have one rank."""
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
@@ -128,7 +126,7 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost]) -> Measurement:
-    """Measurement of a sweep from its runs; times are medians, the error is nan. ranks: number of ranks."""
+    """Measurement of a sweep from its runs; times are medians, the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]

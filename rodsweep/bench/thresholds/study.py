@@ -179,7 +179,7 @@ def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
-    or HOPF. rounds: number of timed rounds."""
+    or HOPF."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
@@ -226,7 +226,7 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the tables of uniform rods for the report. rounds: number of timed rounds."""
+    """Description of the tables of uniform rods for the report."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
         f"{counted(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "

@@ -37,7 +37,7 @@ def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
 
 def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
     """Attributes of a file on a run: number of ranks, hosts, MPI library, Slurm job; points and times of each
-    rank. contributions: reports of all ranks. mpi_library: name and version of the MPI library."""
+    rank."""
     hosts = {contribution.host for contribution in contributions}
     ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
     points, busy_seconds, idle_seconds = zip(

@@ -118,16 +118,12 @@ class _RankRun:
         )
 
     def _lacks_sweep_wide_variables(self, missing: int) -> bool:
-        """Whether the file lacks only the variables that depend on all points; called on the first rank.
-
-        missing: number of missing points.
-        """
+        """Whether the file lacks only the variables that depend on all points; called on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
     def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
-        points are still missing, with their work items. count: number of points to be solved in this run.
-        contributions: reports of all ranks."""
+        points are still missing, with their work items. count: number of points to be solved in this run."""
         self.seconds = time.monotonic() - self.clock_at_start
         if count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
@@ -212,9 +208,8 @@ class _RankRun:
         solved: dict[str, int],
         exceptions: int,
     ) -> int:
-        """Completes the result file, prints how the run ended, and returns the exit status. count: number of
-        points to be solved. contributions: work of each rank on points. pending, solved: as from `solve_all`.
-        exceptions: number of unforeseen exceptions on all ranks."""
+        """Completes the result file, prints how the run ended, and returns the exit status. pending, solved:
+        as from `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
         sweep_wide = self.sweep_wide
         missing_points = self.store.missing()

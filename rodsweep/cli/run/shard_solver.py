@@ -73,9 +73,8 @@ class ShardSolver:
     ) -> RunContribution:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        items, count: returned by `items_to_solve`. missing: ranges of the flat indices of all missing points.
-        prepare: function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be
-        written.
+        items, count: returned by `items_to_solve`. prepare: function called before the first solve. Raises
+        EnvironmentIncomplete if a journal cannot be written.
         """
         reasons = FailureReasons(self.point_text)
         solver = self.solver
@@ -112,8 +111,7 @@ class ShardSolver:
     def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a group) to its results. missing: flat
-        indices of all missing points. directory: journal directory."""
+        """Function from the number of a work item (a point, a chain or a group) to its results."""
         solver = self.solver
         if solver.grouped:
             return GroupSolver(*solver.grouped, solver.solve, missing)

@@ -43,8 +43,8 @@ class SweepWideComputation:
         note: ItemExceptionNote,
         stop: StopRequest,
     ):
-        """solver: computes the variables. output: the result file. fingerprint: digest of config and points.
-        note: function called with every unforeseen exception; the result of the work item is then empty."""
+        """solver: computes the variables. note: function called with every unforeseen exception; the result
+        of the work item is then empty."""
         self.ranks = ranks
         self.solver = solver
         self.output = output
@@ -73,8 +73,7 @@ class SweepWideComputation:
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
         """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
-        rank. prepare: function called before the first solve. title: text of the progress display; None for
-        no display."""
+        rank. title: text of the progress display; None for no display."""
         results: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
@@ -110,7 +109,7 @@ class SweepWideComputation:
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again. items: the current work items."""
+        these points again."""
         item_numbers = self.ranks.call_on_first_rank(lambda: items.items_to_solve(self.results))
         for starts in self.ranks.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
             self.solver.add_initial_data(starts)
@@ -135,7 +134,7 @@ class SweepWideComputation:
 
     def result(self, items: WorkItems | None) -> SweepWideResult | None:
         """The variables that depend on all points, and the points that change; called on the first rank. None
-        if the run was stopped before these variables were complete. items: the last work items."""
+        if the run was stopped before these variables were complete."""
         if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):

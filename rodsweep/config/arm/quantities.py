@@ -36,8 +36,7 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
-    """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
-    quantity. span: the range as a mapping."""
+    """Remark for error messages if only start or only stop of a range has a unit, else ""."""
     ends = [end for end in RANGE_ENDS if end in span]
     unitless = [end for end in ends if not isinstance(span[end], str)]
     unit = UNITS[name][0]
@@ -47,8 +46,7 @@ def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
 
 
 def _si_number(name: str, value: Any) -> float:
-    """Number in SI units from `value`, a number or a text with a unit; ValueError for other values. name:
-    name of the quantity."""
+    """Number in SI units from `value`, a number or a text with a unit; ValueError for other values."""
     if not isinstance(value, str):
         return as_float(value)
     try:

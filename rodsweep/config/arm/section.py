@@ -199,7 +199,7 @@ class ArmConfig(StrictConfigSection):
         return () if self.tip_radius is None else ("taper",)
 
     def grid_point_count(self, given_combinations: int) -> int:
-        """Number of points of a grid. given_combinations: number of combinations of the given parameters."""
+        """Number of points of a grid."""
         return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * given_combinations
 
     @property

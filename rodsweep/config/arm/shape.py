@@ -68,8 +68,7 @@ def build_of(arm: "ArmConfig") -> Build:
 
 
 def builds_of(arm: "ArmConfig") -> Iterator[Build]:
-    """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
-    section."""
+    """Yields the constitutive law and profile of every arm to which the rod model applies."""
     for values in arm.values_of_arms():
         with suppress(ArmOutsideModel):
             yield arm.arm_of(values).build
@@ -86,10 +85,7 @@ def tapers_of(arm: "ArmConfig") -> set[float]:
 
 def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> None:
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
-    segments.
-
-    given_parameters: parameters given in addition to the arm, by name.
-    """
+    segments."""
     if arm.segments is not None and "length" in arm.varying_quantities:
         raise ValueError(
             "parameters.arm.length has several values, but the segments fix the length; leave it out"

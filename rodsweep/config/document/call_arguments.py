@@ -49,8 +49,7 @@ def require_arguments_of_signature(
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
-    allowed: signature of the function. example: correct call, for the message. values, named: positional and
-    keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
+    values, named: positional and keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
     """
     parameters = list(allowed.parameters.values())
     positional = [p.name for p in parameters if p.kind is Parameter.POSITIONAL_OR_KEYWORD]

@@ -102,10 +102,7 @@ def _with_axes(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm.
-
-    in_diagram: whether the task is phase_diagram.
-    """
+    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm."""
     arm = ArmConfig.model_validate(parameters["arm"])
     dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
     return {

@@ -68,8 +68,7 @@ class BranchPicture:
 
     def show(self, answer: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of the answer `answer`, with separately solved cycles as dots; the title is the
-        meaning of the status if the task did not succeed, else the source of the answer. load: horizontal
-        axis. length: vertical axis."""
+        meaning of the status if the task did not succeed, else the source of the answer."""
         pieces = answer["pieces"]
         self.branch_source.data = {
             "F": [forces * load.factor for forces, _, _ in pieces],

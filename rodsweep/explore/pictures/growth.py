@@ -61,7 +61,7 @@ class GrowthPicture:
         self.card.set_title("")
 
     def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates of the answer `answer`. load: horizontal axis."""
+        """Draws the growth rates of the answer `answer`."""
         rates = answer["growth_rate"]
         names = ("first", "second", "third")
         F = answer["F"] * load.factor
@@ -79,7 +79,7 @@ class GrowthPicture:
 
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
-        title. load: horizontal axis."""
+        title."""
         frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
         rows = [
             (F * load.factor, *THRESHOLD_LOOKS[kind], frequency)

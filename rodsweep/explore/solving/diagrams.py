@@ -94,8 +94,7 @@ def has_uniform_linear_rods(state: PageState) -> bool:
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
-    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the current value is
-    finite and positive."""
+    over TAPER_RANGE for the taper. Raises InputError unless the current value is finite and positive."""
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
     value = float_or_text(state.rod[state.second])
@@ -123,7 +122,7 @@ def _cached_rod_diagram(
     second_parameter: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
     """Diagram up to the load `F_max` on the values `rows` of the parameter `second_parameter`; callers must
-    not change it. keywords: further keywords of the sweep."""
+    not change it."""
     axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(rows)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
     return diagram_from_phase_result(

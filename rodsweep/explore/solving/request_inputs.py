@@ -44,8 +44,8 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
 def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None) -> PageState:
     """State for a request of the kind `kind`: `state`, except for the request "cycles" while the rod of the
     page lies in the drawn diagram. This state is `diagram_state`, so that the curves of cycles are added to
-    the drawn diagram. state: state of the page. diagram_state: state around which the drawn diagram was
-    solved; None if there is no diagram."""
+    the drawn diagram. diagram_state: state around which the drawn diagram was solved; None if there is no
+    diagram."""
     if kind != "cycles" or diagram_state is None or state.tab != "rod":
         return state
     if inputs_of_request(SolveRequest("diagram", state)) != inputs_of_request(

@@ -139,8 +139,7 @@ def branch_answer(state: PageState) -> AnswerVariables:
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
-    rod: parameters by name."""
+    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2."""
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 

@@ -88,7 +88,7 @@ class SolverProcess:
         self, key: RequestKey, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
         """Queues a request. An older request with the same key is removed from the queue, or cancelled if it
-        is being solved. on_reply: callback for the reply. progress: callback for progress messages."""
+        is being solved."""
         self.waiting.pop(key, None)
         self.waiting[key] = request, on_reply, progress
         if self.current_request is None:
@@ -219,8 +219,7 @@ class Solvers:
     def ask(
         self, session: str, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
-        """Queues a request of a session. on_reply: callback for the reply. progress: callback for progress
-        messages."""
+        """Queues a request of a session."""
         self.groups[PROCESS_GROUPS[request.kind]].ask((session, request.kind), request, on_reply, progress)
 
     def cancel(self, session: str, kind: str) -> None:

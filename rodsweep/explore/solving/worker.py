@@ -111,7 +111,7 @@ def answer_requests(
     connection: "Connection[Reply, SolveRequest]", life: "Connection[Any, Any]", niceness: int
 ) -> None:
     """Answers the requests from the pipe `connection` until the pipe closes. life: pipe that closes when the
-    page's process ends. niceness: Unix niceness."""
+    page's process ends."""
     os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
     Thread(target=end_with_page, args=(life,), daemon=True).start()

@@ -127,8 +127,7 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
 
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
-    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles.
-    drawn_count: number of drawn rods."""
+    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles."""
     hidden = sum(rod.hidden_count for rod in rods)
     hidden_clause = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (
         hidden > 0
@@ -181,11 +180,8 @@ def _compare_prediction(
     axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter: str
 ) -> Line2D:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
-    amplitude coefficient |a|; returns the legend entry of the prediction.
-
-    Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours:
-    colours of the branches, in order. parameter: the parameter that varies along the branches.
-    """
+    amplitude coefficient |a|; returns the legend entry of the prediction. Each branch is drawn up to its
+    first fold, beyond which the prediction is not valid."""
     nearest = []
     distances = []
     for number, curve in enumerate(curves):

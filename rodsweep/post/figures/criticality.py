@@ -114,8 +114,8 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
 
 
 def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
-    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
-    whether the maps are stacked. Raises InputError if nothing can be drawn."""
+    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
+    InputError if nothing can be drawn."""
     criticality = view.by_point("criticality")[points.point_indices]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
@@ -143,11 +143,8 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
 
 
 def _class_indices(criticality: Array) -> Array:
-    """Index in CRITICALITY_CLASSES for each rod, (ny, nx).
-
-    criticality: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf
-    point.
-    """
+    """Index in CRITICALITY_CLASSES for each rod, (ny, nx). criticality: signs of Re c at the Hopf points of
+    the rods, (ny, nx, crossings); NaN for a missing Hopf point."""
     first_criticality = criticality[..., 0]
     has_later_subcritical = (criticality[..., 1:] == 1).any(axis=-1)
     # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and the index 0.

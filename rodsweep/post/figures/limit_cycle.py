@@ -83,11 +83,8 @@ def chosen_figure_kind(request: FigureRequest) -> str:
 
 
 def _default_figure_kind(request: FigureRequest) -> str:
-    """Default kind of figure.
-
-    An animation for an output file with the suffix of an animation; shapes or transients for a few points;
-    maps for many lines; else amplitudes.
-    """
+    """Default kind of figure. An animation for an output file with the suffix of an animation; shapes or
+    transients for a few points; maps for many lines; else amplitudes."""
     first_view, *other_views = request.views
     if request.output.suffix in FILM_SUFFIXES:
         return "animation"

@@ -65,7 +65,7 @@ def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
 
 def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:
     """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
-    height. point: index of the point. fields: (field, label) of the two fields."""
+    height. fields: (field, label) of the two fields."""
     u = view.variables["u"]
     twins = panel, panel.twinx()
     limits = []

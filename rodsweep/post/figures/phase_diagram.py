@@ -121,10 +121,8 @@ def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
 
 
 def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]:
-    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry.
-
-    ratio: force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,).
-    """
+    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry. ratio:
+    force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,)."""
     if not ratio.min() < 1 < ratio.max():
         return []
     axes.contour(x, y, ratio, levels=[1.0], colors="0.4", linewidths=1.2)
@@ -164,10 +162,7 @@ def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figur
 
 def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file and by the crushing force.
-
-    line, row: parameters along a row, and constant on a row.
-    """
+    curves of the file and by the crushing force. line, row: parameters along a row, and constant on a row."""
     plane = map_.plane
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)

@@ -50,7 +50,7 @@ def shared_parameters(view: ResultView) -> dict[str, float]:
 
 
 def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
-    """Labels the horizontal axis with the numbers of the points of a list, from 1. count: number of points.
+    """Labels the horizontal axis with the numbers of the points of a list, from 1.
 
     For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
     values of these quantities.

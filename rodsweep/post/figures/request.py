@@ -122,8 +122,7 @@ class FigureRequest:
         return self.views[0]
 
     def refuse_choices(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
-        values of --what that the task has."""
+        """Raises InputError for options that the task of `view` does not have, and for several files."""
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
@@ -132,8 +131,7 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for chosen points, and for a value of --what that is not in `kinds`. view: file
-        whose task does not have these options."""
+        """Raises InputError for chosen points, and for a value of --what that is not in `kinds`."""
         if self.points:
             raise InputError(
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"

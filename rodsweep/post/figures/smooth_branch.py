@@ -77,11 +77,9 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
 
 def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENT_COUNT segments
-    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,).
-
-    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
-    therefore give the curve a square-root shape.
-    """
+    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a Hopf point
+    the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point, therefore give the
+    curve a square-root shape."""
     cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first = len(cycles_before) if cycles[0, 1] == 0 else 0
@@ -151,10 +149,8 @@ def _jump_polynomial(x: Array, values: Array) -> Polynomial:
 def _cumulative_chord_lengths(
     points: Array, extent: Array, weights: Array = CHORD_WEIGHTS, power: float = 1.0
 ) -> Array:
-    """Sum of the chord lengths to the power `power`, from the first point to each point, (n,).
-
-    points: points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,).
-    """
+    """Sum of the chord lengths to the power `power`, from the first point to each point, (n,). points:
+    points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,)."""
     chords = np.linalg.norm(np.diff(points / extent * weights, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 

@@ -192,8 +192,7 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 
 def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
-    """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. is_narrow:
-    whether the panels are stacked."""
+    """Figure with a panel of roots for each view, and one legend."""
     columns = 1 if is_narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8

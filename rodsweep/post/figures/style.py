@@ -114,8 +114,8 @@ def number_in_tex(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with their symbols and values, as one line of TeX. parameters: values by name. digits:
-    largest number of significant digits."""
+    """Parameters with their symbols and values, as one line of TeX. digits: largest number of significant
+    digits."""
     return ", ".join(
         f"${SYMBOLS[name]} = {number_in_tex(value, digits)}$" for name, value in parameters.items()
     )
@@ -154,8 +154,7 @@ def require_content(view: ResultView, available: object, noun: str) -> None:
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws one legend, with up to `columns` columns, below the panels of the figure. handles: legend
-    entries."""
+    """Draws one legend, with up to `columns` columns, below the panels of the figure."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
@@ -212,8 +211,7 @@ def draw_coloured_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a colour bar. edges: edges of the cells along x and along y. values: (ny,
-    nx); a cell with NaN has no colour. label: label of the colour bar. colours: name of a colour map.
+    """Draws coloured cells with a colour bar. values: (ny, nx); a cell with NaN has no colour.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """

@@ -100,8 +100,8 @@ def searched_range_clause(*views: ResultView) -> str:
 
 def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
-    `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
-    Raises InputError if nothing can be drawn."""
+    `names`. omissions: clause on infinite values of the parameters. Raises InputError if nothing can be
+    drawn."""
     points = point_map(view)
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False

@@ -61,8 +61,7 @@ def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> s
 
 
 def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **contents: Any) -> str:
-    """HTML text made from a template of this package. template: file name. page_pictures: all pictures of the
-    page. contents: variables of the template."""
+    """HTML text made from a template of this package. contents: variables of the template."""
     environment = Environment(
         loader=PackageLoader(__name__),
         autoescape=True,

@@ -106,10 +106,7 @@ def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSerie
 
 def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
-    names: labels of the two axes.
-
-    An invisible scatter plot contains the points between which filled contours are interpolated.
-    """
+    An invisible scatter plot contains the points between which filled contours are interpolated."""
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     pixels = dots.get_offset_transform().transform(data)
     texts = _curve_point_texts(names, data, _series_name(dots.get_label()))
@@ -129,7 +126,7 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
 
 def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
-    colour, and coordinates. names: labels of the two axes. meanings: legend entries by colour."""
+    colour, and coordinates."""
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -157,8 +154,7 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
 
 
 def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
-    labels of the two axes. meanings: legend entries by colour."""
+    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -218,14 +214,13 @@ def _series_name(label: object) -> str:
 
 
 def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
-    """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
-    data: points in data coordinates, (n, 2)."""
+    """Text for each point of a curve: legend entry `series` and both coordinates. data: points in data
+    coordinates, (n, 2)."""
     return ["\n".join(filter(None, (series, _coordinates_text(names, point)))) for point in data]
 
 
 def _coordinates_text(names: tuple[str, str], point: Array) -> str:
-    """Coordinates of a point as text, one line each. names: labels of the axes. point: point in data
-    coordinates, (2,)."""
+    """Coordinates of a point as text, one line each. point: point in data coordinates, (2,)."""
     return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, point, strict=True))
 
 

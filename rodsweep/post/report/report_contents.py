@@ -57,7 +57,7 @@ class ReportContents:
 
 
 def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
-    """Contents of the page about the result `view`. pictures: figures of this result."""
+    """Contents of the page about the result `view`."""
     a = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)

@@ -32,7 +32,7 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
 
 def cycle_caveat(view: ResultView) -> str:
     """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
-    empty text. view: result with one limit cycle."""
+    empty text."""
     validity = view.variables.get("model_applies")
     if validity is None or (validity != Validity.does_not_apply).any():
         return ""

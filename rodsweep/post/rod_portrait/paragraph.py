@@ -184,11 +184,9 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on the coexistence of a stable cycle and the stable straight rod.
-
-    ranges: loads of coexistence as text; empty if no such load was found. is_decided: whether the stability
-    of all states is known. kind: "rod" or "arm".
-    """
+    """Sentence on the coexistence of a stable cycle and the stable straight rod. ranges: loads of coexistence
+    as text; empty if no such load was found. is_decided: whether the stability of all states is known. kind:
+    "rod" or "arm"."""
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
     if is_decided:
@@ -197,8 +195,7 @@ def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
-    branches of the rod."""
+    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
     load_texts = {
         rounded_text(factor * special.at, factor * special.error): None
         for curve in curves

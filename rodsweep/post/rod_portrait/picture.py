@@ -86,8 +86,7 @@ def _has_branches(results: RodResults) -> bool:
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
-    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait.
-    panels: these three panels."""
+    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
@@ -118,8 +117,7 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
     """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. Without
-    branches, the upper panel states the reason, and the list is empty. upper: panel of the largest y. lower:
-    panel of the period."""
+    branches, the upper panel states the reason, and the list is empty."""
     rod = results.branches
     if rod is None or not _has_branches(results):
         lower.set_axis_off()

@@ -100,8 +100,8 @@ ROD_UNITS = PortraitUnits(
 
 
 def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits:
-    """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
-    the prefix of the load is chosen."""
+    """Units of the portrait of a rod or an arm. largest: largest F, for which the prefix of the load is
+    chosen."""
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))

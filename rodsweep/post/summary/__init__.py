@@ -134,7 +134,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
 
 def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. computed: mask of the computed
-    points, of the shape of the points. summary: lines of the task."""
+    points, of the shape of the points."""
     if not view.quantities or not computed.any():
         return [*summary.answer]
     lines = [*arm_answer(view, computed), *summary.arm_sentences, *arm_lines(view, computed)]
@@ -143,7 +143,7 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
 
 def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
-    missing: number of missing points. noun: noun for a point."""
+    missing: number of missing points."""
     lines = []
     if missing and (shard := view.attributes.get("shard")):
         lines.append(

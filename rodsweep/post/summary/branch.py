@@ -1,4 +1,5 @@
-"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states."""
+"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states. parameter:
+name of the followed parameter."""
 
 from collections.abc import Iterator, Sequence
 
@@ -108,7 +109,7 @@ def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
 
 
 def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterator[str]:
-    """Yields one line for each special point between the ends of a branch. parameter: followed parameter."""
+    """Yields one line for each special point between the ends of a branch."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
             continue
@@ -123,7 +124,7 @@ def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterato
 
 
 def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
-    """Phrase for the start and the end of a branch: "from ... to ...". parameter: followed parameter."""
+    """Phrase for the start and the end of a branch: "from ... to ..."."""
     first = curve.special[0]
     last = curve.special[-1]
     start = f"from the Hopf point at {parameter} = {number_with_error(first.at, first.error)}"
@@ -155,8 +156,7 @@ def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
 
 def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
-    then a line for each branch that stopped because no further cycle was found. parameter: followed
-    parameter."""
+    then a line for each branch that stopped because no further cycle was found."""
     points: dict[str, list[tuple[float, float]]] = {
         word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
     }
@@ -191,8 +191,7 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
 
 
 def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
-    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
-    parameter: followed parameter."""
+    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
         unknown = counted(len(rods) - len(complete), "rod")

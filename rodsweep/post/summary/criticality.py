@@ -1,4 +1,5 @@
-"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors. v: variables of a
+single rod, by name."""
 
 from collections.abc import Iterator, Mapping
 
@@ -74,7 +75,7 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields one line for each Hopf point of the only rod in a file. v: variables of this rod."""
+    """Yields one line for each Hopf point of the only rod in a file."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded_text(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -89,8 +90,8 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf point.
-    v: variables of this rod."""
+    """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf
+    point."""
     indices = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in indices)
     rows = []
@@ -103,7 +104,7 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
-    smaller, and whether the cycles are stable. v: variables of this rod."""
+    smaller, and whether the cycles are stable."""
     sign = int(v["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
@@ -151,8 +152,7 @@ def _count_text(signs: np.ndarray) -> str:
 
 
 def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
-    """Line on the searched range of F, and on the completeness of the list of Hopf points. computed: mask of
-    the computed points."""
+    """Line on the searched range of F, and on the completeness of the list of Hopf points."""
     v = view.variables
     certified = int(v["certified"][computed].sum())
     rods = int(computed.sum())

@@ -1,4 +1,5 @@
-"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points."""
+"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points. line: parameter
+that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,7 +48,7 @@ END_SUFFIXES = ("start", "end")
 
 def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
-    cycles. line: parameter that varies along a row. row: parameter that is constant on a row."""
+    cycles."""
     v = view.variables
     lines = fold_lines(view, line, row)
     if "curve_criticality" in v:
@@ -60,8 +61,7 @@ def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line:
-    parameter that varies along a row. row: parameter that is constant on a row."""
+    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends."""
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
@@ -85,11 +85,9 @@ def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def _extremum_clause(view: ResultView, line: str, row: str, points: NDArray[np.intp]) -> str:
     """Clause on an extremum of the row parameter near which a curve ends; empty for all other ends. points:
-    indices of the points of the curve, from this end on, (n,).
-
-    At an extremum two branches of cycles exchange their parts, or a closed branch shrinks to a cycle; there
-    cycles cannot be computed as functions of the row parameter and of a position along a branch.
-    """
+    indices of the points of the curve, from this end on, (n,). At an extremum two branches of cycles exchange
+    their parts, or a closed branch shrinks to a cycle; there cycles cannot be computed as functions of the
+    row parameter and of a position along a branch."""
     v = view.variables
     side = "start" if points[0] <= points[-1] else "end"
     if len(points) < 2 or v[f"cycle_curve_{side}"][points[0]] != list(CYCLE_CURVE_ENDS).index("not_followed"):
@@ -128,7 +126,7 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
 
 def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
-    list was full. line: parameter that varies along a row. row: parameter that is constant on a row."""
+    list was full."""
     v = view.variables
     lines = []
     for end in ("not_followed", "list_full"):
@@ -144,15 +142,14 @@ def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 
 def _on_no_curve_clause(count: int, noun: str) -> str:
-    """Clause on the number `count` of points located on rows that lie on no curve. noun: noun for a point."""
+    """Clause on the number `count` of points located on rows that lie on no curve."""
     return (
         f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else f"every {noun} is on a curve"
     )
 
 
 def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
-    line: parameter that varies along a row. row: parameter that is constant on a row."""
+    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
     v = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
@@ -169,7 +166,7 @@ def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
-    variables, "fold" or "bautin". names: parameters."""
+    variables, "fold" or "bautin"."""
     v = view.variables
     return ", ".join(
         f"{name} = {number_with_error(v[f'{prefix}_{name}'][i], v[f'{prefix}_{name}_error'][i])}"
@@ -197,8 +194,8 @@ def criticality_lines(view: ResultView) -> list[str]:
 
 
 def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
-    line: parameter that varies along a row. row: parameter that is constant on a row."""
+    """Lines about generalised Hopf points, and on the number of changes of criticality that were not
+    located."""
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "

@@ -1,4 +1,5 @@
-"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability."""
+"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability. v: variables of
+the file, by name."""
 
 from collections.abc import Callable, Mapping
 
@@ -150,7 +151,7 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
-    is stable but the motion ended in no stable state. computed: mask of the computed points."""
+    is stable but the motion ended in no stable state."""
     v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
@@ -184,7 +185,7 @@ def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
 
 def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
-    h1 of the cycles. v: variables of the file. is_cycle: mask of the points with a cycle."""
+    h1 of the cycles."""
     tips = (
         f"{label} {known_range_text(v, f'tip_{name}', is_cycle)} {unit}"
         for label, name, unit in (
@@ -207,8 +208,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]
 
 def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
-    no frequency of a leading mode is known. v: variables of the file. is_cycle: mask of the points with a
-    cycle."""
+    no frequency of a leading mode is known."""
     oscillates = is_cycle & (np.abs(v["linear_frequency"]) > 0)
     steady = is_cycle & (v["linear_frequency"] == 0)
     clause = ""
@@ -222,8 +222,7 @@ def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray
 
 
 def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
-    """Line on the largest errors of the cycles. v: variables of the file. is_cycle: mask of the points with a
-    cycle."""
+    """Line on the largest errors of the cycles."""
     names = {
         "period": "period_error",
         "largest y of the tip": "amplitude_error",

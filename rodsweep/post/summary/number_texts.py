@@ -29,8 +29,7 @@ NONE_TEXT = "none"
 def span_text(values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = RANGE_DIGITS) -> str:
     """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits. max_digits: largest
-    number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)

@@ -1,4 +1,5 @@
-"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows."""
+"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows. line:
+parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -76,7 +77,7 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, line: str) -> list
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
-    computed: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
+    computed: mask of the computed rows, of the shape of the rows.
     """
     if not has_standard_rods(view.config):
         return []
@@ -102,7 +103,7 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
 
 def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
-    computed: mask of the computed rows, (...,). line: parameter along a row."""
+    computed: mask of the computed rows, (...,)."""
     start = view.variables["class"][computed][:, 0]
     texts = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
     if texts == [f"monotone on {len(start)}"]:
@@ -113,8 +114,7 @@ def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[s
 
 def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
-    undecided ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a
-    row."""
+    undecided ranges, rows with and without flutter."""
     v = view.variables
     row_values = view.point_columns[row].reshape(computed.shape)
     lines = row_start_lines(view, computed, line)

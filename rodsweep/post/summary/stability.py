@@ -59,7 +59,7 @@ def stability_lines(
 
 def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter: str) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
-    thresholds by index of the line. names: description of each line. parameter: parameter along the lines."""
+    thresholds by index of the line."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]

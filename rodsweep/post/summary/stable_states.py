@@ -1,4 +1,5 @@
-"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both."""
+"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both. line:
+parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -30,8 +31,7 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 
 def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
-    points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter
-    constant on a row."""
+    points of cycles. computed: mask of the computed rows, (...,)."""
     v = view.variables
     row_values = view.point_columns[row].reshape(computed.shape)
     states = v["stable_states"]
@@ -72,10 +72,8 @@ def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> 
 def _both_between_grid_points(view: ResultView, line: str) -> np.ndarray:
     """Mask of rows, (...,), with two neighbouring grid points between which straight rod and cycle are both
     stable though not at these points: one stable state at each, and between them first the beginning of one
-    and then the end of the other. line: parameter along a row.
-
-    Only intervals with one change of the straight rod and one change of cycles are decided.
-    """
+    and then the end of the other. Only intervals with one change of the straight rod and one change of cycles
+    are decided."""
     v = view.variables
     x = v[line]
     straight, cycle = (flag_number(state, STABLE_STATES) for state in ("straight", "cycle"))

@@ -179,7 +179,6 @@ def unstored_clause(count: int) -> str:
 
 def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]:
     """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
-    noun: noun for a point.
 
     computed: mask of the computed points, of the shape of the points.
     """
@@ -220,6 +219,6 @@ def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 
 def count_range(values: np.ndarray, noun: str) -> str:
-    """Range of the integer counts `values`, (n,), as text. noun: noun for the counted items."""
+    """Range of the integer counts `values`, (n,), as text."""
     text = span_text(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

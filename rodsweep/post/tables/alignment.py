@@ -59,7 +59,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 def column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`. heading_lines: texts of the heading lines."""
+    `point_aligned`."""
     aligned_cells = point_aligned(cells)
     width = max(map(len, (*heading_lines, *aligned_cells)))
     return [f"{cell:{width}}" for cell in (*heading_lines, *aligned_cells)]

@@ -142,7 +142,7 @@ def merged_columns(
     """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
     special points, and the kind of special point.
 
-    cycle_rows, special_rows: as from `merged_rows`, (rows,). parameter: followed parameter.
+    cycle_rows, special_rows: as from `merged_rows`, (rows,).
     """
     by_name = {column.name: column for column in special_columns}
     result = []
@@ -158,8 +158,7 @@ def merged_columns(
 
 
 def _special_point_variable(cycle_variable: str, parameter: str) -> str:
-    """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles.
-    parameter: followed parameter."""
+    """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles."""
     if cycle_variable == f"branch_{parameter}":
         return "special_at"
     if parameter == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
@@ -168,6 +167,5 @@ def _special_point_variable(cycle_variable: str, parameter: str) -> str:
 
 
 def _values_at_items(view: ResultView, name: str, count: int, rows: Rows) -> NDArray:
-    """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
-    of the items."""
+    """Values of the variable `name` at the items of a list, (rows,). rows: indices of the items."""
     return view.variables[name].reshape(count, -1)[rows]

@@ -105,10 +105,8 @@ def refuse_changed(file: h5py.File) -> None:
 
 
 def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
-    """Yields (name, variable) of an open file, without the user's variables.
-
-    Raises ValueError for links and for data stored in another file.
-    """
+    """Yields (name, variable) of an open file, without the user's variables. Raises ValueError for links and
+    for data stored in another file."""
     offsets = set()
     for name in file:
         name_text = printable_name(name, 40)
@@ -131,10 +129,8 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     """Names of a variable's dimensions, read from its attributes. The only dimension of a coordinate has the
-    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged.
-
-    HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
-    """
+    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged. HDF5's own
+    functions for dimensions are not used, because they crash on damaged attributes."""
     attributes = data.attrs
     changed = ValueError(
         f"the dimensions of {printable_name(name, 40)} were changed after rodsweep wrote them"

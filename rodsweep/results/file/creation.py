@@ -141,10 +141,8 @@ def is_axis(variable: Variable) -> bool:
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
-    """Writes the coordinate `values`, (n,), of the dimension `name`.
-
-    variable: description of a dimension that is not in DIMENSIONS.
-    """
+    """Writes the coordinate `values`, (n,), of the dimension `name`. variable: description of a dimension
+    that is not in DIMENSIONS."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
     data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)

@@ -96,10 +96,8 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
 
 
 def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, int]:
-    """Replaces the snapshot by a copy of the file at `path` with the points of its journals.
-
-    Returns (number of computed points, number of all points).
-    """
+    """Replaces the snapshot by a copy of the file at `path` with the points of its journals. Returns (number
+    of computed points, number of all points)."""
     header = read_header(path)
     with disk_refusals(replacement.path), replacement.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)

@@ -146,8 +146,7 @@ def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Itera
     """Yields the values of each parameter on a grid over an arm's quantities, shaped to broadcast over the
     grid.
 
-    variables: variables of the file by name. A parameter has the shape of the grid or, if it is an axis,
-    varies along this axis only.
+    A parameter has the shape of the grid or, if it is an axis, varies along this axis only.
     """
     for name in layout.parameters:
         shape = [-1 if axis == name else 1 for axis in layout.arm_axes]

@@ -101,7 +101,7 @@ def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
 def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
 
-    lines: lines of the new failures. attributes: attributes of the file, with the reasons of earlier runs.
+    attributes: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
     return joined_failure_reasons(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
@@ -120,8 +120,7 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file that describe the runs that computed its points. attribute_sets: attributes
-    of each source."""
+    """Attributes of a merged file that describe the runs that computed its points."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],

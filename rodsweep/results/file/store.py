@@ -49,10 +49,8 @@ class ResultFileWriter:
 
     def __init__(self, path: Path, plan: FilePlan, replaces: bool = False, extends: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
-
         replaces: whether to replace an existing result file of any plan. extends: whether to extend the file
-        of a smaller config to the plan, reusing its points where possible.
-        """
+        of a smaller config to the plan, reusing its points where possible."""
         self.path = path
         self.plan = plan
         self.notes: list[str] = []
@@ -132,7 +130,7 @@ class ResultFileWriter:
         return copy
 
     def _set_aside(self, paths: Sequence[Path], noun: str) -> None:
-        """Moves `paths` out of the journal directory, and notes the new place. noun: noun for the files."""
+        """Moves `paths` out of the journal directory, and notes the new place."""
         if paths:
             self.notes.append(f"{noun} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
@@ -199,10 +197,7 @@ class ResultFileWriter:
         additions: FinalVariables | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
-        the journals.
-
-        additions: variables that end the file; None if points are missing.
-        """
+        the journals. additions: variables that end the file; None if points are missing."""
         with disk_refusals(self.path, self._kept_points_clause):
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first_block = next(blocks, None)

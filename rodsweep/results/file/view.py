@@ -122,9 +122,7 @@ class ResultView:
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
         """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
-
-        Variables without these axes are unchanged.
-        """
+        Variables without these axes are unchanged."""
         values = self.variables[name]
         if name in self.arm_axes:
             axes_shape = [-1 if axis == name else 1 for axis in self.arm_axes]

@@ -108,7 +108,7 @@ def _si_meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
-    """SI unit in which a variable is also stored, or NO_UNIT. is_force: whether the load is a force."""
+    """SI unit in which a variable is also stored, or NO_UNIT."""
     return si_unit_of(variable, is_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
@@ -127,7 +127,7 @@ def si_variable(
     variable: Variable, values: Array, quantities: Mapping[str, Array], is_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the arm's quantities by name, () or (n,) each. is_force: whether the load is a force."""
+    quantities: the arm's quantities by name, () or (n,) each."""
     si = si_unit_of(variable, is_force)
     converted = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
     return converted, values * si.scale(quantities)
@@ -202,8 +202,7 @@ def si_values(
     """Values of the SI variables, by name, of one point or of n points.
 
     record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
-    (n,). quantities: the arm's quantities by name, () or (points,) each. is_force: whether the load is a
-    force.
+    (n,). quantities: the arm's quantities by name, () or (points,) each.
     """
     values = {}
     for variable in layout.variables:

@@ -118,7 +118,7 @@ HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
+    """Variables of the Hopf points of the straight rod on lines of points."""
     place_clause = "at the Hopf point"
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
     return (

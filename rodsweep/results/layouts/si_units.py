@@ -51,7 +51,6 @@ FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOA
 
 
 def load_kind_of(arm: Mapping[str, Any]) -> str:
-    """Kind of the loads in the results of an arm: "force" or "pressure". arm: section `parameters.arm` of a
-    resolved config."""
+    """Kind of the loads in the results of an arm: "force" or "pressure"."""
     load = next((LOAD_OF_RATIO.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
     return str(arm.get("load_kind") or load)

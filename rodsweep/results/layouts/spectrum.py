@@ -26,8 +26,8 @@ from .variables import (
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
-    """Variables for the real and the imaginary part of a complex field of every mode, along the rod. name:
-    name of the field. units, long_name: unit and long name of the field."""
+    """Variables for the real and the imaginary part of a complex field of every mode, along the rod. units,
+    long_name: unit and long name of the field."""
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
@@ -122,8 +122,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEEDS_NEW_SO
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file of the task spectrum that belong to all points together. config: the resolved
-    config. is_grid: whether the points are a grid."""
+    """Variables of a file of the task spectrum that belong to all points together."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGE_VARIABLES

@@ -47,8 +47,7 @@ class ArrayStore:
     pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, first_line: bytes):
-        """directory: journal directory. fingerprint: digest of config and points. first_line: first line of
-        each file."""
+        """directory: journal directory. fingerprint: digest of config and points."""
         self.directory = directory
         self.header = first_line + fingerprint.encode() + b"\n"
 
@@ -87,8 +86,8 @@ class Checkpoints(ArrayStore):
     pattern = CHECKPOINT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
-        """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
-        state from its arrays (the result of the state's method `arrays`)."""
+        """directory: journal directory. state_of: makes a solver state from its arrays (the result of the
+        state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -120,7 +119,7 @@ class ItemResults(ArrayStore):
     pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory: journal directory. fingerprint: digest of config and points."""
+        """directory: journal directory."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:

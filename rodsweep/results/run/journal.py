@@ -65,7 +65,7 @@ class Journal:
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
-        name, (n, ...). reasons: lines that say why points failed, for `read_reasons`."""
+        name, (n, ...)."""
         records = np.zeros(len(index), self.record.dtype)
         records["index"] = index
         for name in self.variable_names:
@@ -160,7 +160,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 def kept_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points. fingerprint: digest of config and points."""
+    points."""
     has_points = journals_with_fingerprint(directory, fingerprint)
     return f"; finished points are kept in {directory}" if has_points else ""
 
@@ -208,10 +208,8 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
 
 
 def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
-    """The complete lines of text stored in a journal; a line with a damaged record is left out.
-
-    blocks: records with their checksums, as rows of bytes, (records, bytes).
-    """
+    """The complete lines of text stored in a journal; a line with a damaged record is left out. blocks:
+    records with their checksums, as rows of bytes, (records, bytes)."""
     lines = []
     line = b""
     for rows in blocks:

@@ -74,7 +74,7 @@ def _motion_of_modes(record: Record) -> ArmMotion:
 
 def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
-    point. F_name: name of the variable with the force at crossings."""
+    point."""
 
     def motion(record: Record) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
@@ -229,11 +229,9 @@ class ArmValidity:
 
 
 def _arm_of_number(section: ArmConfig) -> Callable[[int], SlenderArm]:
-    """Function from a number to the arm with this number, without load.
-
-    Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
-    once, because their evaluation takes longer than a point.
-    """
+    """Function from a number to the arm with this number, without load. Arms are numbered in row-major order
+    of the axes of the config's section `arm`. The axes are evaluated once, because their evaluation takes
+    longer than a point."""
     axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in NON_LOAD_KEYS}
 
     def arm(number: int) -> SlenderArm:

@@ -145,10 +145,8 @@ point)."""
 
 
 def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
-    """Pairs of neighbouring points between which the leading growth rate changes its sign.
-
-    eigenvalues: eigenvalues, (lines, n, modes).
-    """
+    """Pairs of neighbouring points between which the leading growth rate changes its sign. eigenvalues:
+    eigenvalues, (lines, n, modes)."""
     growing = eigenvalues[..., 0].real > 0
     line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., 0].real))
     differ = growing[line, lower] != growing[line, upper]
@@ -157,12 +155,9 @@ def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
 
 def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
-    leading eigenvalue is real at the first point and complex at the second.
-
-    Between forces that are close to each other, the second eigenvalue at the first point is real too;
-    otherwise a complex pair overtakes a real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines,
-    n, modes).
-    """
+    leading eigenvalue is real at the first point and complex at the second. Between forces that are close to
+    each other, the second eigenvalue at the first point is real too; otherwise a complex pair overtakes a
+    real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines, n, modes)."""
     if eigenvalues.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     is_real = eigenvalues[..., :2].imag == 0
@@ -176,10 +171,8 @@ def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
 
 def _neighbouring_points(has_eigenvalues: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     """Returns three index arrays, (pairs,), for pairs of neighbouring points with eigenvalues: line, first
-    point, second point.
-
-    Points without eigenvalues are skipped. has_eigenvalues: whether a point has eigenvalues, (lines, n).
-    """
+    point, second point. Points without eigenvalues are skipped. has_eigenvalues: whether a point has
+    eigenvalues, (lines, n)."""
     line, point = np.nonzero(has_eigenvalues)
     same_line = line[1:] == line[:-1]
     return line[1:][same_line], point[:-1][same_line], point[1:][same_line]

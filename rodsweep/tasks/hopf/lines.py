@@ -85,12 +85,9 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Yields the lines along the parameter `name`, if at least two of its values are finite.
-
-    names: all parameters of the lines. Lines along F begin at 0, because the Hopf point may lie below the
-    smallest force of the points. Arms with equal parameters and different profiles have no line, because a
-    file cannot distinguish such arms.
-    """
+    """Yields the lines along the parameter `name`, if at least two of its values are finite. Lines along F
+    begin at 0, because the Hopf point may lie below the smallest force of the points. Arms with equal
+    parameters and different profiles have no line, because a file cannot distinguish such arms."""
     columns = {n: points.rod_values[n] for n in names}
     others = [n for n in names if n != name]
     if points.is_grid:
@@ -122,10 +119,7 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], results: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
-    """Hopf points of all lines, one line after another, as variables of a file.
-
-    names: parameters of the file. results: result of the search on each line.
-    """
+    """Hopf points of all lines, one line after another, as variables of a file."""
     solved = [(line, result) for line, result in zip(lines, results, strict=True) if result is not None]
     rows = [_hopf_point_values(line, crossing) for line, result in solved for crossing in result.thresholds]
     proved = sum(result.proved_to_the_end for _, result in solved)

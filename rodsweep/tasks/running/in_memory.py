@@ -78,8 +78,7 @@ def stored_variables(
     plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
     """Returns (coordinates, variables) of the file of a plan, by name. values: variables of the layout by
-    name, shape (points, own dimensions). sweep_wide: variables that do not belong to single points, with
-    values."""
+    name, shape (points, own dimensions)."""
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:

@@ -196,7 +196,7 @@ def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
     """Plan of the result file that a run of the job creates or continues.
 
-    shard: part of the points that the run solves. kernels: BLAS kernels of all ranks.
+    shard: part of the points that the run solves.
     """
     attributes = file_attributes(job, solver.statuses, kernels) | {
         "shard": str(shard) if shard.shard_count > 1 else ""
@@ -205,8 +205,7 @@ def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
 
 
 def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
-    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points.
-    statuses: all statuses that a point can have."""
+    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points."""
     from ...solve.backend import petsc
 
     attributes = {

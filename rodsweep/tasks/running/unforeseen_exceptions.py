@@ -92,8 +92,7 @@ class _GuardedSolver:
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
-        """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
-        point."""
+        """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
@@ -133,9 +132,7 @@ class TracebackLog:
     tracebacks."""
 
     def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
-        """output: the result file. rank: number of this rank. point_text: function from the flat index of a
-        point to a text with its parameters. is_strict: whether every exception is raised again after it is
-        logged."""
+        """output: the result file. is_strict: whether every exception is raised again after it is logged."""
         self.strict = is_strict
         self.path = log_file(output)
         self.rank = rank
@@ -145,8 +142,7 @@ class TracebackLog:
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends the exception of points to the log, with their parameters. indices: flat indices of the
-        points."""
+        """Appends the exception of points to the log, with their parameters."""
         points = self.point_text(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.point_text(indices[-1])}"

@@ -94,7 +94,7 @@ def draw_arm_map(request: FigureRequest) -> str:
 
 def _section_text(view: ResultView, indices: dict[str, int]) -> str:
     """Clause on the values at which a map is drawn of axes with several values, which it does not show; empty
-    if there is no such axis. indices: index of the drawn value, by name of the axis."""
+    if there is no such axis."""
     texts = []
     for name, index in indices.items():
         values = view.variables[name]
@@ -133,8 +133,7 @@ def _new_panels(count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[A
 
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
-    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
-    index: index of the drawn points in the grid."""
+    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y."""
     (x, x_label), (y, y_label) = (_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
     style.draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
@@ -149,8 +148,7 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str]
 
 
 def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
-    """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
-    points in the grid."""
+    """Draws a panel as curves against the quantity `name`; returns legend entries."""
     x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
@@ -174,9 +172,8 @@ def _draw_drag_band(
     axes: Axes, view: ResultView, x: str, values: Array, index: Any, colour: str
 ) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
-    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
-    of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
-    horizontal axis."""
+    as a list. x: name of the quantity on the horizontal axis. The list is empty if the drag does not vary, or
+    is the quantity on the horizontal axis."""
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
     drag = view.arm_axes.index(DRAG_AXIS)
@@ -195,8 +192,7 @@ def _cover_invalid_cells(
     axes: Axes, view: ResultView, panel: Panel, names: tuple[str, str], index: Any
 ) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
-    a value; returns legend entries. names: quantities on x and y. index: index of the drawn points in the
-    grid."""
+    a value; returns legend entries. names: quantities on x and y."""
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []

@@ -47,8 +47,7 @@ def given_quantities(view: ResultView) -> list[str]:
 
 
 def constant_quantities_text(view: ResultView, drawn_names: Sequence[str] = ()) -> str:
-    """Constant quantities of the arm with their values, as text; empty without an arm. drawn_names: names of
-    the quantities on axes."""
+    """Constant quantities of the arm with their values, as text; empty without an arm."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn_names or name in ARM_SCALES:

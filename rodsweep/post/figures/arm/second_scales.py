@@ -92,7 +92,7 @@ def _outermost_panel(axes: Axes, letter: str) -> Axes:
 
 def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
     """Adds a second scale to a panel, opposite to the axis `letter` ("x" or "y"). unit: load at F = 1, in SI
-    units. load: kind of load."""
+    units."""
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
     largest_value = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))

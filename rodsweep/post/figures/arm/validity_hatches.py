@@ -61,7 +61,7 @@ def _hatch_points(
     figure: Figure, view: ResultView, names: list[str], outside: np.ndarray, hatch: str
 ) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
-    parameters `names`; returns whether any panel has these axes. hatch: matplotlib's pattern."""
+    parameters `names`; returns whether any panel has these axes."""
     keywords = HATCH_LOOK | {"hatch": hatch}
     cells = np.squeeze(outside)
     edges = [cell_edges(view.parameter_values[name]) for name in names]
@@ -104,8 +104,7 @@ def _axis_label(axes: Axes, letter: str) -> str:
 def _hatch_intervals(
     axes: Axes, letter: str, edges: Array, mask: np.ndarray, keywords: dict[str, Any]
 ) -> None:
-    """Hatches intervals of the axis `letter` over the whole panel. edges: edges of the intervals. mask: mask
-    of the hatched intervals. keywords: matplotlib's keywords of the hatches."""
+    """Hatches intervals of the axis `letter` over the whole panel."""
     limits = axes.get_xlim() if letter == "x" else axes.get_ylim()
     hatch = axes.axvspan if letter == "x" else axes.axhspan
     low, high = sorted(limits)
@@ -116,8 +115,7 @@ def _hatch_intervals(
 
 
 def _hatch_map_cells(axes: Axes, edges: list[Array], mask: np.ndarray, keywords: dict[str, Any]) -> None:
-    """Hatches cells of a map. edges: edges of the cells along x and along y. mask: mask of the hatched cells,
-    (nx, ny). keywords: matplotlib's keywords of the hatches."""
+    """Hatches cells of a map. mask: mask of the hatched cells, (nx, ny)."""
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(mask):
         axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **keywords)

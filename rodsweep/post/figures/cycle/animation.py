@@ -37,7 +37,7 @@ MAX_GHOST_AGE = 0.2
 
 def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
     """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
-    a description. points: numbers of the chosen points. Raises InputError for too few shapes."""
+    a description. Raises InputError for too few shapes."""
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:

@@ -23,7 +23,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     injection minus dissipation with marks of dU/dt.
 
     The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
-    curve. points: numbers of the chosen points. is_narrow: whether the page is narrow.
+    curve.
     """
     selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles

@@ -57,8 +57,8 @@ panel."""
 
 def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the panels are
-    stacked. Raises InputError if no point has a cycle."""
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. Raises InputError if no point has
+    a cycle."""
     points = point_map(view)
     statuses = view.status_names[points.point_indices]
     cycles = np.isin(statuses, CYCLE_STATUSES)
@@ -157,10 +157,8 @@ def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, f
 
 def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
     """Draws lines of Hopf points; returns a list with the legend entry. lines: (x, y) of each line, (2, n).
-
     On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
-    0, because the characteristic determinant is D(0) = 1.
-    """
+    0, because the characteristic determinant is D(0) = 1."""
     keywords: dict[str, Any] = {"color": "k", "lw": 1.4}
     path_effects = [withStroke(linewidth=3.0, foreground="white")]
     for line in lines:

@@ -58,7 +58,7 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
     darker, and x and y of the tip against time.
 
-    points: numbers of the chosen points. is_narrow: whether the page is too narrow for panels side by side.
+    is_narrow: whether the page is too narrow for panels side by side.
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
@@ -95,12 +95,9 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
 def _new_panels(
     cycles: Sequence[StoredCycle], is_narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
-
-    The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. is_narrow: whether
-    the page is narrow.
-    """
+    """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle). The
+    panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank."""
     count = len(cycles)
     (left, right), (low, high) = limits_of_shapes(cycles)
     if count == 1 and not is_narrow:
@@ -132,7 +129,7 @@ def _draw_phase_bar(
     figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, is_below: bool
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
-    two shapes, in periods. is_below: whether the bar is below the panels."""
+    two shapes, in periods."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]

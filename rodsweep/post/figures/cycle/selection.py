@@ -114,8 +114,8 @@ class CycleSelection:
 
 def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
-    empty. variable_names: variables that the figure needs. Raises InputError if a point, a cycle or a
-    variable is missing, or for more than MAX_CYCLES points."""
+    empty. Raises InputError if a point, a cycle or a variable is missing, or for more than MAX_CYCLES
+    points."""
     _refuse_missing(view, variable_names)
     statuses = view.status_names
     _refuse_bad_points(view, points)
@@ -154,7 +154,7 @@ def _selected_cycles(
     view: ResultView, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable."""
+    empty. drawable: mask, (points,). Raises InputError if no point is drawable."""
     available = np.flatnonzero(drawable)
     statuses = view.status_names
     if not available.size:

@@ -21,8 +21,7 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
     """Returns (figure, description). The figure has a column for each point: x and y of the tip against time,
     with horizontal lines at the extrema of the cycle, if any.
 
-    points: numbers of the chosen points. is_narrow: whether the titles leave out the explanation of these
-    lines.
+    is_narrow: whether the titles leave out the explanation of these lines.
     """
     selection = chosen_transients(view, points)
     count = len(selection.cycles)

@@ -185,8 +185,7 @@ def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height.
-    min_aspect: smallest ratio of height to width of a panel."""
+    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height."""
     width, height = figure.get_size_inches()
     spares = [height]
     for axes in figure.axes:

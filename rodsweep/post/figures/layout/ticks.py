@@ -65,7 +65,7 @@ def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
 
 def _thin_powers(axis: Axis, label_count: int) -> bool:
     """Removes labelled powers of ten from a symmetric logarithmic axis; returns whether any label was
-    removed. label_count: current number of labels."""
+    removed."""
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
         return False

@@ -97,13 +97,12 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
 
 
 def _followed_roots(view: ResultView, roots: str) -> Complex:
-    """Roots at the points of a line, as from `select_roots`. roots: choice of the roots."""
+    """Roots at the points of a line, as from `select_roots`."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
-    label of the colour bar."""
+    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,)."""
     x_of_roots = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
@@ -111,8 +110,7 @@ def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: ResultView, name: str, roots: str) -> Figure:
-    """Figure of the roots against the parameter `name`, and in the complex plane. roots: choice of the
-    roots."""
+    """Figure of the roots against the parameter `name`, and in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
@@ -139,7 +137,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
 
 def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
-    2), or all roots, (n, modes). roots: choice of the roots."""
+    2), or all roots, (n, modes)."""
     x = view.parameter_values[name]
     w = _followed_roots(view, roots)
     if roots != "all":

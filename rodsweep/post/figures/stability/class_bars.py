@@ -66,8 +66,8 @@ def draw_class_bars(view: ResultView) -> Figure:
 
 def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, float, str]]:
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
-    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room
-    for all crossings. rod: index of the rod."""
+    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room for
+    all crossings."""
     kinds, F, counts = (
         view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after")
     )
@@ -87,7 +87,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
     """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
-    of the bar. is_vertical: whether the bar is vertical."""
+    of the bar."""
     intervals = list(classes_over_force(view, rod))
     undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):
@@ -105,8 +105,7 @@ def mark_thresholds_on_bars(
 ) -> list[Line2D]:
     """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 
-    is_vertical: whether bars are vertical. unit: unit of the loads in legend entries; empty for F. factor:
-    load at F = 1, in this unit.
+    unit: unit of the loads in legend entries; empty for F. factor: load at F = 1, in this unit.
     """
     kinds, F, counts = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     is_hopf = kinds == CROSSING_KINDS.index("hopf")

@@ -125,11 +125,8 @@ def _pixels_of_points(points: Array) -> NDArray[np.intp]:
 
 def _dense_curve_points(curve: Array) -> Array:
     """Points, (m, 2), less than a pixel apart, on the part of a curve that lies inside the plane. curve:
-    vertices, (n, 2).
-
-    Each segment is first cut at the edges of the plane, because a segment may be a thousand times longer than
-    the plane.
-    """
+    vertices, (n, 2). Each segment is first cut at the edges of the plane, because a segment may be a thousand
+    times longer than the plane."""
     curve = curve[np.isfinite(curve).all(axis=1)]
     half_pixel = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
     steps = np.diff(curve, axis=0)

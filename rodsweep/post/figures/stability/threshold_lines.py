@@ -99,8 +99,8 @@ def draw_selected_lines(
     view: ResultView, names: list[str], is_narrow: bool, search: str
 ) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `names` as abscissa, with curves for some values of the second parameter. is_narrow:
-    whether the panels are stacked. search: clause on the searched range."""
+    parameters `names` as abscissa, with curves for some values of the second parameter. search: clause on the
+    searched range."""
     rows, columns = (2, 1) if is_narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
@@ -180,7 +180,7 @@ def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, A
 
 def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
-    at 0. table: drawn forces."""
+    at 0."""
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])

@@ -72,8 +72,8 @@ def range_in_unit(
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
-    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. max_digits:
-    largest number of digits."""
+    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits.
+    """
     factor, unit = printing_unit(view, si, _largest_absolute(values))
     return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), max_digits)} {unit}"
 
@@ -160,10 +160,8 @@ def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 
 def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as text: a few values one by one, more values as a range.
-
-    errors: absolute errors, of the shape of the values, which limit the number of digits.
-    """
+    """Values as text: a few values one by one, more values as a range. errors: absolute errors, of the shape
+    of the values, which limit the number of digits."""
     is_finite = np.isfinite(values)
     finite = values[is_finite]
     finite_errors = errors[is_finite]
@@ -180,8 +178,7 @@ def wrapped_lines(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
-    `name`; 0 where `name` is 0 or infinite. v: variables of the file. The errors have the shape of the two
-    variables."""
+    `name`; 0 where `name` is 0 or infinite. The errors have the shape of the two variables."""
     is_nonzero = np.isfinite(v[name]) & (v[name] != 0)
     scale = np.divide(v[si_name], v[name], out=np.zeros_like(v[si_name]), where=is_nonzero)
     return np.asarray(np.abs(scale) * absolute_errors(v, name))

@@ -34,7 +34,7 @@ def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
 
 def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
-    loads of the points in the mask `rods`, (n,). smallest: words for the smallest load."""
+    loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return ""
     indices = np.flatnonzero(rods)

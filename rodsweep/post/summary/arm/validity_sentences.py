@@ -44,8 +44,8 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
 
 def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", noun: str = "point") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
-    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. condition: conditional clause.
-    noun: "point", or "row" for rows of a phase diagram."""
+    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. noun: "point", or "row" for
+    rows of a phase diagram."""
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     is_unknown = validities == VALIDITY_NOT_KNOWN
     preposition = "on" if noun == "row" else "at"

@@ -87,10 +87,8 @@ class Extension:
                 yield self._converted(records[is_kept], index[is_kept])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
-        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,).
-
-        Values that the old layout lacks are fill values.
-        """
+        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,). Values that
+        the old layout lacks are fill values."""
         converted = np.empty(len(records), self.new_layout.record_dtype)
         converted["index"] = index
         for variable in self.new_layout.variables:
@@ -182,9 +180,7 @@ def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> Stor
 
 def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
-
-    Raises InputError for an old value that is not on the new axis. name: name of the axis.
-    """
+    Raises InputError for an old value that is not on the new axis."""
     above = np.searchsorted(new, old).clip(max=len(new) - 1)
     below = (above - 1).clip(min=0)
     with np.errstate(invalid="ignore"):
@@ -201,11 +197,8 @@ def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) 
 
 
 def _positions_before_first_change(positions: Indices, count: int, upward: bool) -> Indices:
-    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position
-    of the chain on.
-
-    count: number of values on the new axis. upward: direction of the chains.
-    """
+    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position of the
+    chain on. count: number of values on the new axis. upward: direction of the chains."""
     forward_positions = positions if upward else np.where(positions < 0, -1, count - 1 - positions)[::-1]
     is_kept = np.logical_and.accumulate(forward_positions == np.arange(len(forward_positions)))
     return np.where(is_kept if upward else is_kept[::-1], positions, -1)

@@ -94,8 +94,7 @@ def config_difference(
 
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
-    """Difference of two lists that are too long to show: their lengths, and the first pair that differs.
-    origins: names of the origins of `stored` and `given`."""
+    """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
     sizes = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
     pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

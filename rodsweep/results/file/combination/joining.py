@@ -66,10 +66,8 @@ class JoinedFile:
 
     def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
         """Raises InputError if records, (n,), of the source `number` differ from the values already stored in
-        the file for the same points.
-
-        Rounding errors are allowed. owner: number of the source of each stored point, (points,).
-        """
+        the file for the same points. Rounding errors are allowed. owner: number of the source of each stored
+        point, (points,)."""
         if not len(records):
             return
         stored_records = records_at(path, records["index"], self.plan.layout)
@@ -87,12 +85,9 @@ class JoinedFile:
                     raise InputError(f"{paths} disagree about the point {text}: the values of {name} differ")
 
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
-        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
-
-        Always True for error estimates and values that are not floating-point; always False for `status`, and
-        without groups if one BLAS kernel computed all points. a, b: the values. sources: headers
-        of their files.
-        """
+        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR. Always True
+        for error estimates and values that are not floating-point; always False for `status`, and without
+        groups if one BLAS kernel computed all points. a, b: the values. sources: headers of their files."""
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False
@@ -140,11 +135,9 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """Returns (joined grid, map from each grid to the joined grid).
-
-    The axes of the joined grid have the values of all grids. Raises InputError if a point of the joined grid
-    is in no grid, or if values differ only by rounding.
-    """
+    """Returns (joined grid, map from each grid to the joined grid). The axes of the joined grid have the
+    values of all grids. Raises InputError if a point of the joined grid is in no grid, or if values differ
+    only by rounding."""
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
@@ -217,7 +210,7 @@ def _axis_from_values(own: Axis, values: Array) -> Axis:
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: FilePlan) -> None:
     """Raises InputError if the points of a chain of the joined file would come from several files. sources,
-    grids: source files and their grids. plan: plan of the joined file."""
+    grids: source files and their grids."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]

@@ -83,7 +83,7 @@ def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> Merg
 
 def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
-    returns the outcome of the merge. copy: path of the merged file. used: sources of the stored points."""
+    returns the outcome of the merge. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)
     finished = not missing_indices and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in used])

@@ -33,8 +33,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
     power against a parameter.
 
-    A straight arm has amplitude 0 and no period. is_narrow: whether the panels are stacked. Raises InputError
-    for too many lines.
+    A straight arm has amplitude 0 and no period. Raises InputError for too many lines.
     """
     first_view = views[0]
     name = abscissa_parameter(first_view)
@@ -81,8 +80,8 @@ def _draw_branches(
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line.
-    direction_labels: result of `_legend_entries_of_files`."""
+    """Draws all lines in all panels; returns legend entries. direction_labels: result of
+    `_legend_entries_of_files`."""
     handles = []
     unknown_statuses = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
@@ -106,10 +105,8 @@ def _draw_branches(
 def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int, tuple[str, bool | None]]:
     """Returns {id(view): (legend entry, is_upward)}; the path is no key, because all Datasets of Python have
     the same path. is_upward: whether the parameter `name` increased during the continuation; None unless the
-    files differ in this direction.
-
-    Files with different directions of continuation are distinguished by direction, other files by name.
-    """
+    files differ in this direction. Files with different directions of continuation are distinguished by
+    direction, other files by name."""
     if len(views) == 1:
         return {id(views[0]): ("", None)}
     options = [view.config.get("limit_cycle", {}) for view in views]
@@ -158,7 +155,7 @@ def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tup
 
 def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
     """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible.
-    labels: labels of the vertical axes. name: parameter on the horizontal axis."""
+    name: parameter on the horizontal axis."""
     for axes, label in zip(panels, labels, strict=True):
         if not np.isfinite(axes.dataLim.y1):
             axes.text(0.5, 0.5, "no cycle", color="0.5", ha="center", transform=axes.transAxes)
@@ -174,7 +171,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
-    without a known amplitude. keywords: keywords for matplotlib."""
+    without a known amplitude."""
     unstable = branch.status_names == "unstable"
     unknown_statuses: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):
