@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
@@ -92,9 +92,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(
-        style.heading_text(view, constant_quantities_text(view), style.constant_parameters_text(view, name))
-    )
+    set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
 
 
@@ -102,14 +100,12 @@ def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) 
     """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
     crossings). criticality: signs of Re c, (rods, crossings)."""
     x_of_values = np.broadcast_to(x[:, None], values.shape)
-    handles = []
+    handles: list[Line2D] = []
     for number, (word, colour, marker) in CRITICALITY_MARKS.items():
-        is_of_class = criticality == number
-        if is_of_class.any():
-            (artist,) = axes.plot(
-                x_of_values[is_of_class], values[is_of_class], marker, color=colour, ms=3.5, label=word
-            )
-            handles.append(artist)
+        is_drawn = criticality == number
+        if is_drawn.any():
+            drawn = x_of_values[is_drawn], values[is_drawn]
+            handles += axes.plot(*drawn, marker, color=colour, ms=3.5, label=word)
     return handles
 
 
@@ -134,11 +130,7 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
         if (classes == i).any()
     ]
     style.legend_below(figure, entries, columns=3)
-    figure.suptitle(
-        style.heading_text(
-            view, constant_quantities_text(view), style.parameter_text(points.common_parameters)
-        )
-    )
+    set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
 
@@ -170,13 +162,8 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 forces = hopf_force * (1 + np.sign(size) * distance)
-                axes.plot(
-                    forces,
-                    abs(size) * np.sqrt(distance),
-                    CRITICALITY_LINES[int(kind)][0],
-                    color=colour,
-                    lw=1.4,
-                )
+                line = CRITICALITY_LINES[int(kind)][0]
+                axes.plot(forces, abs(size) * np.sqrt(distance), line, color=colour, lw=1.4)
                 axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")

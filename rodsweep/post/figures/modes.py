@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import ResultView
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .request import FigureRequest
-from .style import BLUE, VERMILION, heading_text, legend_below, number_in_tex, parameter_text, require_content
+from .style import BLUE, VERMILION, legend_below, number_in_tex, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -31,27 +31,26 @@ def draw_modes(request: FigureRequest) -> str:
     require_content(view, points.size, "computed point")
     is_narrow = request.look.is_narrow
     drawn_points = points[: 1 if is_narrow else MAX_RODS]
-    rows, columns = (
-        (len(drawn_points) * len(MODE_PANELS), 1) if is_narrow else (len(drawn_points), len(MODE_PANELS))
-    )
+    count = len(drawn_points)
+    rows, columns = (count * len(MODE_PANELS), 1) if is_narrow else (count, len(MODE_PANELS))
     size = (4.6, 2.4 * rows + 0.4) if is_narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(len(drawn_points), len(MODE_PANELS)), drawn_points, strict=True):
+    for row, point in zip(panels.reshape(count, len(MODE_PANELS)), drawn_points, strict=True):
         for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
-        if len(drawn_points) > 1:
+        if count > 1:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    texts = _point_texts(view, int(drawn_points[0])) if len(drawn_points) == 1 else ()
-    figure.suptitle(heading_text(view, constant_quantities_text(view), *texts))
+    texts = _point_texts(view, int(drawn_points[0])) if count == 1 else ()
+    set_heading(figure, view, *texts)
     legend_below(figure, _part_entries(view, drawn_points), columns=2)
-    omission_clause = f" of the first of {points.size} points" if len(drawn_points) == 1 < points.size else ""
-    if points.size > len(drawn_points) > 1:
-        omission_clause = f" of the first {len(drawn_points)} of {points.size} points"
-    omission_clause += " (--at chooses others)" if omission_clause else ""
+    omission_clause = ""
+    if points.size > count:
+        first_words = f"first {count}" if count > 1 else "first"
+        omission_clause = f" of the {first_words} of {points.size} points (--at chooses others)"
     return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
 
 
@@ -92,6 +91,5 @@ def _point_texts(view: ResultView, point: int) -> tuple[str, str]:
     parameters = {name: values[point] for name, values in view.point_columns.items()}
     eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
-    return parameter_text(
-        parameters, digits=4
-    ), rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"
+    eigenvalue_text = rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"
+    return parameter_text(parameters, digits=4), eigenvalue_text

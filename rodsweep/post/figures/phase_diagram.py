@@ -17,7 +17,7 @@ from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
 from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
@@ -88,8 +88,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    constants = constant_quantities_text(view), _constant_parameters_text(view, line, row)
-    figure.suptitle(style.heading_text(view, *constants, stored_crossings_text(view)))
+    set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite = left_out_clause(view.parameter_values, [row])
@@ -140,23 +139,19 @@ def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figur
     edges = (
         x[0] * (x[-1] / x[0]) ** fractions if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * fractions
     )
-    table = np.array(
-        [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
-    )
+    rows = [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
+    table: Array = np.array(rows)
     keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **keywords)
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    axes.set_yticks(
-        np.arange(len(y)), [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
-    )
+    texts = [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
+    axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line])
     style.legend_below(figure, palette.legend_entries(table), columns=3)
-    figure.suptitle(
-        style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
-    )
+    set_heading(figure, view, _constant_parameters_text(view, line, row))
     return figure
 
 

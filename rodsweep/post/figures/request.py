@@ -72,11 +72,9 @@ class FigureLook:
         """Scales a figure to the width `width_in_inches`, if given, and lays out the figure, see
         `fit_layout`. min_aspect: smallest ratio of height to width of a panel."""
         if self.width_in_inches is not None:
-            width_inches, height_inches = figure.get_size_inches()
-            figure.set_size_inches(
-                self.width_in_inches,
-                height_inches * min(1.0, self.width_in_inches / width_inches) ** HEIGHT_EXPONENT,
-            )
+            natural_width, natural_height = figure.get_size_inches()
+            shrinkage = min(1.0, self.width_in_inches / natural_width)
+            figure.set_size_inches(self.width_in_inches, natural_height * shrinkage**HEIGHT_EXPONENT)
         fit_layout(figure, min_aspect)
 
 
@@ -137,12 +135,10 @@ class FigureRequest:
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
             )
         if self.what and self.what not in kinds:
-            task = next(
-                task for task, kinds_of_task in FIGURE_KINDS_BY_TASK.items() if self.what in kinds_of_task
-            )
+            task = next(task for task, own_kinds in FIGURE_KINDS_BY_TASK.items() if self.what in own_kinds)
+            option = f"--what {self.what}"
             raise InputError(
-                f"{view.path}: --what {self.what} is for results of {task}, and this is a result of "
-                f"{view.task}"
+                f"{view.path}: {option} is for results of {task}, and this is a result of {view.task}"
             )
 
     def require_output(self, *suffixes: str) -> None:
@@ -174,8 +170,6 @@ class FigureRequest:
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved
         self.look.fit(figure, min_aspect)
-        figure.set_layout_engine(
-            None
-        )  # `fit_layout` has laid out the figure; savefig would repeat the layout
+        figure.set_layout_engine(None)  # savefig would repeat the layout of `fit_layout`
         save_figure(figure, self.output)
         return caption

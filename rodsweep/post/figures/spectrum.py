@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .grid_slices import left_out_clause, slice_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
@@ -102,9 +102,8 @@ def _draw_line_per_value(view: ResultView, curve_parameter: str, request: Figure
     ]
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     others = [name for name in style.varied_axes(view) if name != curve_parameter]
-    return _draw_line_panels(
-        views, request, f"{curve_parameter}{left_out_clause(view.parameter_values, others)}"
-    )
+    omissions = left_out_clause(view.parameter_values, others)
+    return _draw_line_panels(views, request, f"{curve_parameter}{omissions}")
 
 
 def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel_noun: str) -> str:
@@ -171,14 +170,8 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
     _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.constant_parameters_text(view, *names),
-            "black: zero growth, interpolated between the points",
-        )
-    )
+    note = "black: zero growth, interpolated between the points"
+    set_heading(figure, view, style.constant_parameters_text(view, *names), note)
     return figure
 
 
@@ -210,9 +203,8 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
             word = THRESHOLD_WORDS[threshold.kind]
             _, dashes = THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE)
-        text = style.heading_text(
-            view, style.constant_parameters_text(view, name), ", ".join(map(threshold_text, thresholds))
-        )
+        threshold_texts = ", ".join(map(threshold_text, thresholds))
+        text = style.heading_text(view, style.constant_parameters_text(view, name), threshold_texts)
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()

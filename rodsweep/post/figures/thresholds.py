@@ -8,7 +8,7 @@ from matplotlib.patches import Patch
 from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
@@ -58,9 +58,8 @@ def draw_thresholds(request: FigureRequest) -> str:
         return request.write(figure, f"critical forces over {' and '.join(long)}{omissions}", MAP_ASPECT)
     if len(long) == 1 or has_few_lines:
         return request.write(*draw_lines_of_grid(view, long, searched_range_clause(view)))
-    return request.write(
-        *draw_selected_lines(view, long, request.look.is_narrow, searched_range_clause(view))
-    )
+    search = searched_range_clause(view)
+    return request.write(*draw_selected_lines(view, long, request.look.is_narrow, search))
 
 
 def _draw_files(request: FigureRequest) -> str:
@@ -70,9 +69,8 @@ def _draw_files(request: FigureRequest) -> str:
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()
     views = request.views
-    names = (
-        style.varied_axes(views[0]) if views[0].is_grid else []
-    )  # a list over an arm's quantities has many
+    # A list over an arm's quantities has many.
+    names = style.varied_axes(views[0]) if views[0].is_grid else []
     if len(views) > len(FILE_COLOURS):
         raise InputError(
             f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
@@ -105,25 +103,17 @@ def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tupl
     points = point_map(view)
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False
-    for axes, (name, word, *_) in zip(
-        panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
-    ):
+    edges = cell_edges(points.x), cell_edges(points.y)
+    forces = [force for force in CRITICAL_FORCES if force[0] in names]
+    for axes, (name, word, *_) in zip(panels, forces, strict=True):
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
-        style.draw_coloured_cells(
-            axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$"
-        )
+        style.draw_coloured_cells(axes, edges, values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.parameter_text(points.common_parameters),
-            searched_range_clause(view),
-        )
-    )
+    constants = style.parameter_text(points.common_parameters)
+    set_heading(figure, view, constants, searched_range_clause(view))
     return figure, points.omissions

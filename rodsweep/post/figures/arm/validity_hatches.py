@@ -47,9 +47,8 @@ def _hatched_note(
     if not number:
         return ""
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
-    names = (
-        [name for name in views[0].parameters if len(views[0].parameter_values[name]) > 1] if is_alone else []
-    )
+    values = views[0].parameter_values if is_alone else {}
+    names = [name for name in values if len(values[name]) > 1]
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
         judged = ", judged at each row's first Hopf point or at rest"
@@ -119,5 +118,4 @@ def _hatch_map_cells(axes: Axes, edges: list[Array], mask: np.ndarray, keywords:
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(mask):
         axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **keywords)
-    axes.set_xlim(limits[0])
-    axes.set_ylim(limits[1])
+    axes.set(xlim=limits[0], ylim=limits[1])

@@ -98,9 +98,8 @@ def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) 
 def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
     """Returns (figure, panels) with `count` panels that share axes, stacked if `is_narrow`, else side by
     side."""
-    layout = ConstrainedLayoutEngine(
-        wspace=0.0 if is_narrow else 0.06
-    )  # room for the first colour bar's label
+    # Side by side, the first colour bar's label needs room.
+    layout = ConstrainedLayoutEngine(wspace=0.0 if is_narrow else 0.06)
     figure = Figure(figsize=(4.2, 3.2 * count) if is_narrow else (4.8 * count, 4.5), layout=layout)
     shape = (count, 1) if is_narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
@@ -127,9 +126,8 @@ def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> 
         colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
         keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
         for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            axes.broken_barh(
-                _runs_of_cells(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **keywords
-            )
+            runs = _runs_of_cells(row, cell_edges(points.x))
+            axes.broken_barh(runs, (bottom, top - bottom), lw=0, **keywords)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **keywords))
     return handles
 
@@ -196,10 +194,7 @@ def _hopf_points(points: PointMap, view: ResultView) -> Iterator[Array]:
     name, row_parameter = points.names
     stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):
-        row = ParameterLine(
-            name, points.common_parameters | {row_parameter: float(value)}, points.x, row_indices
-        )
-        located = (
-            change for change in stored_thresholds.thresholds_on(row) if isinstance(change, LocatedThreshold)
-        )
+        parameters = points.common_parameters | {row_parameter: float(value)}
+        changes = stored_thresholds.thresholds_on(ParameterLine(name, parameters, points.x, row_indices))
+        located = (change for change in changes if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

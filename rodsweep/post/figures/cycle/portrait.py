@@ -133,28 +133,20 @@ def _draw_phase_bar(
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
-    colorbar = figure.colorbar(
-        ScalarMappable(norm, colours),
-        ax=panels,
-        label="time of the shape $t/T$",
-        location="bottom" if is_below else "right",
-        shrink=0.8,
-        ticks=ticks,
-        format=FuncFormatter(lambda tick, _: f"{tick:.3g}"),
-    )
+    look: dict[str, Any] = {"location": "bottom" if is_below else "right", "shrink": 0.8, "ticks": ticks}
+    look["format"] = FuncFormatter(lambda tick, _: f"{tick:.3g}")
+    shades = ScalarMappable(norm, colours)
+    colorbar = figure.colorbar(shades, ax=panels, label="time of the shape $t/T$", **look)
     colorbar.ax.minorticks_off()
 
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """Draws the closed path of the tip."""
-    from ....discretization.elements.trigonometric import (
-        interpolate_samples,  # compiled code, which few figures need
-    )
+    from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
-    axes.plot(
-        *(interpolate_samples(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1
-    )
+    x, y = (interpolate_samples(values, phase) for values in cycle.tip)
+    axes.plot(x, y, color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
@@ -173,10 +165,8 @@ def draw_clamp(axes: Axes, length: float) -> None:
     """Draws the wall that clamps the rod at u = 0. length: L, in the unit of the axes."""
     depth = WALL_DEPTH * length
     half_height = WALL_HALF_HEIGHT * length
-    wall = Rectangle(
-        (-depth, -half_height), depth, 2 * half_height, fc="white", ec="0.3", hatch="/////", lw=0
-    )
-    axes.add_patch(wall)
+    look: dict[str, Any] = {"fc": "white", "ec": "0.3", "hatch": "/////", "lw": 0}
+    axes.add_patch(Rectangle((-depth, -half_height), depth, 2 * half_height, **look))
     axes.plot([0, 0], [-half_height, half_height], color="k", lw=1.4, zorder=5)
 
 
@@ -211,18 +201,15 @@ def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float]
 def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
     has this time scale."""
-    from ....discretization.elements.trigonometric import (
-        interpolate_samples,  # compiled code, which few figures need
-    )
+    from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < MARKED_BELOW_SAMPLES:
             indices = np.arange(int(end / cycle.period * len(values)) + 1)
-            axes.plot(
-                indices * cycle.period / len(values), values[indices % len(values)], "o", color=colour, ms=2.5
-            )
+            sample_times = indices * cycle.period / len(values)
+            axes.plot(sample_times, values[indices % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

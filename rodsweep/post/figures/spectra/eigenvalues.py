@@ -7,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....results.file.view import ResultView
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
-from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
+from ..style import BLUE, VERMILION, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
@@ -43,7 +43,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(_heading(view))
+    set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
 
@@ -61,13 +61,8 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(_heading(view))
+    set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
-
-
-def _heading(view: ResultView) -> str:
-    """Text above a figure: quantities of an arm and parameters that all points share."""
-    return heading_text(view, constant_quantities_text(view), parameter_text(shared_parameters(view)))
 
 
 def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> list[Line2D]:
@@ -77,9 +72,8 @@ def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarr
     for kind, (colour, marker, word) in MODE_LOOKS.items():
         is_drawn = (is_growing == kind) & np.isfinite(y)
         if is_drawn.any():
-            handles += axes.plot(
-                x[is_drawn], y[is_drawn], marker, color=colour, mfc="none", ms=4.5, label=word
-            )
+            drawn = x[is_drawn], y[is_drawn]
+            handles += axes.plot(*drawn, marker, color=colour, mfc="none", ms=4.5, label=word)
     return handles
 
 

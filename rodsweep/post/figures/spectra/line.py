@@ -14,7 +14,7 @@ from ....results.file.view import ResultView
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
-from ..arm.quantities import NO_BREAK, constant_quantities_text
+from ..arm.quantities import NO_BREAK, set_heading
 from .eigenvalues import scale_if_spread
 
 ROOT_CHOICE_TEXTS = {
@@ -124,14 +124,7 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     style.legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.constant_parameters_text(view, name),
-            ROOT_CHOICE_TEXTS[roots],
-        )
-    )
+    set_heading(figure, view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
     return figure
 
 
@@ -151,16 +144,8 @@ def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
         x_of_roots = np.broadcast_to(x[:, None], w.shape)
         for root_part, colour, marker in ((w.real, style.BLUE, "o"), (w.imag, style.VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
-            axes.plot(
-                x_of_roots.ravel(),
-                root_part.ravel(),
-                marker,
-                color=colour,
-                mfc="none",
-                ms=2,
-                mew=0.6,
-                label=word,
-            )
+            look: dict[str, Any] = {"color": colour, "mfc": "none", "ms": 2, "mew": 0.6}
+            axes.plot(x_of_roots.ravel(), root_part.ravel(), marker, label=word, **look)
     axes.axhline(0, color="0.5", lw=0.6)
     style.scale_axis(axes, "x", x)
     axes.set(xlabel=style.LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))

@@ -2,6 +2,7 @@
 thresholds."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +13,7 @@ from ....results.file.view import ResultView
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
 from .. import style
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
 from .class_colours import CLASS_COLOURS, class_legend_entries
 from .row_classes import class_above_crossing
@@ -46,7 +47,7 @@ def draw_class_bars(view: ResultView) -> Figure:
     drawn_classes = set[str]()
     for rod in range(count):
         drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=count > 1)
-    handles: list = class_legend_entries(drawn_classes)
+    handles: list = class_legend_entries(word for word in CLASS_COLOURS if word in drawn_classes)
     handles += mark_thresholds_on_bars(axes, view, is_vertical=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:
@@ -56,11 +57,7 @@ def draw_class_bars(view: ResultView) -> Figure:
         axes.set(ylim=(0, end), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, count)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle(
-        style.heading_text(
-            view, constant_quantities_text(view), style.parameter_text(shared_parameters(view))
-        )
-    )
+    set_heading(figure, view, style.parameter_text(shared_parameters(view)))
     return figure
 
 
@@ -123,7 +120,6 @@ def mark_thresholds_on_bars(
             name = name.partition(" $")[0]
         loads = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
         label = name if is_vertical else f"{name} = {loads} {unit}".rstrip()
-        handles += axes.plot(
-            x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
-        )
+        look: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
+        handles += axes.plot(x, y, marker, label=label, **look)
     return handles

@@ -1,5 +1,6 @@
 """Colours and legend entries of the stability classes of the straight rod, and of the stable states."""
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,13 +45,10 @@ LEGEND_ENTRIES = {
 entry."""
 
 
-def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
-    """Legend entries for the classes in `drawn_classes`."""
-    drawn_colours = {word: colour for word, colour in CLASS_COLOURS.items() if word in drawn_classes}
-    return [
-        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-        for word, colour in drawn_colours.items()
-    ]
+def class_legend_entries(words: Iterable[str], colours: Mapping[str, str] = CLASS_COLOURS) -> list[Patch]:
+    """Legend entries for the words `words` in their colours, in the order of `words`."""
+    look: dict[str, Any] = {"edgecolor": "0.5", "lw": 0.5}
+    return [Patch(facecolor=colours[word], label=LEGEND_ENTRIES.get(word, word), **look) for word in words]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +72,7 @@ class Palette:
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
         drawn_words = (word for number, word in self.words if (table == number).any())
-        return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-            for word in drawn_words
-        ]
+        return class_legend_entries(drawn_words, self.colours)
 
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)

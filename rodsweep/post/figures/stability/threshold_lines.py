@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from ....arrays import Array
 from ....results.file.view import ResultView
 from .. import style
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 
 CRITICAL_FORCES = (
     ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
@@ -48,26 +48,20 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _first_force_table(view, x_name, other)
-    style.require_content(
-        view, np.isfinite(_abscissa_values(view, x_name)).sum() > 1, f"two finite values of {x_name}"
-    )
+    x = _abscissa_values(view, x_name)
+    style.require_content(view, np.isfinite(x).sum() > 1, f"two finite values of {x_name}")
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
-        handles = _draw_threshold_lines(
-            axes, _abscissa_values(view, x_name), values, {"color": shade} if other else {"ls": "-"}
-        )
+        handles = _draw_threshold_lines(axes, x, values, {"color": shade} if other else {"ls": "-"})
     if other:
-        handles = _kind_entries(table) + [
-            Line2D(
-                [], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
-            )
-            for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True)
-        ]
+        handles = _kind_entries(table)
+        for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True):
+            label = f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
+            handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
-    figure.suptitle(style.heading_text(view, *constants, search))
+    set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     caption = f"critical forces against {x_name}" + (f" for every {other}" if other else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
 
@@ -116,12 +110,10 @@ def draw_selected_lines(
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
-    figure.suptitle(style.heading_text(view, *constants, search))
-    caption = (
-        f"critical forces against {' and '.join(names)}, lines for {' and '.join(texts)} (--what map: all)"
-    )
-    return figure, caption + _infinite_values_clause(view, names)
+    set_heading(figure, view, style.constant_parameters_text(view, *names), search)
+    lines = f"lines for {' and '.join(texts)} (--what map: all)"
+    omissions = _infinite_values_clause(view, names)
+    return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions}"
 
 
 def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
@@ -129,13 +121,11 @@ def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
     `other`, see `_label_line_indices`; returns the number of values."""
     table = _first_force_table(view, x_name, other)
     indices = _label_line_indices(table)
-    for line, group in zip(
-        LINE_STYLES, _groups_of_equal_lines({index: table[index] for index in indices}), strict=False
-    ):
+    groups = _groups_of_equal_lines({index: table[index] for index in indices})
+    for line, group in zip(LINE_STYLES, groups, strict=False):
         _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
-        values = ", ".join(
-            style.number_in_tex(float(view.parameter_values[other][index]), 3) for index in group
-        )
+        values_of_group = view.parameter_values[other][group]
+        values = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(group) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
     _label_axes(panel, view, x_name, table[indices])
@@ -184,10 +174,8 @@ def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
-    max_force = max(
-        float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, axes.get_ylim()[1] if axes.lines else 0.0
-    )
-    axes.set_ylim(0, max_force or 1.0)
+    drawn_top = axes.get_ylim()[1] if axes.lines else 0.0
+    axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, drawn_top) or 1.0)
 
 
 def _kind_entries(table: Array) -> list[Line2D]:
