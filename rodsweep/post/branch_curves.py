@@ -150,9 +150,8 @@ class RodBranches:
     @property
     def coexistence_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection_of_ranges(
-            self.stable_cycle_ranges, self.straight_ranges(branch_ends(self.view))[0]
-        )
+        stable_straight, _ = self.straight_ranges(branch_ends(self.view))
+        return intersection_of_ranges(self.stable_cycle_ranges, stable_straight)
 
     @property
     def coexistence_is_decided(self) -> bool:

@@ -40,10 +40,9 @@ def _dates_clause(a: dict[str, Any]) -> str:
         return "not finished yet"
     if "finished" in a:
         return f"{a['started']} to {a['finished']}"
-    is_whole_shard = a.get("shard") and not a.get("stopped")
-    return (
-        f"from {a['started']} on, all points of shard {a['shard']}" if is_whole_shard else "not finished yet"
-    )
+    if a.get("shard") and not a.get("stopped"):
+        return f"from {a['started']} on, all points of shard {a['shard']}"
+    return "not finished yet"
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:

@@ -20,11 +20,8 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
     is_bound = dict.fromkeys(numbers, False)
     rows = view.point_columns[row]
     kinds, counts, positions = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    masks = {number: v["curve_number"] == number for number in numbers}
-    paths = {
-        number: (v[f"curve_{line}"][is_of_curve], v[f"curve_{row}"][is_of_curve])
-        for number, is_of_curve in masks.items()
-    }
+    masks = ((number, v["curve_number"] == number) for number in numbers)
+    paths = {number: (v[f"curve_{line}"][mask], v[f"curve_{row}"][mask]) for number, mask in masks}
     for index, i in zip(*np.nonzero(np.isfinite(positions)), strict=True):
         kind = CROSSING_KINDS[int(kinds[index, i])]
         if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):

@@ -77,9 +77,7 @@ class ColumnTexts:
         """
         largest_rounding = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
-            for name in (
-                name for name, table_errors in table.items() if table_errors == error and name in self.columns
-            ):
+            for name in (n for n, own_error in table.items() if own_error == error and n in self.columns):
                 values = self._values[name]
                 printed_values = np.array([float(text) if text else np.nan for text in self.texts(name)])
                 with np.errstate(divide="ignore", invalid="ignore"):

@@ -78,12 +78,9 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
     series_list = [*_cell_series(axes, names, meanings), *_bar_series(axes, names, meanings)]
-    for line in axes.lines:
-        if line.get_visible():
-            series_list.append(_line_series(axes, line, names))
-    series_list += [
-        _scatter_series(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)
-    ]
+    series_list += [_line_series(axes, line, names) for line in axes.lines if line.get_visible()]
+    scatters = (dots for dots in axes.collections if isinstance(dots, PathCollection))
+    series_list += [_scatter_series(dots, names) for dots in scatters]
     panel_box = axes.bbox.padded(FRAME_MARGIN)
     for series in series_list:
         is_inside = np.isfinite(series.positions).all(axis=1)
@@ -114,14 +111,10 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
     if values is None:
         return HoverSeries(pixels, texts)
     name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
-    name = name or _series_name(dots.get_label())
-    return HoverSeries(
-        pixels,
-        [
-            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, point)}" if name else text
-            for value, point, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
-        ],
-    )
+    if name := name or _series_name(dots.get_label()):
+        rows = zip(np.ma.filled(values, np.nan), data, strict=True)
+        texts = [f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, p)}" for value, p in rows]
+    return HoverSeries(pixels, texts)
 
 
 def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
@@ -138,17 +131,11 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
         values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
         name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
         drawn_indices = np.flatnonzero(~np.ma.getmaskarray(values))
+        centres = axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2)
         texts = []
-        for centre, value in zip(
-            axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2),
-            values[drawn_indices],
-            strict=True,
-        ):
-            word = (
-                f"{name}: {_coordinate_text(value)}"
-                if name
-                else meanings.get(to_hex(mesh.to_rgba(value)), "")
-            )
+        for centre, value in zip(centres, values[drawn_indices], strict=True):
+            meaning = "" if name else meanings.get(to_hex(mesh.to_rgba(value)), "")
+            word = f"{name}: {_coordinate_text(value)}" if name else meaning
             texts.append("\n".join(filter(None, (word, _coordinates_text(names, centre)))))
         yield HoverSeries(pixels[drawn_indices], texts)
 
@@ -191,9 +178,7 @@ def _panels_with_same_axis(axes: Axes, letter: Literal["x", "y"]) -> list[Axes]:
 
     figure = axes.get_figure()
     panels = [] if figure is None else figure.axes
-    return [
-        other_panel for other_panel in panels if other_panel is not axes and place(other_panel) == place(axes)
-    ]
+    return [other for other in panels if other is not axes and place(other) == place(axes)]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:

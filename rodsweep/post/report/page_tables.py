@@ -46,12 +46,9 @@ def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
     then the other tables."""
     tables = Tables(view)
-    names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
-    for name in names:
-        if name in tables.contents.tables:
-            table = tables.table(name)
-            if table.rows:
-                yield _table_for_page(table)
+    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables)):
+        if name in tables.contents.tables and (table := tables.table(name)).rows:
+            yield _table_for_page(table)
 
 
 def _table_for_page(table: Table) -> PageTable:
@@ -61,23 +58,20 @@ def _table_for_page(table: Table) -> PageTable:
     constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
     varied_columns = [column for column in filled_columns if column not in constant_columns]
     cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
+    firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
     return PageTable(
         name=table.name,
-        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
+        column_heads=tuple((c.name, c.printed_unit, c.meaning) for c in varied_columns),
         rows=tuple(zip(*cells, strict=True)),
         total_rows=table.rows,
-        constant_columns=tuple(
-            (column.name, _cells(column.rows(slice(0, 1)))[0], column.printed_unit, column.meaning)
-            for column in constant_columns
-        ),
+        constant_columns=tuple((c.name, first, c.printed_unit, c.meaning) for c, first in firsts),
     )
 
 
 def _is_constant(column: Column) -> bool:
     """Whether all rows of a column have the same value; False for "status" and for absent values."""
-    if column.name == "status" or column.absent.any():
-        return False
-    return len(np.unique(column.values)) == 1
+    has_all_values = column.name != "status" and not column.absent.any()
+    return has_all_values and len(np.unique(column.values)) == 1
 
 
 def _cells(column: Column) -> list[Cell]:

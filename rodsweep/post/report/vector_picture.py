@@ -108,15 +108,9 @@ def dark_page_colour(colour: str) -> str:
     if len(set(rgb)) == 1:
         rgb = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * value / 255) for value in rgb]
     else:
-        lighter = (
-            [value + (255 - value) * step / LIGHTENING_STEP_COUNT for value in rgb]
-            for step in range(LIGHTENING_STEP_COUNT + 1)
-        )
-        rgb = next(
-            [round(value) for value in candidate]
-            for candidate in lighter
-            if _contrast(candidate) >= MIN_CONTRAST
-        )
+        fractions = (step / LIGHTENING_STEP_COUNT for step in range(LIGHTENING_STEP_COUNT + 1))
+        lighter = ([value + (255 - value) * fraction for value in rgb] for fraction in fractions)
+        rgb = [round(value) for value in next(c for c in lighter if _contrast(c) >= MIN_CONTRAST)]
     return "".join(f"{value:02x}" for value in rgb)
 
 
@@ -128,8 +122,6 @@ def _contrast(channels: list[float]) -> float:
 
 def _luminance(channels: list[float]) -> float:
     """Relative luminance, from 0 to 1, as defined by WCAG 2. channels: red, green and blue, from 0 to 255."""
-    linear = [
-        channel / 255 / 12.92 if channel <= 0.04045 * 255 else ((channel / 255 + 0.055) / 1.055) ** 2.4
-        for channel in channels
-    ]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    shares = [channel / 255 for channel in channels]
+    red, green, blue = (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in shares)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue

@@ -38,14 +38,8 @@ SUCCESS_STATUS = "ok"
 
 def paragraph(results: RodResults) -> str:
     """All results about the rod as one paragraph of text."""
-    sentences = [
-        *_rod_sentence(results),
-        *_threshold_sentences(results),
-        *_branch_sentences(results),
-        *_cycle_sentences(results),
-        *_missing_result_sentences(results),
-    ]
-    return " ".join(sentences)
+    states = (*_threshold_sentences(results), *_branch_sentences(results), *_cycle_sentences(results))
+    return " ".join([*_rod_sentence(results), *states, *_missing_result_sentences(results)])
 
 
 def _rod_sentence(results: RodResults) -> Iterator[str]:
@@ -143,10 +137,8 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
     yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
     if not rod.hidden_count:
-        coexistence_ranges = rod.coexistence_ranges
-        ranges = (
-            units.load_ranges_text(coexistence_ranges, rod.parameter_errors) if coexistence_ranges else ""
-        )
+        both = rod.coexistence_ranges
+        ranges = units.load_ranges_text(both, rod.parameter_errors) if both else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
@@ -196,13 +188,8 @@ def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
 
 def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
     """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
-    load_texts = {
-        rounded_text(factor * special.at, factor * special.error): None
-        for curve in curves
-        for special in curve.special
-        if special.kind == kind
-    }
-    return list(load_texts)
+    points = [special for curve in curves for special in curve.special if special.kind == kind]
+    return list(dict.fromkeys(rounded_text(factor * point.at, factor * point.error) for point in points))
 
 
 def _cycle_sentences(results: RodResults) -> Iterator[str]:
@@ -218,13 +205,8 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
                 f"({word.replace('_', ' ')})"
             )
             continue
-        period, y = (
-            unit.text(float(v[name]), float(v[name] * v[error]))
-            for name, error, unit in (
-                ("period", "period_error", units.time),
-                ("tip_y_max", "amplitude_error", units.length),
-            )
-        )
+        period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
+        y = units.length.text(float(v["tip_y_max"]), float(v["tip_y_max"] * v["amplitude_error"]))
         unstable = ", unstable," if word == "unstable" else ""
         clauses.append(
             f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"

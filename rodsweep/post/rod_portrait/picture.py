@@ -3,6 +3,7 @@ cycles."""
 
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -109,10 +110,8 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.set_xlim(0, float(v["F_end"]))
     drawn_classes = draw_class_bar(axes, view, 0, is_vertical=False)
     force = results.units.force
-    mark_handles = mark_thresholds_on_bars(
-        axes, view, is_vertical=False, unit=force.name, factor=force.factor
-    )
-    return [*class_legend_entries(drawn_classes), *mark_handles]
+    marks = mark_thresholds_on_bars(axes, view, is_vertical=False, unit=force.name, factor=force.factor)
+    return [*class_legend_entries(drawn_classes), *marks]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
@@ -121,9 +120,8 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
     rod = results.branches
     if rod is None or not _has_branches(results):
         lower.set_axis_off()
-        _write_sentence(
-            upper, results.missing.get("branch", "no branch of cycles begins in this range"), PARAGRAPH_WIDTH
-        )
+        reason = results.missing.get("branch", "no branch of cycles begins in this range")
+        _write_sentence(upper, reason, PARAGRAPH_WIDTH)
         return []
     handles: list[Artist] = [
         *stability_entries(rod.curves),
@@ -139,8 +137,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
     upper.tick_params(labelbottom=False)
-    units = results.units
-    force, y, period = units.labels
+    force, y, period = results.units.labels
     upper.set_ylabel(y)
     lower.set(ylabel=period, xlabel=force, yscale="log")
     return handles
@@ -153,18 +150,9 @@ def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
         (F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()
     ]
     handles: list[Line2D] = []
+    look: dict[str, Any] = {"color": "k", "ms": 9, "mec": "white", "mew": 0.6, "label": CYCLE_LEGEND_ENTRY}
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        values = [float(v[name]) for _, v in cycles]
-        handles = axes.plot(
-            [F for F, _ in cycles],
-            values,
-            "*",
-            color="k",
-            ms=9,
-            mec="white",
-            mew=0.6,
-            label=CYCLE_LEGEND_ENTRY,
-        )
+        handles = axes.plot([F for F, _ in cycles], [float(v[name]) for _, v in cycles], "*", **look)
     return handles if cycles else []
 
 

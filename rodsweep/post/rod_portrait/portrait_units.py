@@ -64,9 +64,8 @@ class PortraitUnits:
         the ends, by end."""
         factor = self.force.factor
         scaled_ranges = [(factor * low, factor * high) for low, high in ranges]
-        return self.load_phrase(
-            ranges_text(scaled_ranges, {factor * end: factor * error for end, error in errors.items()})
-        )
+        scaled_errors = {factor * end: factor * error for end, error in errors.items()}
+        return self.load_phrase(ranges_text(scaled_ranges, scaled_errors))
 
     def frequency_text(self, omega: float) -> str:
         """Angular frequency `omega`, in 1/tau2, as text; for an arm, as a frequency in Hz."""
@@ -105,16 +104,18 @@ def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))
-    units = [
-        Unit(name=name, factor=scale * factor)
-        for scale, (factor, name) in (
-            (force, printing_unit(view, "N" if load == "force" else "Pa", force * largest)),
-            (length, printing_unit(view, "m", length)),
-            (tau2, printing_unit(view, "s", tau2)),
-        )
-    ]
-    hertz = Unit(name="Hz", factor=1 / (tau * tau2))
-    return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
+
+    def unit(si: str, scale: float, largest: float) -> Unit:
+        factor, name = printing_unit(view, si, largest)
+        return Unit(name=name, factor=scale * factor)
+
+    return PortraitUnits(
+        force=unit("N" if load == "force" else "Pa", force, force * largest),
+        length=unit("m", length, length),
+        time=unit("s", tau2, tau2),
+        frequency=Unit(name="Hz", factor=1 / (tau * tau2)),
+        load=load,
+    )
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:

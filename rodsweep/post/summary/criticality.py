@@ -62,13 +62,9 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     size = span_text(*(table[:, 0] for table in values))
     lines.append(f"first Hopf point of each rod: {_count_text(criticality[:, 0])}; F = {F}, a = {size} L")
     lines += _subcritical_lines(view)
-    reliability = [
-        _searched_range_line(view, computed),
-        f"worst relative errors: c {_maximum(v['landau_error'][computed])}, dw/dF "
-        f"{_maximum(v['growth_slope_error'][computed])}, a "
-        f"{_maximum(v['amplitude_coefficient_error'][computed])}, b "
-        f"{_maximum(v['frequency_slope_error'][computed])}",
-    ]
+    symbols = {"landau": "c", "growth_slope": "dw/dF", "amplitude_coefficient": "a", "frequency_slope": "b"}
+    worst = [f"{symbol} {_maximum(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
+    reliability = [_searched_range_line(view, computed), f"worst relative errors: {', '.join(worst)}"]
     scope = "stored" if (v["crossing_count"][computed] > is_known.sum(axis=-1)).any() else "all"
     sizes = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
     return SummaryLines(lines, reliability, [f"{scope} Hopf points: {_count_text(criticality)}; {sizes}"])
@@ -116,11 +112,9 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
         return f"unstable cycles at {side_of_hopf}"
     if count < 0:
         return f"cycles at {side_of_hopf}"
-    return (
-        f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
-        if other_count
-        else f"stable cycles at {side_of_hopf}"
-    )
+    if other_count:
+        return f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
+    return f"stable cycles at {side_of_hopf}"
 
 
 def _subcritical_lines(view: ResultView) -> Iterator[str]:

@@ -34,15 +34,13 @@ def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
         details = [*leading_lines(view, computed), *unknowns]
     errors = view.variables["mode_error"][computed]
     if np.isfinite(errors).any():
-        unknown_count = int((~np.isfinite(errors)).any(axis=-1).sum())
-        unknown_clause = (
-            f"; not known at {count_of_total(unknown_count, len(errors), 'point')}" if unknown_count else ""
-        )
-        reliability.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{unknown_clause}")
+        text = f"error of the modes, relative: worst {np.nanmax(errors):.1e}"
+        if unknown_count := int((~np.isfinite(errors)).any(axis=-1).sum()):
+            text += f"; not known at {count_of_total(unknown_count, len(errors), 'point')}"
+        reliability.append(text)
     numbers = eigenvalue_table(view) if computed.size == 1 else None
-    return SummaryLines(
-        [*answer, *growth_lines(view, computed)], reliability, details, arm_sentences, numbers
-    )
+    answer += growth_lines(view, computed)
+    return SummaryLines(answer, reliability, details, arm_sentences, numbers)
 
 
 def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
@@ -58,9 +56,8 @@ def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     lines.append(f"numerical abscissa: {known_range_text(v, 'numerical_abscissa', computed)} 1/tau2")
     if np.isfinite(growth).any():
         finite = computed & np.isfinite(v["transient_growth"])
-        growth_text, time_text = (
-            known_range_text(v, f"transient_{name}", finite) for name in ("growth", "time")
-        )
+        names = ("transient_growth", "transient_time")
+        growth_text, time_text = (known_range_text(v, name, finite) for name in names)
         time_clause = "" if time_text == NONE_TEXT else f", at t = {time_text} tau2"
         lines.append(f"largest transient growth: {growth_text} times{time_clause}")
     if np.isinf(growth).any():

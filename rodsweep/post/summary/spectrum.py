@@ -27,9 +27,8 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of spectra. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
-        return SummaryLines(
-            [unstable_count_line(view)], [], unknowns_lines(view, computed), [], eigenvalue_table(view)
-        )
+        numbers = eigenvalue_table(view)
+        return SummaryLines([unstable_count_line(view)], [], unknowns_lines(view, computed), numbers=numbers)
     lines, location_note, arm_sentences = threshold_lines(view)
     reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
     details = [*leading_lines(view, computed), *unknowns_lines(view, computed)]
@@ -45,10 +44,8 @@ def stable_line(view: ResultView, computed: np.ndarray) -> str:
     point_count = counted(int(computed.sum()), "point")
     if len(masks_by_word) == 1:
         return f"straight rod: {next(iter(masks_by_word))} at all {point_count}"
-    counts = (
-        f"{word} at {int(mask.sum())}{in_brackets(region_text(view, mask))}"
-        for word, mask in masks_by_word.items()
-    )
+    regions = {word: in_brackets(region_text(view, mask)) for word, mask in masks_by_word.items()}
+    counts = (f"{word} at {int(mask.sum())}{regions[word]}" for word, mask in masks_by_word.items())
     return f"straight rod, of {point_count}: {', '.join(counts)}"
 
 
@@ -58,10 +55,8 @@ def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     v = view.variables
     if not np.isfinite(v["growth_rate"][computed][:, 0]).any():
         return []
-    rate, frequency = (
-        span_text(v[name][computed][:, 0], v["error_estimate"][computed][:, 0])
-        for name in ("growth_rate", "frequency")
-    )
+    error = v["error_estimate"][computed][:, 0]
+    rate, frequency = (span_text(v[n][computed][:, 0], error) for n in ("growth_rate", "frequency"))
     return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
 
 
@@ -103,10 +98,8 @@ def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     relative = v["error_estimate"][computed] / size
     if not np.isfinite(relative).any():
         return []
-    return [
-        f"relative error of the eigenvalues: at most {np.nanmax(relative):.1e}, median "
-        f"{np.nanmedian(relative):.1e}"
-    ]
+    worst, median = (f"{statistic(relative):.1e}" for statistic in (np.nanmax, np.nanmedian))
+    return [f"relative error of the eigenvalues: at most {worst}, median {median}"]
 
 
 def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
@@ -116,12 +109,10 @@ def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     unknowns = 3 * v["elements"][computed].astype(int) * v["order"][computed]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"]
-    followed_clause = (
-        f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
-        if followed
-        else ""
-    )
-    return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{followed_clause}"]
+    text = f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}"
+    if followed:
+        text += f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
+    return [text]
 
 
 def stability_line(view: ResultView, computed: np.ndarray) -> str:

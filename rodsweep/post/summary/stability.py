@@ -64,11 +64,8 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(errors))})" if errors else ""
-    lines_text = (
-        f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
-        if len(by_line) < len(names)
-        else ""
-    )
+    lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
+    lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
         rate_text = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
@@ -76,20 +73,17 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
     if len(by_line) <= MAX_LISTED_LINES:
         texts = ((" and ".join(map(_position_text, by_line[i])), names[i]) for i in by_line)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error}"
+    bracketed = [point for point in points if isinstance(point, UnlocatedThreshold)]
     if not located:
-        ends = [(point.low, point.high) for point in points if isinstance(point, UnlocatedThreshold)]
-        low = min(low for low, _ in ends)
-        high = max(high for _, high in ends)
+        low = min(point.low for point in bracketed)
+        high = max(point.high for point in bracketed)
         return f"between {low:.6g} and {high:.6g}{lines_text}"
     lowest = min(located, key=lambda point: point.position)
     highest = max(located, key=lambda point: point.position)
-    unlocated = len(points) - len(located)
-    further = (
-        f"; {counted(unlocated, 'further threshold')} known only to lie between two points"
-        if unlocated
-        else ""
-    )
-    return f"{_position_text(lowest)} to {_position_text(highest)}{error}{lines_text}{further}"
+    text = f"{_position_text(lowest)} to {_position_text(highest)}{error}{lines_text}"
+    if bracketed:
+        text += f"; {counted(len(bracketed), 'further threshold')} known only to lie between two points"
+    return text
 
 
 def _position_text(threshold: Threshold) -> str:

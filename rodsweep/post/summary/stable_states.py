@@ -42,7 +42,6 @@ def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> 
         f"{percent:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for percent, word in percents if percent
     )
     lines = [f"stable states, in % of the grid points: {texts}"]
-    located = {}
     for phrase, state in LISTED_STATES.items():
         in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]
         if in_state.any():
@@ -59,13 +58,11 @@ def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> 
             lines.append(f"{phrase}: only between grid points on {rows}, {row} = {hidden_values}")
     for kind, phrase in CYCLE_CHANGE_WORDS.items():
         is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
-        located[phrase] = is_of_kind.any(axis=-1), positions[is_of_kind]
-    for phrase, (rows, values) in located.items():
-        if rows.any():
-            lines.append(
-                f"{phrase}: on {count_of_total(rows.sum(), computed.sum(), 'row')}, "
-                f"{line} = {span_text(values)}, {row} = {axis_values_text(row_values[rows])}"
-            )
+        has_kind = is_of_kind.any(axis=-1)
+        if has_kind.any():
+            on_rows = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
+            rows = axis_values_text(row_values[has_kind])
+            lines.append(f"{phrase}: {on_rows}, {line} = {span_text(positions[is_of_kind])}, {row} = {rows}")
     return lines
 
 
@@ -83,9 +80,7 @@ def _both_between_grid_points(view: ResultView, line: str) -> np.ndarray:
         hopfs = v["crossing_at"][row][np.isin(v["crossing_kind"][row], HOPF_CROSSING_CODES)]
         specials = v[f"cycle_special_{line}"][row][~np.isin(v["cycle_special_kind"][row], NO_CYCLE_CHANGE)]
         for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
-            positions_between = [
-                positions[(positions > x[i]) & (positions < x[i + 1])] for positions in (hopfs, specials)
-            ]
+            positions_between = [p[(p > x[i]) & (p < x[i + 1])] for p in (hopfs, specials)]
             if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, positions_between)) != [1, 1]:
                 continue
             (change_of_straight,), (change_of_cycle,) = positions_between

@@ -63,10 +63,8 @@ def variable_digest(
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Digest of every attribute of a file by name, except attributes of HDF5, netCDF and the user."""
-    values = _plain_attributes(attributes)
-    return {
-        name: sha256(json.dumps(value).encode()).hexdigest()[:DIGEST_DIGITS] for name, value in values.items()
-    }
+    texts = {name: json.dumps(value) for name, value in _plain_attributes(attributes).items()}
+    return {name: sha256(text.encode()).hexdigest()[:DIGEST_DIGITS] for name, text in texts.items()}
 
 
 def digests_of(file: h5py.File) -> Digests:
@@ -76,10 +74,8 @@ def digests_of(file: h5py.File) -> Digests:
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBER_KINDS or data.shape is None:
             raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
-        dimensions = _dimensions(name, data)
-        variables[name] = variable_digest(
-            data.dtype, data.shape, dimensions, data.attrs, _number_buffers(data)
-        )
+        described = data.dtype, data.shape, _dimensions(name, data), data.attrs
+        variables[name] = variable_digest(*described, _number_buffers(data))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
@@ -132,17 +128,12 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged. HDF5's own
     functions for dimensions are not used, because they crash on damaged attributes."""
     attributes = data.attrs
-    changed = ValueError(
-        f"the dimensions of {printable_name(name, 40)} were changed after rodsweep wrote them"
-    )
+    text = printable_name(name, 40)
+    changed = ValueError(f"the dimensions of {text} were changed after rodsweep wrote them")
     if "CLASS" in attributes:
         number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
         stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
-        if [_attribute_as_list(value) for value in stored] != [
-            ["DIMENSION_SCALE"],
-            [name],
-            _attribute_as_list(number),
-        ]:
+        if list(map(_attribute_as_list, stored)) != [["DIMENSION_SCALE"], [name], _attribute_as_list(number)]:
             raise changed
         return [name]
     if "DIMENSION_LIST" not in attributes:
@@ -152,9 +143,8 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
         raise changed
     file = data.file.id
     try:  # by low-level handles, because `data.file[place]` takes half the time of opening a file
-        scales = [
-            h5py.h5r.dereference(r, file) for references in attributes["DIMENSION_LIST"] for r in references
-        ]
+        references = (each for references in attributes["DIMENSION_LIST"] for each in references)
+        scales = [h5py.h5r.dereference(reference, file) for reference in references]
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):
         raise changed from None

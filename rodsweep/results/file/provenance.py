@@ -125,9 +125,8 @@ def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
     }
-    history |= joined_failure_reasons(
-        *(str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
-    )
+    reasons = (str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
+    history |= joined_failure_reasons(*reasons)
     runs = [attributes for attributes in attribute_sets if "ranks" in attributes]
     if not runs:
         return history
@@ -150,14 +149,9 @@ def git_commit() -> str:
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--match="]
     try:
-        run = subprocess.run(
-            ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--match="],
-            capture_output=True,
-            text=True,
-            timeout=10,
-            check=False,
-        )
+        run = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return "unknown"
     return run.stdout.strip() or "unknown"

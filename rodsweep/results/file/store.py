@@ -159,19 +159,16 @@ class ResultFileWriter:
         """Adds journalled points and attributes by one replacement; deletes the journals. additions: as for
         `finish`; None if points are missing."""
         plan = self.plan
-        self.restore_missing_file()
+        with disk_refusals(self.path, self._kept_points_clause):
+            self._restore_missing_file()
         blocks = read_journals(self.journal_directory, plan.layout, plan.fingerprint, plan.points.count)
         self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINT_GLOB, BACKUP_GLOB):
                 delete_matching_files(self.journal_directory, pattern)
 
-    def restore_missing_file(self) -> None:
-        """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
-        with disk_refusals(self.path, self._kept_points_clause):
-            self._restore_missing_file()
-
     def _restore_missing_file(self) -> None:
+        """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
         if file_identity(self.path) == self.replacement.last_identity:
             return
         if not self.path.exists():
@@ -184,9 +181,8 @@ class ResultFileWriter:
             if header.fingerprint != self.plan.fingerprint:
                 require_same_config(header, self.plan, self.journal_directory)
         except InputError as error:
-            raise EnvironmentIncomplete(
-                f"the result file was changed or replaced during the run: {error}"
-            ) from None
+            message = f"the result file was changed or replaced during the run: {error}"
+            raise EnvironmentIncomplete(message) from None
 
     def _add_blocks(
         self,

@@ -137,8 +137,8 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the axes of a grid over an arm's quantities in a resolved config; else empty."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
-    multi_valued = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
-    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in multi_valued.items()}
+    ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
+    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
     return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
@@ -151,10 +151,9 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
     if arm is None:
         return ()
     if not points.arm_axes:
-        return tuple(
-            _si_variable(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
-            for name, values in arm.grid_quantities().items()
-        )
+        quantities = arm.grid_quantities()
+        along = {n: (PARAMETER_STORED_ALONG[n],) if np.ndim(v) else () for n, v in quantities.items()}
+        return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
     columns = points.units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
@@ -184,11 +183,9 @@ def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -
     dimensions = tuple(points.arm_axes)
     result = {}
     for variable, values in quantities:
-        index = [slice(None) if name in variable.extra else None for name in dimensions]
-        values_at_points = (
-            np.broadcast_to(values[tuple(index)], points.shape).ravel() if variable.extra else values
-        )
-        result[variable.name] = values_at_points
+        index = tuple(slice(None) if name in variable.extra else None for name in dimensions)
+        is_axis = bool(variable.extra)
+        result[variable.name] = np.broadcast_to(values[index], points.shape).ravel() if is_axis else values
     return result
 
 

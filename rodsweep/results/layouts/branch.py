@@ -160,6 +160,5 @@ def layout(config: dict[str, Any]) -> Layout:
     )
     parameters = parameter_names_except(parameter, NONLINEAR_PARAMETERS)
     variables = with_certified_meaning(variables, config, "Hopf points")
-    return Layout(
-        variables, {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}, parameters
-    )
+    extents = {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}
+    return Layout(variables, extents, parameters)

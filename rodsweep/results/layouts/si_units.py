@@ -29,9 +29,8 @@ class SIUnit(NamedTuple):
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
         """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
         or (n,) each."""
-        numerator, denominator = (
-            prod(quantities[name] for name in names) for names in (self.factors, self.divisors)
-        )
+        numerator = prod(quantities[name] for name in self.factors)
+        denominator = prod(quantities[name] for name in self.divisors)
         return np.asarray(numerator / (2 * np.pi * denominator if self.unit == HERTZ else denominator))
 
 

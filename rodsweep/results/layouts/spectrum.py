@@ -55,16 +55,10 @@ ESTIMATED_MEANING = (
 """Long name of the variable `certified` in a file of arms that vary along their length."""
 POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH_VARIABLES, SECONDS, STATUS)
 SHARED_TIME = "time spent on the point; for points solved together, an equal share of their time"
-FOLLOWED_POINT_VARIABLES = (
-    UNSTABLE_COUNT,
-    CERTIFIED,
-    *(
-        replace(v, long_name=f"{v.long_name}; 0: eigenvalues continued from a neighbouring point")
-        for v in MESH_VARIABLES
-    ),
-    replace(SECONDS, long_name=SHARED_TIME),
-    STATUS,
-)
+NO_MESH_SUFFIX = "; 0: eigenvalues continued from a neighbouring point"
+FOLLOWED_MESH_VARIABLES = (replace(v, long_name=v.long_name + NO_MESH_SUFFIX) for v in MESH_VARIABLES)
+FOLLOWED_SECONDS = replace(SECONDS, long_name=SHARED_TIME)
+FOLLOWED_POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *FOLLOWED_MESH_VARIABLES, FOLLOWED_SECONDS, STATUS)
 """Variables of a point of the task spectrum, whose eigenvalues may be followed from a neighbouring point."""
 EIGENVECTOR_VARIABLES = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),

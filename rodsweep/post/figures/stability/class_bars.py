@@ -47,7 +47,7 @@ def draw_class_bars(view: ResultView) -> Figure:
     drawn_classes = set[str]()
     for rod in range(count):
         drawn_classes |= draw_class_bar(axes, view, rod, is_vertical=count > 1)
-    handles: list = class_legend_entries(word for word in CLASS_COLOURS if word in drawn_classes)
+    handles: list = class_legend_entries(drawn_classes)
     handles += mark_thresholds_on_bars(axes, view, is_vertical=count > 1)
     end = float(np.nanmax(v["F_end"]))
     if count == 1:

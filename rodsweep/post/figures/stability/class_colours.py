@@ -1,6 +1,6 @@
 """Colours and legend entries of the stability classes of the straight rod, and of the stable states."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,8 +45,12 @@ LEGEND_ENTRIES = {
 entry."""
 
 
-def class_legend_entries(words: Iterable[str], colours: Mapping[str, str] = CLASS_COLOURS) -> list[Patch]:
-    """Legend entries for the words `words` in their colours, in the order of `words`."""
+def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
+    """Legend entries for the classes in `drawn_classes`."""
+    return _legend_entries([word for word in CLASS_COLOURS if word in drawn_classes], CLASS_COLOURS)
+
+
+def _legend_entries(words: Sequence[str], colours: Mapping[str, str]) -> list[Patch]:
     look: dict[str, Any] = {"edgecolor": "0.5", "lw": 0.5}
     return [Patch(facecolor=colours[word], label=LEGEND_ENTRIES.get(word, word), **look) for word in words]
 
@@ -71,8 +75,7 @@ class Palette:
 
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        drawn_words = (word for number, word in self.words if (table == number).any())
-        return class_legend_entries(drawn_words, self.colours)
+        return _legend_entries([w for number, w in self.words if (table == number).any()], self.colours)
 
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)

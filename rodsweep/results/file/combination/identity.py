@@ -46,14 +46,9 @@ def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     axes = [config.parameters.axes for config in configs]
     common = axes[0].keys() & axes[1].keys()
     equal = {name for name in common if np.array_equal(axes[0][name].array(), axes[1][name].array())}
-    written = [
-        {
-            name: value
-            for name, value in config["parameters"].items()
-            if name not in equal and name != "points"
-        }
-        for config in (stored, given)
-    ]
+    omitted = {*equal, "points"}
+    sections = (config["parameters"] for config in (stored, given))
+    written = [{n: value for n, value in each.items() if n not in omitted} for each in sections]
     kinds = [_point_set_kind(config.parameters) for config in configs]
     return (
         config_difference(kinds[0], kinds[1], "parameters")

@@ -124,10 +124,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
             "config; run --extend adds points to the file"
         )
-    if grids[0].is_grid:
-        points, point_maps = _joined_grid(grids)
-    else:
-        points, point_maps = _joined_list(grids)
+    points, point_maps = _joined_grid(grids) if grids[0].is_grid else _joined_list(grids)
     config = _joined_config(first, settings, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
@@ -234,7 +231,5 @@ def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> Fi
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
-    kept_attributes = {
-        name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES
-    }
-    return replace(plan, attributes=kept_attributes | {"config": text}, flags=flags)
+    kept = {n: value for n, value in header.attributes.items() if n not in NOT_INHERITED_ATTRIBUTES}
+    return replace(plan, attributes=kept | {"config": text}, flags=flags)
