@@ -3,7 +3,7 @@
 import resource
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from math import inf, isfinite, isnan, nan
 from pathlib import Path
@@ -187,13 +187,12 @@ def measure_cases(
     times = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, times, strict=True):
-        min_seconds = min(timed.seconds)
         failed = isinstance(timed.outcome, Exception)
-        empty = Measurement(
-            entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=min_seconds
-        )
-        failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
-        measurements.append(replace(empty, **(failure if failed else entry.judge(timed.outcome))))
+        judged = {"failure": f"failed ({type(timed.outcome).__name__})"}
+        fields = {"error": inf} | (judged if failed else entry.judge(timed.outcome))
+        names = {"case": entry.name, "method": c.method, "setting": c.setting, "group": c.group}
+        fields |= names | {"seconds": timed.median, "least_seconds": min(timed.seconds)}
+        measurements.append(Measurement(**fields))
     return measurements
 
 
@@ -242,8 +241,6 @@ def markdown_table(titles: str, line: str, rows: Iterable[Mapping[str, object]])
     """
     lines = [f"| {titles} |", "|" + "---|" * (titles.count("|") + 1)]
     for row in rows:
-        cells = {
-            k: BlankIfNan(value) if isinstance(value, int | float) else value for k, value in row.items()
-        }
+        cells = {k: BlankIfNan(v) if isinstance(v, int | float) else v for k, v in row.items()}
         lines.append(f"| {line.format_map(cells)} |")
     return "\n".join(lines)

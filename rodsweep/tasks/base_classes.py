@@ -85,11 +85,8 @@ class CertifiedTask(Task):
     def check_rows(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, with a row on the certificate."""
         quantity, reason = self.never_modelled
-        rows = [
-            *rod_check_rows(self.parameter_values),
-            *material_check_rows(self.config, self.parameter_values),
-            *self.option_rows(),
-        ]
+        values = self.parameter_values
+        rows = [*rod_check_rows(values), *material_check_rows(self.config, values), *self.option_rows()]
         return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
 
 
@@ -102,9 +99,6 @@ class HopfPointTask(CertifiedTask):
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL_DRAG_ROW: ClassVar[CheckRow] = (
-        "axial drag",
-        True,
-        "parameters.gamma1; it changes cycles, but no Hopf point",
-    )
+    AXIAL_DRAG_ROW: ClassVar[CheckRow]
     """Row of `check` on the axial drag."""
+    AXIAL_DRAG_ROW = "axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point"

@@ -84,9 +84,8 @@ def arms_line(
         return arms
     count = counted(mesh.element_count, "element")
     has_several_arms = any(len(np.unique(column)) > 1 for column in columns.values())
-    return (
-        f"{arms}; the first mesh{' of the hardest arm' * has_several_arms} has {count} of order {mesh.order}"
-    )
+    mesh_text = f"the first mesh{' of the hardest arm' * has_several_arms}"
+    return f"{arms}; {mesh_text} has {count} of order {mesh.order}"
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
@@ -105,11 +104,8 @@ def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]
 def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius."""
-    if (
-        config.stated_build is None
-        and config.parameters.arm is not None
-        and config.parameters.arm.cone_parameters
-    ):
+    arm = config.parameters.arm
+    if config.stated_build is None and arm is not None and arm.cone_parameters:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
     rows = f"a profile of {counted(len(profile.u), 'row')}"

@@ -111,21 +111,22 @@ class Solver:
 
         solve_group: new function that solves a group, if the solver has groups.
         """
-        wrapped = self.chained
+        chained = self.chained
         grouped = self.grouped
-        if wrapped is not None:
-            step = wrapped.solve_from
-            wrapped = replace(
-                wrapped,
-                solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
-            )
-        if grouped is not None and solve_group is not None:
-            grouped = grouped[0], solve_group
 
         def solve(index: int) -> Any:
             return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
-        return replace(self, solve=solve, chained=wrapped, grouped=grouped, **changed)
+        if chained is not None:
+            step = chained.solve_from
+
+            def solve_from(index: int, state: State) -> tuple[Any, State]:
+                return solve_wrapper(index, state, lambda: step(index, state))
+
+            chained = replace(chained, solve_from=solve_from)
+        if grouped is not None and solve_group is not None:
+            grouped = grouped[0], solve_group
+        return replace(self, solve=solve, chained=chained, grouped=grouped, **changed)
 
 
 def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:

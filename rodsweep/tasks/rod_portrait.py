@@ -66,11 +66,9 @@ class PortraitRequest:
     ) -> Job:
         """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
         relative accuracy if the request has none; None for the default of the task."""
+        given = self.rod.parameters
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
-        given_parameters = self.rod.parameters
-        values: dict[str, Any] = {
-            name: given_parameters[name] for name in names if name in given_parameters and name != "F"
-        }
+        values: dict[str, Any] = {name: given[name] for name in names if name in given and name != "F"}
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
         document: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
@@ -99,13 +97,10 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
             missing.setdefault(task, str(error))
             return None
 
-    branch_options = request.branch_options
-    for task, options, accuracy in (
-        ("criticality", F_max, None),
-        ("branch", branch_options, BRANCH_ACCURACY),
-    ):
-        if (view := solved(task, options, default_accuracy=accuracy)) is not None:
-            views[task] = view
+    if (view := solved("criticality", F_max)) is not None:
+        views["criticality"] = view
+    if (view := solved("branch", request.branch_options, default_accuracy=BRANCH_ACCURACY)) is not None:
+        views["branch"] = view
     modes = {
         kind: (F, view)
         for kind, F in first_threshold_forces(views["thresholds"]).items()

@@ -112,14 +112,11 @@ class SpectrumTask(CertifiedTask):
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
-        vectors = "spectrum.vectors adds them"
+        vectors = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
         longitudinal = "they decouple; spectrum.longitudinal adds them"
-        if options.vectors:
-            vectors = f"on {options.nodes} nodes"
         if options.longitudinal:
-            longitudinal = (
-                "closed form, no mesh" if self.config.is_uniform_and_linear else "on elements of their own"
-            )
+            is_closed_form = self.config.is_uniform_and_linear
+            longitudinal = "closed form, no mesh" if is_closed_form else "on elements of their own"
         return [
             ("transverse modes", True, "task: spectrum"),
             ("longitudinal modes", options.longitudinal, longitudinal),
@@ -155,9 +152,8 @@ class SpectrumTask(CertifiedTask):
         from ..solve.spectrum.two_meshes import solve_on_two_meshes
 
         options = self.config.spectrum
-        request = SpectrumRequest(
-            options.modes, self.config.accuracy, self.config.certifies, self._vector_nodes
-        )
+        accuracy, certifies = self.config.accuracy, self.config.certifies
+        request = SpectrumRequest(options.modes, accuracy, certifies, self._vector_nodes)
         groups = self.groups
         solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
@@ -178,9 +174,8 @@ class SpectrumTask(CertifiedTask):
         assert groups is not None
         followed_parameter = self.points.varying_parameters[groups.axis]
         path = ParameterPath(self.points.rod(int(indices[0])), followed_parameter)
-        followed = follow_spectra(
-            NeighbouringRods(path, self.points.values_of(indices)[followed_parameter]), request
-        )
+        rods = NeighbouringRods(path, self.points.values_of(indices)[followed_parameter])
+        followed = follow_spectra(rods, request)
         return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 
 

@@ -91,9 +91,7 @@ def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
     measurements = measure_hard_rods(every_nth_setting(methods, stride), rounds)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return BenchmarkReport(
-        "spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms
-    )
+    return BenchmarkReport("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], arms)
 
 
 def cheapest_contenders(
@@ -189,19 +187,16 @@ def pencil_mesh(order: int) -> Resolution:
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
     order of the pencil."""
-    eigenvalues = uniform_solver(pencil_mesh(size)).solve(
-        rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True
-    )
+    solver = uniform_solver(pencil_mesh(size))
+    eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def contenders() -> list[TimedMethod]:
     """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
+    krylov = {str(size): partial(krylov_schur, size=size) for size in ELEMENT_ORDERS}
     return [
         TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
         TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
-        *(
-            TimedMethod(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
-            for size in ELEMENT_ORDERS
-        ),
+        *(TimedMethod(KRYLOV_SCHUR, size, PENCIL_GROUP, run) for size, run in krylov.items()),
     ]

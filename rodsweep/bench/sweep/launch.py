@@ -144,27 +144,22 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
     full_command = [*launcher_words(ranks), *command]
-    processes = [
-        _start_command(full_command, case.solver_kind, directory, fresh) for directory in case.directories
-    ]
-    stated_seconds = [_printed_seconds(process, case.solver_kind) for process in processes]
+    kind = case.solver_kind
+    processes = [_start_command(full_command, kind, directory, fresh) for directory in case.directories]
+    stated_seconds = [_printed_seconds(process, kind) for process in processes]
     seconds = time.monotonic() - start
     other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solve_times = [
-        _solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files
-    ]
+    solve_times = [_solver_time_and_share(file) if kind == SOLVED else (0.0, nan) for file in files]
+    journals = [page for file in files for page in journal_directory(file).glob("rank-*")]
+    prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
     return CommandRunCost(
         seconds=seconds,
         stated_seconds=max(stated_seconds),
         solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
-        peak_memory=tuple(
-            _peak_memory(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
-        ),
+        peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
         file_bytes=sum(file.stat().st_size for file in files),
-        journal_bytes=sum(
-            page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
-        ),
+        journal_bytes=sum(page.stat().st_size for page in journals),
         processors_busy_elsewhere=float(other_load),
         busy_fraction=min(busy_fractions for _, busy_fractions in solve_times),
     )
@@ -207,9 +202,8 @@ def _solver_time_and_share(file: Path) -> tuple[float, float]:
     """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
     file."""
     view = read_view(file)
-    busy_seconds, idle_seconds = (
-        float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle")
-    )
+    names = ("rank_busy_seconds", "rank_idle_seconds")
+    busy_seconds, idle_seconds = (float(view.attributes[name].sum()) for name in names)
     return float(view.variables["seconds"].sum(dtype=float)), busy_seconds / (busy_seconds + idle_seconds)
 
 

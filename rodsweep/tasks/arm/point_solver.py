@@ -164,19 +164,14 @@ class SkippingSolver:
     def solver_of_all_points(self) -> Solver:
         """The solver of all points. It solves the points to which the rod model applies, and gives fill
         values to the other points."""
-        statuses = (*self.rod_solver.statuses, *OutsideModelStatus)
-        return self.rod_solver.with_wrapper(
-            self._solve, self._solve_group, record=self._record, statuses=statuses
-        )
+        changed = {"record": self._record, "statuses": (*self.rod_solver.statuses, *OutsideModelStatus)}
+        return self.rod_solver.with_wrapper(self._solve, self._solve_group, **changed)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.arm_statuses[index] == SLENDER:
             return solve()
-        return OutcomeOutsideModel(self._status(index), self.failures.get(index, "")), None
-
-    def _status(self, index: int) -> OutsideModelStatus:
-        """Status of a point to which the rod model does not apply."""
-        return next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
+        status = next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
+        return OutcomeOutsideModel(status, self.failures.get(index, "")), None
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, OutcomeOutsideModel):

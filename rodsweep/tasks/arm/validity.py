@@ -176,9 +176,8 @@ class ArmValidity:
         drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
-        effects = neglected_effects(
-            arm, rate, self._equivalent_base_force(F, index), drag=drag, amplitude=motion.amplitude
-        )
+        base_force = self._equivalent_base_force(F, index)
+        effects = neglected_effects(arm, rate, base_force, drag=drag, amplitude=motion.amplitude)
         relevant = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)

@@ -55,12 +55,9 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
         return ()
     lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
     kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGE_VARIABLES])
-    rows = (
-        tuple(row[v.name] for v in FORCE_CHANGE_VARIABLES)
-        for lines_with_changes in lines
-        for row in _thresholds_on_lines(lines_with_changes)
-    )
-    table = np.fromiter(rows, kind)
+    changes = (change for some_lines in lines for change in _thresholds_on_lines(some_lines))
+    names = [variable.name for variable in FORCE_CHANGE_VARIABLES]
+    table = np.fromiter((tuple(change[name] for name in names) for change in changes), kind)
     return tuple((v, table[v.name]) for v in FORCE_CHANGE_VARIABLES)
 
 
@@ -127,11 +124,8 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
             counts = lines.unstable_counts[number, [i, j]]
             stored_counts = np.count_nonzero(eigenvalues_here[[i, j]].real > 0, axis=-1)
             unstable = int(np.where(counts >= 0, counts, stored_counts).max())
-            located.append(
-                stability_change_between(
-                    rods, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j], unstable
-                )
-            )
+            pair = eigenvalues_here[i], eigenvalues_here[j]
+            located.append(stability_change_between(rods, (F[i], F[j]), *pair, unstable))
         for change in filter(None, located):
             values = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
             values |= {"error": change.error / abs(change.F) if change.F else change.error}
@@ -163,9 +157,8 @@ def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
     is_real = eigenvalues[..., :2].imag == 0
     line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., :2].real).all(axis=-1))
     is_far = F[upper] - F[lower] > MAX_FORCE_SPACING * np.ptp(F)
-    is_onset = (
-        is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & (eigenvalues[line, upper, 0].imag > 0)
-    )
+    is_complex = eigenvalues[line, upper, 0].imag > 0
+    is_onset = is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & is_complex
     return np.stack([line, lower, upper], axis=-1)[is_onset]
 
 

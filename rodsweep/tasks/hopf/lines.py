@@ -47,35 +47,23 @@ class HopfLine:
         from ...solve.point_outcome import FAILURES
 
         forget_arm_determinants()
+        fixed = self.fixed_parameters
+        ratio = self.build.relative_crushing_force(fixed.get("taper", 1.0))
+        margin = 1 - CRUSHING_END_SETTINGS.crushing_margin
         start = self.start
         end = self.stop
         if self.varied_parameter == "F":
-            end = min(
-                end,
-                self._crushing_force_ratio
-                * self.fixed_parameters["k1"]
-                * (1 - CRUSHING_END_SETTINGS.crushing_margin),
-            )
+            end = min(end, ratio * fixed["k1"] * margin)
         if self.varied_parameter == "k1":
-            start = max(
-                start,
-                self.fixed_parameters["F"]
-                / (self._crushing_force_ratio * (1 - CRUSHING_END_SETTINGS.crushing_margin)),
-            )
+            start = max(start, fixed["F"] / (ratio * margin))
         if not start < end:
             return None
-        start_values: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
+        start_values: dict[str, Any] = fixed | {self.varied_parameter: start}
         try:
-            return find_axis_crossings(
-                ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter), start, end
-            )
+            path = ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter)
+            return find_axis_crossings(path, start, end)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
-
-    @property
-    def _crushing_force_ratio(self) -> float:
-        """The the crushing force (zero stretch), in units of k1."""
-        return self.build.relative_crushing_force(self.fixed_parameters.get("taper", 1.0))
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:

@@ -56,7 +56,8 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> 
     After an exception in a group, each of its points is solved alone. Only points that fail again get fill
     values.
     """
-    return _GuardedSolver(solver, layout, note).guarded_solver()
+    guard = _GuardedSolver(solver, layout, note)
+    return solver.with_wrapper(guard.outcome, guard.solve_group, record=lambda _, outcome: outcome.values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,13 +69,7 @@ class _GuardedSolver:
     layout: Layout
     note_exception: PointExceptionNote
 
-    def guarded_solver(self) -> Solver:
-        """The guarded solver."""
-        return self.guarded.with_wrapper(
-            self._outcome, self._solve_group, record=lambda index, outcome: outcome.values
-        )
-
-    def _outcome(
+    def outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[RecordedOutcome, State]:
         """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
@@ -97,8 +92,8 @@ class _GuardedSolver:
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
-    def _solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
-        """Result of a group of points, at `indices`. After an unforeseen exception the result has fill
+    def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
+        """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill
         values, and states of every point that the point must be solved alone."""
         assert self.guarded.grouped is not None
         try:
@@ -108,10 +103,9 @@ class _GuardedSolver:
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception(indices.tolist(), error)
-            empty = {
-                name: np.stack([value] * len(indices)) for name, value in self.layout.empty_point.items()
-            }
-            return GroupResult(empty, np.zeros(len(indices), np.bool_))
+            count = len(indices)
+            empty = {name: np.stack([value] * count) for name, value in self.layout.empty_point.items()}
+            return GroupResult(empty, np.zeros(count, np.bool_))
 
 
 def describe_exception(error: Exception) -> str:
@@ -163,9 +157,8 @@ class TracebackLog:
             raise error
 
     def _write(self, place: str, error: Exception) -> None:
-        heading = (
-            f"{utc_time()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
-        )
+        program = f"rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}"
+        heading = f"{utc_time()} {program}: {place}\n"
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text
