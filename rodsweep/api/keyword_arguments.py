@@ -50,8 +50,6 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
                 _add_key(tree.setdefault(name, {}), key, entry)
             continue
         section = _section_of(name, sections)
-        if section is None:
-            section = _section_of(_similar_key(name, sections), sections)
         values_of_section = tree.setdefault(section, {}) if section else tree
         _add_key(values_of_section, name, plain_keyword(f"{section}.{name}" if section else name, value))
     _write_out_arm(task, tree)
@@ -76,15 +74,11 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
         names = [name for name in ArmConfig.model_fields if name not in omitted]
         complete_arm = with_load_in_si(arm) if has_load else arm
         quantities = {name: getattr(complete_arm, name) for name in names}
-        for name, default in DEFAULT_VALUES.items():
-            quantities[name] = None if quantities[name] == default else quantities[name]
-        if (
-            not has_load and arm.load == "force"
-        ):  # thresholds have the unit of the load that the arm would take
+        if not has_load and arm.load == "force":  # loads at thresholds have the unit of the arm's load
             quantities["load_kind"] = arm.load
-        parameters["arm"] = {
-            name: plain_value(value) for name, value in quantities.items() if value is not None
-        }
+        given = {name: value for name, value in quantities.items() if value is not None}
+        written = {n: v for n, v in given.items() if n not in DEFAULT_VALUES or v != DEFAULT_VALUES[n]}
+        parameters["arm"] = {name: plain_value(value) for name, value in written.items()}
 
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
@@ -137,10 +131,11 @@ def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     return {name: tuple(section.model_fields) for name, section in sections.items()} | {"": top_keys}
 
 
-def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """Name of the first section with the key `name`; None if no section has this key. sections: allowed keys
-    by name of the section."""
-    return next((section for section, allowed in sections.items() if name in allowed), None)
+def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str:
+    """Name of the first section with the key `name`, or else with the most similar key. sections: allowed
+    keys by name of the section. Raises InputError if no key is similar."""
+    section = next((section for section, allowed in sections.items() if name in allowed), None)
+    return _section_of(_similar_key(name, sections), sections) if section is None else section
 
 
 def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:

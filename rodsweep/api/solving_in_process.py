@@ -15,7 +15,7 @@ from ..results.file.view import ResultView
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
-from ..solve_progress import reporting_to, solve_part
+from ..solve_progress import SolvePosition, reporting_to, solve_part
 from ..sweep.points.groups import PointGroups, SolveGroup
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
@@ -112,9 +112,8 @@ def _solve_points(
     columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
     messages = [""] * count
     unsolved = range(count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
-    for solved_count, (index, outcome) in enumerate(
-        _solve_outcomes(unsolved, count, solver, display), count - len(unsolved) + 1
-    ):
+    outcomes = _solve_outcomes(unsolved, count, solver, display)
+    for solved_count, (index, outcome) in enumerate(outcomes, count - len(unsolved) + 1):
         record = solver.record(index, outcome)
         for name, array in columns.items():
             array[index] = record[name]
@@ -122,11 +121,8 @@ def _solve_points(
         reasons.add(index, outcome)
         display(solved_count)
     shape = job.points.shape
-    return (
-        {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()},
-        messages,
-        [*reasons.examples.values()],
-    )
+    values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()}
+    return values, messages, [*reasons.examples.values()]
 
 
 def _solve_groups(
@@ -181,10 +177,8 @@ def _solve_outcomes(
     def point_progress() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
         name = f"point {solved_count + 1} of {count}" if count > 1 else ""
-        with (
-            solve_part(name, (solved_count / count, (solved_count + 1) / count)),
-            reporting_to(display_listener(display, name)),
-        ):
+        share = solved_count / count, (solved_count + 1) / count
+        with solve_part(name, share), reporting_to(display_listener(display, name)):
             yield
 
     if solver.chained is None:
@@ -221,10 +215,8 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
 def display_listener(display: Display, name: str) -> RankListener:
     """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
     KeyboardInterrupt."""
-    return RankListener(
-        SingleRankCommunication(
-            lambda position: display.show_position(position.text, position.completed_fraction or 0.0)
-        ),
-        StopRequest(),
-        lambda: name,
-    )
+
+    def show(position: SolvePosition) -> None:
+        display.show_position(position.text, position.completed_fraction or 0.0)
+
+    return RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)

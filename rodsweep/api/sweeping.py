@@ -66,8 +66,7 @@ def sweep(
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)
     if ranks is not None:
-        points = point_count_of_valid_tree(tree)
-        _refuse_idle_ranks(ranks, points)
+        _refuse_idle_ranks(ranks, point_count_of_valid_tree(tree))
         return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_in_process(job_of_tree(tree), None if strict else _warn_of_failed_points, progress).dataset
 
@@ -157,7 +156,6 @@ def _mpiexec_path() -> str:
     next_to_python = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     path = next_to_python or shutil.which("mpiexec")
     if path is None:
-        raise EnvironmentIncomplete(
-            "mpiexec, which starts the ranks, is not found; `make install` provides it"
-        )
+        message = "mpiexec, which starts the ranks, is not found; `make install` provides it"
+        raise EnvironmentIncomplete(message)
     return path

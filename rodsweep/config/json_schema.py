@@ -145,10 +145,8 @@ def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
-            allowed_texts = ("inf", "+inf") if parameter.rigid_adjective else ()
-            properties[name]["anyOf"] = [
-                with_axis_bounds(kind, parameter.allowed.schema_bounds, allowed_texts) for kind in kinds
-            ]
+            bounds = parameter.allowed.schema_bounds, ("inf", "+inf") if parameter.rigid_adjective else ()
+            properties[name]["anyOf"] = [with_axis_bounds(kind, *bounds) for kind in kinds]
 
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
@@ -167,15 +165,12 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
             if node.get("type") == "string":
                 node["pattern"] = pattern
     required = ["length", "young"]
-    circle = all_keys_given([*required, "radius"], no_key_given(["width", "height", "segments"]))
-    rectangle = all_keys_given(
-        [*required, "width", "height"], no_key_given([*SECTION_SIZE_NAMES[0], "segments"])
-    )
-    segments_condition = all_keys_given(
-        ["segments"], no_key_given([*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]])
-    )
+    round_sizes, rectangle_sizes = SECTION_SIZE_NAMES
+    circle = all_keys_given([*required, "radius"], no_key_given([*rectangle_sizes, "segments"]))
+    rectangle = all_keys_given([*required, *rectangle_sizes], no_key_given([*round_sizes, "segments"]))
+    in_segments = all_keys_given(["segments"], no_key_given([*round_sizes, *rectangle_sizes]))
     section["allOf"] = [
-        {"oneOf": [circle, rectangle, segments_condition]},
+        {"oneOf": [circle, rectangle, in_segments]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},
         *({"not": all_keys_given(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
     ]

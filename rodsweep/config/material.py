@@ -48,10 +48,9 @@ class ProfileTable(StrictConfigSection):
     @cached_property
     def profile(self) -> Profile:
         """The `Profile` of this table; ValueError for an invalid table."""
-        factors = {name: getattr(self, name) for name in FACTOR_NAMES}
-        columns = {
-            name: [1.0] * len(self.u) if column is None else column for name, column in factors.items()
-        }
+        given = {name: getattr(self, name) for name in FACTOR_NAMES}
+        ones = [1.0] * len(self.u)
+        columns = {name: ones if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(

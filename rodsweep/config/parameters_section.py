@@ -158,7 +158,7 @@ class ParametersSection(LinearAxes):
         arm.require_allowed_values()
         refuse_conflicting_keys(arm, needs_force, self.given_axes)
         varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = arm.grid_point_count(math.prod(axis.size for axis in varied_axes.values()))
+        count = math.prod(axis.size for axis in (*arm.quantity_axes.values(), *varied_axes.values()))
         if self.arm_axes and count > MAX_ARM_GRID_POINTS:
             raise ValueError(
                 f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "

@@ -1,7 +1,7 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
@@ -83,26 +83,15 @@ class FigureOptions(TypedDict, total=False):
     style: str | None
 
 
-def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument whose value is not allowed. choices: (value, allowed values)
-    by name of the argument; the value None is always allowed."""
-    for name, (value, allowed) in choices.items():
-        if value is not None and value not in allowed:
-            raise InputError(f"{name} = {value!r} is not allowed; choose {', '.join(allowed)}")
-
-
 def _require_allowed_look(look: Mapping[str, object]) -> None:
     """Raises InputError for an unknown option of the appearance, and for a title that is not a bool."""
     for name in look:
         if name not in FigureOptions.__annotations__:
-            raise unknown_argument_error(
-                name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
-            )
+            names = ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
+            raise unknown_argument_error(name, names)
     if not isinstance(title := look.get("title", False), bool):
-        raise InputError(
-            f"title = {short_repr(title)} is not allowed; it should be True, to draw the title of the "
-            "config, or False"
-        )
+        allowed = "True, to draw the title of the config, or False"
+        raise InputError(f"title = {short_repr(title)} is not allowed; it should be {allowed}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,7 +172,9 @@ def plot(
     what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError for
     invalid options and if there is nothing to draw."""
     _require_allowed_look(look)
-    _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
+    for name, choice, allowed in (("roots", roots, ROOT_CHOICES), ("what", what, FIGURE_KINDS)):
+        if choice is not None and choice not in allowed:
+            raise InputError(f"{name} = {choice!r} is not allowed; choose {', '.join(allowed)}")
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

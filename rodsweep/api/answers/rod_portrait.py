@@ -102,9 +102,8 @@ class RodPortrait:
         return write_portrait(self.results, output)
 
     def __repr__(self) -> str:
-        return "\n".join(
-            wrap_cell_text(text, indent="") for text in (self.paragraph, f"{self.rod}, portrait")
-        )
+        texts = self.paragraph, f"{self.rod}, portrait"
+        return "\n".join(wrap_cell_text(text, indent="") for text in texts)
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
         image = BytesIO()

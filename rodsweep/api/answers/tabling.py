@@ -38,9 +38,8 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
         )
     names = [columns] if isinstance(columns, str) else columns
     if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
-        raise InputError(
-            f"columns = {short_repr(columns)} is not a list of names, such as ['F', 'growth_rate']"
-        )
+        text = short_repr(columns)
+        raise InputError(f"columns = {text} is not a list of names, such as ['F', 'growth_rate']")
     return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 

@@ -8,8 +8,9 @@ estimates are the values of an axis of gamma3.
 """
 
 from collections.abc import Mapping
+from itertools import chain
 
-from ...model.arm.quantities import LOAD_OF_RATIO, LOADS
+from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SECTION_SIZE_NAMES
 from ...model.parameters import PARAMETERS
 
 LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
@@ -26,18 +27,7 @@ arm, by name of this quantity or unit."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
 viscosity, and the densities are used only to test whether the model applies."""
-NON_LOAD_KEYS = (
-    "length",
-    "young",
-    "radius",
-    "inner_radius",
-    "tip_radius",
-    "width",
-    "height",
-    "poisson",
-    *FLUID_QUANTITIES,
-    "drag",
-)
+NON_LOAD_KEYS = ("length", "young", *chain(*SECTION_SIZE_NAMES), "poisson", *FLUID_QUANTITIES, "drag")
 """Names of all quantities of an arm except the load."""
 MAX_ARM_GRID_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the

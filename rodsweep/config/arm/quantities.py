@@ -37,12 +37,11 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
     """Remark for error messages if only start or only stop of a range has a unit, else ""."""
-    ends = [end for end in RANGE_ENDS if end in span]
-    unitless = [end for end in ends if not isinstance(span[end], str)]
+    unitless = [end for end in RANGE_ENDS if end in span and not isinstance(span[end], str)]
+    if len(unitless) != 1 or not all(end in span for end in RANGE_ENDS):
+        return ""
     unit = UNITS[name][0]
-    return (
-        f" in {unit}; {unitless[0]} has no unit, so it is in {unit}" if len(unitless) == 1 < len(ends) else ""
-    )
+    return f" in {unit}; {unitless[0]} has no unit, so it is in {unit}"
 
 
 def _si_number(name: str, value: Any) -> float:
@@ -73,9 +72,8 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
                 "write all values like '1.2 of flutter', or all as absolute loads"
             )
         if section.get(name) is not None:
-            raise ValueError(
-                f"parameters.arm.{load} and parameters.arm.{name} are both given; give one of them"
-            )
+            keys = f"parameters.arm.{load} and parameters.arm.{name}"
+            raise ValueError(f"{keys} are both given; give one of them")
         is_range = isinstance(section[load], Mapping)
         result[name] = {**section[load], **dict(zip(RANGE_ENDS, ratios, strict=True))} if is_range else ratios
         del result[load]
@@ -153,24 +151,14 @@ def _quantity_schema() -> dict[str, Any]:
     """JSON schema of the values that `quantity_axis` accepts: axes of numbers or of texts with a unit."""
     item: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
-    ends = {end: {"description": span["properties"][end]["description"], **item} for end in ("start", "stop")}
-    return {
-        "anyOf": [*item["anyOf"], values | {"items": item}, span | {"properties": span["properties"] | ends}]
-    }
+    properties = span["properties"]
+    ends = {end: {"description": properties[end]["description"], **item} for end in RANGE_ENDS}
+    quantity_range = span | {"properties": properties | ends}
+    return {"anyOf": [*item["anyOf"], values | {"items": item}, quantity_range]}
 
 
-DRAG_NAME_SCHEMA = {"enum": list(DRAG_NAMES)}
-"""JSON schema of the name of a drag estimate."""
+DRAG_LIST_SCHEMA = {"type": "array", "items": {"enum": list(DRAG_NAMES)}, "minItems": 1}
+"""JSON schema of a list of names of drag estimates."""
+DRAG_SCHEMA = {"anyOf": [{"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]}, DRAG_LIST_SCHEMA]}
 QuantityAxis = Annotated[Axis, BeforeValidator(quantity_axis), WithJsonSchema(_quantity_schema())]
-DragAxis = Annotated[
-    Axis,
-    BeforeValidator(drag_axis),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]},
-                {"type": "array", "items": DRAG_NAME_SCHEMA, "minItems": 1},
-            ]
-        }
-    ),
-]
+DragAxis = Annotated[Axis, BeforeValidator(drag_axis), WithJsonSchema(DRAG_SCHEMA)]

@@ -87,9 +87,8 @@ def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> 
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
     segments."""
     if arm.segments is not None and "length" in arm.varying_quantities:
-        raise ValueError(
-            "parameters.arm.length has several values, but the segments fix the length; leave it out"
-        )
+        problem = "parameters.arm.length has several values, but the segments fix the length"
+        raise ValueError(f"{problem}; leave it out")
     for name in SHAPE_KEYS:
         if getattr(arm, name) is not None and "taper" in given_parameters:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
@@ -107,31 +106,20 @@ def refuse_compressible(arm: "ArmConfig", section: str) -> None:
         )
 
 
-_SEGMENT_SCHEMA = {
-    "anyOf": [
-        {"type": "string", "pattern": r"^[^:]+:.*radius"},
-        {
-            "type": "object",
-            "properties": {
-                name: {"anyOf": [{"type": "number"}, {"type": "string"}]} for name in SEGMENT_KEYS
-            },
-            "required": ["length", "radius"],
-            "additionalProperties": False,
-        },
-    ]
-}
+_QUANTITY_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_SEGMENT_SCHEMAS: list[dict[str, Any]] = [
+    {"type": "string", "pattern": r"^[^:]+:.*radius"},
+    {
+        "type": "object",
+        "properties": dict.fromkeys(SEGMENT_KEYS, _QUANTITY_SCHEMA),
+        "required": ["length", "radius"],
+        "additionalProperties": False,
+    },
+]
+_SEGMENT_LIST_SCHEMA = {"type": "array", "items": {"anyOf": _SEGMENT_SCHEMAS}, "minItems": 1}
+_SEGMENTS_SCHEMA = [_SEGMENT_LIST_SCHEMA | {"maxItems": MAX_SEGMENTS}, *_SEGMENT_SCHEMAS, {"type": "null"}]
 Segments = Annotated[
-    tuple[str, ...] | None,
-    BeforeValidator(as_segments),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "array", "items": _SEGMENT_SCHEMA, "minItems": 1, "maxItems": MAX_SEGMENTS},
-                *_SEGMENT_SCHEMA["anyOf"],
-                {"type": "null"},
-            ]
-        }
-    ),
+    tuple[str, ...] | None, BeforeValidator(as_segments), WithJsonSchema({"anyOf": _SEGMENTS_SCHEMA})
 ]
 SEGMENTS_ALLOWED = (
     f"a list of segments, each as '{EXAMPLE_SEGMENT}' or a mapping of {', '.join(SEGMENT_KEYS)}"

@@ -8,6 +8,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 
@@ -24,6 +25,8 @@ from ..values import printable_name, short_repr
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
+ROUNDING_TOLERANCE = 1e-12
+"""Two values of an axis with at most this relative difference are equal within rounding."""
 MAX_HEADER_LENGTH = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
 line."""
@@ -83,11 +86,8 @@ def config_from_resolved(config_dict: dict[str, Any]) -> Config:
             values = parameters | {"arm": _with_axes(parameters["arm"])}
             parameters = _without_arm_axes(values, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
-        options = {
-            name: _with_axes(value) if isinstance(value, dict) else value
-            for name, value in config_dict[task].items()
-            if name not in fields or value != fields[name].default
-        }
+        given = {n: v for n, v in config_dict[task].items() if n not in fields or v != fields[n].default}
+        options = {name: _with_axes(v) if isinstance(v, dict) else v for name, v in given.items()}
         return validated_config(config_dict | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
@@ -105,15 +105,14 @@ def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str,
     """Keys and values of `parameters` without the axes that `resolved_config` added from the arm."""
     arm = ArmConfig.model_validate(parameters["arm"])
     dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
-    return {
-        name: value
-        for name, value in parameters.items()
-        if not (
-            name in dimensionless
-            and isinstance(value, Axis)
-            and value.equals_within_rounding(dimensionless[name])
-        )
-    }
+
+    def follows_from_arm(name: str, value: Any) -> bool:
+        axis = dimensionless.get(name)
+        if axis is None or not isinstance(value, Axis) or axis.size != value.size:
+            return False
+        return np.allclose(value.array(), axis.array(), rtol=ROUNDING_TOLERANCE, atol=0)
+
+    return {name: value for name, value in parameters.items() if not follows_from_arm(name, value)}
 
 
 def tree_yaml(tree: dict[str, Any]) -> str:
@@ -129,12 +128,10 @@ def config_yaml(config: Config) -> str:
     """YAML text of a config, with only the keys that differ from their defaults."""
     values = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _config_notation(value) for name, value in values["parameters"].items()}
-    options = {
-        name: {key: _config_notation(axis) for key, axis in value.items()}
-        if isinstance(value, dict)
-        else value
-        for name, value in values.get(config.task, {}).items()
-    }
+    options = values.get(config.task, {})
+    for name, axes_of_option in options.items():
+        if isinstance(axes_of_option, dict):
+            options[name] = {key: _config_notation(axis) for key, axis in axes_of_option.items()}
     task_section = {config.task: options} if options else {}
     return tree_yaml({"task": config.task} | values | {"parameters": axes} | task_section)
 
@@ -180,11 +177,9 @@ def _task_name(tree: dict) -> str:
     tasks_text = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
-        similar = similar_keys("task", others)
-        if similar:
-            raise InputError(
-                f"unknown key {dotted_key(similar)}; did you mean task? Its value should be {tasks_text}"
-            )
+        if similar := similar_keys("task", others):
+            key = dotted_key(similar)
+            raise InputError(f"unknown key {key}; did you mean task? Its value should be {tasks_text}")
         raise InputError(f"task is missing; it should be {tasks_text}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:

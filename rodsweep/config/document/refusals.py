@@ -58,10 +58,9 @@ def unknown_key_hint(key: str, allowed: Sequence[str], start: str = "known keys 
     start: beginning of the list. For a diameter, the hint is to give the radius."""
     if radius := radius_of_diameter(key, allowed):
         return f"give {radius}, half of it"
-    similar = similar_keys(key, allowed)
-    return (
-        f"did you mean {enumeration(tuple(similar), 'or')}?" if similar else f"{start} {', '.join(allowed)}"
-    )
+    if similar := similar_keys(key, allowed):
+        return f"did you mean {enumeration(tuple(similar), 'or')}?"
+    return f"{start} {', '.join(allowed)}"
 
 
 def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
@@ -72,18 +71,10 @@ def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
     substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
     LETTERS_PER_TYPING_ERROR letters.
     """
-    candidates = [
-        (errors, name)
-        for name in allowed
-        if (
-            errors := _typing_error_count(
-                _without_case_and_underscores(key), _without_case_and_underscores(name)
-            )
-        )
-        is not None
-    ]
-    fewest = min((errors for errors, _ in candidates), default=0)
-    nearest_ones = [name for errors, name in candidates if errors == fewest]
+    plain_key = _without_case_and_underscores(key)
+    counts = {name: _typing_error_count(plain_key, _without_case_and_underscores(name)) for name in allowed}
+    fewest = min((count for count in counts.values() if count is not None), default=0)
+    nearest_ones = [name for name in allowed if counts[name] == fewest]
     return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
