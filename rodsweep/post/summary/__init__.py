@@ -68,9 +68,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
             *lines.reliability,
             *_failure_sentences(view),
         ],
-        statuses=TextTable(
-            ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
-        ),
+        statuses=_status_table(view, status, every_status, noun),
         details=lines.details,
         material=material_lines(view),
         axes=_axes_table(view),
@@ -145,26 +143,22 @@ def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
     missing: number of missing points."""
     lines = []
+    subject = f"{counted(missing, noun)} {is_or_are(missing)}"
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} not in this file: it is shard {shard}, and "
-            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, the "
-            "same command continues the run"
+            f"{subject} not in this file: it is shard {shard}, and `rodsweep merge` combines the shards; if "
+            "the run of this shard was interrupted, the same command continues the run"
         )
     elif missing:
-        lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is in progress, the same "
-            "command continues"
-        )
+        lines.append(f"{subject} missing; if no run is in progress, the same command continues")
     elif lacks_sweep_wide_variables(view.attributes):
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
     if waiting := view.journalled_count:
-        verb = "is" if waiting == 1 else "are"
         lines.append(
-            f"{waiting} of the computed {plural(noun)} {verb} so far only in the journal of the run, which "
-            "writes the file later"
+            f"{waiting} of the computed {plural(noun)} {is_or_are(waiting)} so far only in the journal of "
+            "the run, which writes the file later"
         )
     return lines
 
@@ -203,19 +197,9 @@ def _axes_table(view: ResultView) -> TextTable:
             continue
         si = ALL_QUANTITIES[name].unit
         unit = view.typed_units.get(name, si)
-        rows.append(
-            (
-                name,
-                *_count_and_range(
-                    np.vectorize(lambda v, to=unit, to_unit=si: value_in_unit(v, to, to_unit))(values)
-                ),
-                unit,
-            )
-        )
-    rows += [
-        (name, *_count_and_range(values), DIMENSIONS[name][0])
-        for name, values in view.parameter_values.items()
-    ]
+        rows.append((name, *_count_and_range(np.vectorize(value_in_unit)(values, unit, si)), unit))
+    for name, values in view.parameter_values.items():
+        rows.append((name, *_count_and_range(values), DIMENSIONS[name][0]))
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
@@ -231,11 +215,13 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
-def _status_rows(view: ResultView, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
-    """Yields (status, number of points, meaning of the status). is_every_shown: whether statuses that no
-    point has are included."""
+def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, noun: str) -> TextTable:
+    """Table of statuses, numbers of points, and meanings. is_every_shown: whether statuses that no point has
+    are included."""
     sentences = view.sentences | {"missing": "not computed yet"}
+    rows = []
     counts = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:
         name = view.flags.get(value, f"unknown ({value})")
-        yield name, str(counts.get(value, 0)), sentences.get(name, "")
+        rows.append((name, str(counts.get(value, 0)), sentences.get(name, "")))
+    return TextTable(("status", plural(noun), "meaning"), tuple(rows))

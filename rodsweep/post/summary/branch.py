@@ -49,8 +49,10 @@ def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     v = view.variables
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
     counts = v["branch_count"][computed]
-    branches = counted(int(counts.clip(min=0).sum()), "branch")
-    cycles = counted(int(v["point_count"][computed].clip(min=0).sum()), "cycle")
+    branches, cycles = (
+        counted(int(v[f"{name}_count"][computed].clip(min=0).sum()), noun)
+        for name, noun in (("branch", "branch"), ("point", "cycle"))
+    )
     count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
     line = f"{branches} at {count_text}, {cycles}{_sizes_text(view, computed)}"
     parameter = followed_parameter(view)
@@ -127,13 +129,13 @@ def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
     """Phrase for the start and the end of a branch: "from ... to ..."."""
     first = curve.special[0]
     last = curve.special[-1]
-    start = f"from the Hopf point at {parameter} = {number_with_error(first.at, first.error)}"
+    position = f"{parameter} = {number_with_error(first.at, first.error)}"
+    start = f"from the Hopf point at {position}"
     if first.kind == "symmetry_breaking":
-        span = f"{parameter} = {number_with_error(first.at, first.error)}"
-        start = f"without mirror symmetry, from branch {first.meets} at {span}"
+        start = f"without mirror symmetry, from branch {first.meets} at {position}"
     if curve.enters_range:
-        span = f"{parameter} = {rounded_text(first.at, first.error)}"
-        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {span},"
+        position = f"{parameter} = {rounded_text(first.at, first.error)}"
+        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {position},"
     end = f"{parameter} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
@@ -157,9 +159,7 @@ def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
 def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
     then a line for each branch that stopped because no further cycle was found."""
-    points: dict[str, list[tuple[float, float]]] = {
-        word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
-    }
+    points: dict[str, list[tuple[float, float]]] = {w: [] for w in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     entries = [curve.special[0] for _, _, curve in curves if curve.enters_range]
     for _, number, curve in curves:
@@ -181,12 +181,11 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
         span = span_text(*np.array([(entry.at, entry.error) for entry in entries]).T)
         verb = "enters" if len(entries) == 1 else "enter"
         yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter} = {span}"
-    stopped = [
-        f"{point_text(rod.view, rod.index)}: branch {number}, at {parameter} = "
-        f"{rounded_text(end.at, end.error)}"
-        for rod, number, curve in curves
-        if (end := curve.special[-1]).reason == "no_cycle_found"
-    ]
+    stopped = []
+    for rod, number, curve in curves:
+        if (end := curve.special[-1]).reason == "no_cycle_found":
+            position = f"{parameter} = {rounded_text(end.at, end.error)}"
+            stopped.append(f"{point_text(rod.view, rod.index)}: branch {number}, at {position}")
     yield from first_lines(stopped, "branch")
 
 
@@ -197,9 +196,8 @@ def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[
         unknown = counted(len(rods) - len(complete), "rod")
         yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
-        yield from _lines_on_rods_with(
-            complete, parameter, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
-        )
+        coexistence = [rod.coexistence_ranges for rod in complete]
+        yield from _lines_on_rods_with(complete, parameter, COEXISTENCE_WORDS, coexistence)
     two_cycles = [rod.two_cycle_ranges for rod in complete]
     if any(two_cycles):
         yield from _lines_on_rods_with(complete, parameter, TWO_CYCLES_WORDS, two_cycles)
@@ -210,21 +208,12 @@ def _lines_on_rods_with(
 ) -> Iterator[str]:
     """Yields a line with the number of rods that have ranges with the property `phrase`, and a line for each
     of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property."""
-    unknown = sum(
-        not (rod_ranges or rod.coexistence_is_decided) for rod, rod_ranges in zip(rods, ranges, strict=True)
-    )
-    texts = [
-        ": ".join(
-            filter(
-                None,
-                (
-                    point_text(rod.view, rod.index),
-                    f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}",
-                ),
-            )
-        )
-        for rod, rod_ranges in zip(rods, ranges, strict=True)
-        if rod_ranges
-    ]
+    unknown = 0
+    texts = []
+    for rod, rod_ranges in zip(rods, ranges, strict=True):
+        unknown += not (rod_ranges or rod.coexistence_is_decided)
+        if rod_ranges:
+            text = f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}"
+            texts.append(": ".join(filter(None, (point_text(rod.view, rod.index), text))))
     yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(texts, "rod")

@@ -12,13 +12,11 @@ from ...wording import count_of_total, counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
 from .number_texts import number_and_error, rounded_text, span_text
-from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region_text
+from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, in_brackets, proof_clause, region_text
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
-MAX_LISTED_RODS = 8
-"""At most this number of rods with subcritical Hopf points are listed one by one."""
 HOPF_NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
@@ -124,7 +122,7 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
     rods = np.flatnonzero((criticality == 1).any(axis=-1))
     rods = rods[np.argsort(criticality[rods, 0] != 1, kind="stable")]
     columns = view.point_columns
-    for rod in rods[:MAX_LISTED_RODS]:
+    for rod in rods[:MAX_LISTED_ITEMS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         indices = np.flatnonzero(criticality[rod] == 1)
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
@@ -134,8 +132,8 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
             for F, dF, i, x, dx in zip(forces, absolute, indices, a, relative, strict=True)
         )
         yield f"subcritical Hopf points, with the amplitude coefficient a, for {name}: {texts}"
-    if len(rods) > MAX_LISTED_RODS:
-        yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
+    if len(rods) > MAX_LISTED_ITEMS:
+        yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_ITEMS, 'rod')} more"
 
 
 def _count_text(signs: np.ndarray) -> str:

@@ -9,6 +9,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
+from .criticality import CRITICALITY_WORDS
 from .detached_branches import detached_branch_lines, rows_without_cycles_of_curve
 from .number_texts import error_text, number_with_error, span_text
 
@@ -116,9 +117,8 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         error = error_text(float(v["cycle_curve_agreement"]))
-        agreement = f"points located on rows lie on them within {error} of the range of {line}; " * (
-            curves > 0
-        )
+        agreement = f"points located on rows lie on them within {error} of the range of {line}; "
+        agreement *= curves > 0
         untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
         lines.append(f"curves of folds and torus points of cycles: {curves}; {agreement}{untraced}")
     return lines
@@ -134,18 +134,15 @@ def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
         for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
             noun = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
             position = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
-            number = int(v["curve_number"][i])
-            lines.append(
-                f"curve {number}, of {noun}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}"
-            )
+            curve = f"curve {int(v['curve_number'][i])}, of {noun}"
+            lines.append(f"{curve}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}")
     return lines
 
 
 def _on_no_curve_clause(count: int, noun: str) -> str:
     """Clause on the number `count` of points located on rows that lie on no curve."""
-    return (
-        f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else f"every {noun} is on a curve"
-    )
+    none = f"every {noun} is on a curve"
+    return f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else none
 
 
 def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
@@ -179,18 +176,11 @@ def criticality_lines(view: ResultView) -> list[str]:
     undecided and unknown."""
     v = view.variables
     criticality = v["curve_criticality"][v["curve_kind"] == 1]
-    kinds = {
-        "supercritical": criticality < 0,
-        "subcritical": criticality > 0,
-        "undecided": criticality == 0,
-        "without a normal form": np.isnan(criticality),
-    }
+    kinds = {word: np.sign(criticality) == sign for sign, word in CRITICALITY_WORDS.items()}
+    kinds["without a normal form"] = np.isnan(criticality)
     counts = [f"{int(mask.sum())} {word}" for word, mask in kinds.items() if mask.any()]
-    points = counted(len(criticality), "point")
-    return [
-        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
-        f"{', '.join(counts) or 'none'}"
-    ]
+    curves = f"of {counted(len(criticality), 'point')} of the Hopf curves {', '.join(counts) or 'none'}"
+    return [f"criticality, gamma1 = {float(v['curve_gamma1']):g}: {curves}"]
 
 
 def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:

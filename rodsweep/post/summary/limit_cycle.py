@@ -87,17 +87,12 @@ def outcome_line(
     status = view.variables["status"]
     total = counted(int(computed.sum()), "point")
     masks = {word: computed & (status == value) for value, word in view.flags.items() if value >= 0}
-    found = {
-        OUTCOME_WORDS.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()
-    }
+    found = {OUTCOME_WORDS.get(w, w.replace("_", " ")): mask for w, mask in masks.items() if mask.any()}
     if len(found) == 1:
         word = next(iter(found))
         outcome = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
-        if computed.size > 1:
-            return (
-                f"{outcome} at all {total}" if computed.sum() > 1 else f"{outcome} at the only solved point"
-            )
-        return outcome
+        place = f" at all {total}" if computed.sum() > 1 else " at the only solved point"
+        return outcome + place * (computed.size > 1)
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {total}: {', '.join(counts)}"
 
@@ -109,9 +104,8 @@ def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
-        threshold_text, sentences = stability_lines(
-            view, name, StoredThresholds(view, name).thresholds_up_to_end
-        )
+        thresholds_on = StoredThresholds(view, name).thresholds_up_to_end
+        threshold_text, sentences = stability_lines(view, name, thresholds_on)
         lines += threshold_text
         arm_sentences += sentences
     return lines, arm_sentences
@@ -155,19 +149,15 @@ def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
-    straight, cycle = (
-        computed & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible")
-    )
+    straight = computed & (v["second_state"] == numbers["straight"])
+    cycle = computed & (v["second_state"] == numbers["cycle_possible"])
     are_bistable = straight & view.has_status("cycle", "torus")
     if are_bistable.any():
-        lines.append(
-            f"two stable states{_at_count(are_bistable, computed)}: the straight rod is stable as well"
-        )
+        at_points = _at_count(are_bistable, computed)
+        lines.append(f"two stable states{at_points}: the straight rod is stable as well")
     if (straight_only := straight & ~are_bistable).any():
-        lines.append(
-            f"the straight rod is stable{_at_count(straight_only, computed)} where the motion reached no "
-            "stable state"
-        )
+        at_points = _at_count(straight_only, computed)
+        lines.append(f"the straight rod is stable{at_points} where the motion reached no stable state")
     if cycle.any():
         lines.append(
             f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "

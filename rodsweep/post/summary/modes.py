@@ -1,46 +1,29 @@
 """Modes of the straight rod in `rodsweep show`: stability, non-normality, and accuracy."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...results.file.view import ResultView
 from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .number_texts import NONE_TEXT, span_text
-from .spectrum import (
-    eigenvalue_table,
-    error_lines,
-    leading_lines,
-    stability_line,
-    stable_line,
-    threshold_lines,
-    unknowns_lines,
-    unstable_count_line,
-)
+from .spectrum import spectrum_summary
 from .summary_lines import SummaryLines
 
 
 def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of modes. computed: mask of the computed points, of the shape of the points."""
-    unknowns = unknowns_lines(view, computed)
-    if computed.size == 1:
-        answer = [unstable_count_line(view)]
-        reliability = []
-        details = unknowns
-        arm_sentences = list[str]()
-    else:
-        lines, location_note, arm_sentences = threshold_lines(view)
-        answer = [stable_line(view, computed), *lines]
-        reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
-        details = [*leading_lines(view, computed), *unknowns]
+    summary = spectrum_summary(view, computed)
+    reliability = [*summary.reliability]
     errors = view.variables["mode_error"][computed]
     if np.isfinite(errors).any():
         text = f"error of the modes, relative: worst {np.nanmax(errors):.1e}"
         if unknown_count := int((~np.isfinite(errors)).any(axis=-1).sum()):
             text += f"; not known at {count_of_total(unknown_count, len(errors), 'point')}"
         reliability.append(text)
-    numbers = eigenvalue_table(view) if computed.size == 1 else None
-    answer += growth_lines(view, computed)
-    return SummaryLines(answer, reliability, details, arm_sentences, numbers)
+    answer = [*summary.answer, *growth_lines(view, computed)]
+    return replace(summary, answer=answer, reliability=reliability)
 
 
 def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:

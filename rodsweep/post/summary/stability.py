@@ -78,9 +78,8 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
         low = min(point.low for point in bracketed)
         high = max(point.high for point in bracketed)
         return f"between {low:.6g} and {high:.6g}{lines_text}"
-    lowest = min(located, key=lambda point: point.position)
-    highest = max(located, key=lambda point: point.position)
-    text = f"{_position_text(lowest)} to {_position_text(highest)}{error}{lines_text}"
+    ends = (choice(located, key=lambda point: point.position) for choice in (min, max))
+    text = f"{' to '.join(map(_position_text, ends))}{error}{lines_text}"
     if bracketed:
         text += f"; {counted(len(bracketed), 'further threshold')} known only to lie between two points"
     return text

@@ -37,10 +37,8 @@ def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> 
     states = v["stable_states"]
     kinds = v["cycle_special_kind"]
     positions = v[f"cycle_special_{line}"]
-    percents = ((100 * float((states[computed] == value).mean()), word) for value, word in STABLE_STATES)
-    texts = ", ".join(
-        f"{percent:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for percent, word in percents if percent
-    )
+    shares = ((float((states[computed] == n).mean()), STABLE_STATE_WORDS.get(w, w)) for n, w in STABLE_STATES)
+    texts = ", ".join(f"{100 * share:.1f} % {phrase}" for share, phrase in shares if share)
     lines = [f"stable states, in % of the grid points: {texts}"]
     for phrase, state in LISTED_STATES.items():
         in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]

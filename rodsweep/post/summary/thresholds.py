@@ -77,17 +77,14 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     unknown = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
     if not mask.any():
         return f"{phrase}: at none of {counted(rods, 'rod')}{unknown}"
-    low = int(np.nanargmin(F))
-    high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
+    ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
+    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
     forces = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
-    rods_text = (
-        f"all {counted(rods, 'rod')}" if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
-    )
-    return (
-        f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {span_text(v[rate_name][computed])} {unit}"
-    )
+    every_rod = f"all {counted(rods, 'rod')}"
+    rods_text = every_rod if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
+    rates = span_text(v[rate_name][computed])
+    return f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {rates} {unit}"
 
 
 def unknown_beyond_clause(view: ResultView, F: float) -> str:
@@ -113,10 +110,9 @@ def crossing_lines(view: ResultView) -> list[str]:
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         first_forces = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         changes = [f"{word} F = {F:.6g}" for word, F in first_forces.items() if np.isfinite(F)]
-        later_changes = (
-            (LATER_CROSSING_WORDS[kinds[i]], v["crossing_F"][i]) for i in later_flutter_changes(kinds)
-        )
-        text = ", ".join([*changes, *(f"{word} F = {F:.6g}" for word, F in later_changes)])
+        for i in later_flutter_changes(kinds):
+            changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {v['crossing_F'][i]:.6g}")
+        text = ", ".join(changes)
         count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
         return ["; ".join(filter(None, (text, count))), *meanings]
@@ -137,15 +133,8 @@ def crossing_table(view: ResultView) -> TextTable | None:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         rows.append((kind, *F, *rates, str(unstable_count) if unstable_count >= 0 else "not known"))
     unit = PARAMETERS["F"].unit
-    headings = (
-        "kind",
-        f"F\n{unit}",
-        "+-",
-        "growth rate\n1/tau2",
-        f"frequency\n{ANGULAR_UNIT}",
-        "unstable\nabove",
-    )
-    return TextTable(headings, tuple(rows)) if rows else None
+    rate_headings = ("growth rate\n1/tau2", f"frequency\n{ANGULAR_UNIT}", "unstable\nabove")
+    return TextTable(("kind", f"F\n{unit}", "+-", *rate_headings), tuple(rows)) if rows else None
 
 
 def completeness_lines(view: ResultView) -> list[str]:

@@ -125,9 +125,8 @@ def _crossing_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about loads and frequencies at the first Hopf points, [])."""
     v = view.variables
     load = view.load_kind
-    end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
     loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
-    return _flutter_lines(view, loads, end, frequency), []
+    return _flutter_lines(view, loads, v[f"{load}_end"][rods], frequency), []
 
 
 def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
@@ -144,9 +143,8 @@ def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequen
     count = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
     sentence = f"flutter begins{count} at {load_range_text(view, loads)}"
     lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
-    if not flutters.all():
-        stable = f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}"
-        lines.append(stable.rstrip())
+    if count:
+        lines.append(f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}".rstrip())
     return lines
 
 
@@ -175,9 +173,7 @@ def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
     list if drag is not varied or an outcome is undecided."""
     arms = arms_of_drags(view)
-    if arms is None:
-        return []
-    if (rods & ~view.has_status("cycle", "straight")).any():
+    if arms is None or (rods & ~view.has_status("cycle", "straight")).any():
         return []
     is_cycle = view.has_status("cycle").ravel()
     by_arm = [is_cycle[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]

@@ -53,11 +53,8 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     everywhere = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if is_unknown.all():
         return f"whether the model applies is not known{everywhere}{condition}: {MISSED_MOTION}"
-    rest = (
-        f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
-        if is_unknown.any()
-        else ""
-    )
+    unknown = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
+    rest = unknown if is_unknown.any() else ""
     worst_validity = Validity(int(validities.max()))
     is_affected = validities == worst_validity
     somewhere = f" {preposition} {count_of_total(int(is_affected.sum()), count, noun)}"
