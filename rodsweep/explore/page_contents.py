@@ -94,14 +94,10 @@ class PageContents:
         """Marks the parameters of `state` in all pictures, and updates address, config and Python lines. F:
         the load, in k3/L^2."""
         axis = load_axis(state)
-        load_on_axis = F * axis.factor
         self.controls.show_largest_load(state, axis)
-        self.growth.move_load_line(load_on_axis)
-        self.branches.move_load_line(load_on_axis)
-        load = SCALES[state.tab][state.load]
-        second_scale = SCALES[state.tab][state.second]
-        x = load.value(state.values[state.load])
-        y = second_scale.value(state.values[state.second])
+        self.growth.move_load_line(F * axis.factor)
+        self.branches.move_load_line(F * axis.factor)
+        x, y = (SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second))
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)

@@ -123,27 +123,20 @@ def _arm_scale(
     )
 
 
-SCALES = {
-    "rod": {
-        scale.name: scale
-        for scale in (
-            _rod_scale("F", -20, 200, logarithmic=False),
-            _rod_scale("k1", 10, 1e7, has_inf=True),
-            _rod_scale("k2", 1, 1e7, has_inf=True),
-            _rod_scale("gamma3", 1e-6, 10),
-            _rod_scale("gamma1", 0.1, 10),
-            _rod_scale("taper", 0.3, 2, logarithmic=False),
-        )
-    },
-    "arm": {
-        scale.name: scale
-        for scale in (
-            _arm_scale("length", 1, 100, "cm", 1e2),
-            _arm_scale("radius", 0.5, 50, "mm", 1e3),
-            _arm_scale("young", 1, 1e4, "kPa", 1e-3),
-            _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
-            _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
-        )
-    },
-}
+ROD_SLIDERS = (
+    _rod_scale("F", -20, 200, logarithmic=False),
+    _rod_scale("k1", 10, 1e7, has_inf=True),
+    _rod_scale("k2", 1, 1e7, has_inf=True),
+    _rod_scale("gamma3", 1e-6, 10),
+    _rod_scale("gamma1", 0.1, 10),
+    _rod_scale("taper", 0.3, 2, logarithmic=False),
+)
+ARM_SLIDERS = (
+    _arm_scale("length", 1, 100, "cm", 1e2),
+    _arm_scale("radius", 0.5, 50, "mm", 1e3),
+    _arm_scale("young", 1, 1e4, "kPa", 1e-3),
+    _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
+    _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
+)
+SCALES = {tab: {s.name: s for s in scales} for tab, scales in (("rod", ROD_SLIDERS), ("arm", ARM_SLIDERS))}
 """Scale of every slider, by tab and by name of the parameter or quantity."""
