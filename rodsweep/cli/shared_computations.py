@@ -60,9 +60,8 @@ def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> Fl
     None if a stop signal came before the computation ended.
     """
     rods = ranks.call_on_first_rank(lambda: rods_for_flutter_forces(config))
-    if not all(
-        rod.is_uniform_and_linear for rod in rods
-    ):  # a rank without a rod must start PETSc with the others
+    if not all(rod.is_uniform_and_linear for rod in rods):
+        # A rank without a rod must start PETSc with the others.
         ranks.require_on_all_ranks(require_solvers)
         ranks.require_on_all_ranks(start_solvers)
     computations = _SharedComputations(ranks, stop)

@@ -68,16 +68,9 @@ class _RankRun:
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.shard_solver = ShardSolver(
-            ranks=ranks,
-            job=job,
-            solver=self.solver,
-            plan=self.plan,
-            shard=self.shard,
-            output=output,
-            stop=stop,
-            quiet=request.quiet,
-            point_text=self._point_text,
-        )
+            ranks=ranks, job=job, solver=self.solver, plan=self.plan, shard=self.shard, output=output,
+            stop=stop, quiet=request.quiet, point_text=self._point_text,
+        )  # fmt: skip
         sweep_wide = self.solver.sweep_wide_solver
         self.sweep_wide = sweep_wide and SweepWideComputation(
             ranks, sweep_wide, output, self.plan.fingerprint, self.log.append_exception, stop
@@ -104,9 +97,8 @@ class _RankRun:
         contributions: list[RunContribution] = []
         if count:
             self.ranks.call_on_first_rank(self._record_blas_kernels)
-            contributions = (
-                self.ranks.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
-            )
+            contribution = self.shard_solver.solve(items, missing, count, self.prepare)
+            contributions = self.ranks.gather(contribution) or []
         pending = self.ranks.call_on_first_rank(lambda: self._add_journals(count, contributions))
         solved: dict[str, int] = {}
         if self.sweep_wide:
@@ -159,9 +151,8 @@ class _RankRun:
     def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         attributes = self.store.attributes()
-        kernels = provenance.merged_blas_kernels(
-            provenance.blas_kernels_in(attributes), self.kernels.splitlines()
-        )
+        stored = provenance.blas_kernels_in(attributes)
+        kernels = provenance.merged_blas_kernels(stored, self.kernels.splitlines())
         if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
             self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):

@@ -94,9 +94,8 @@ class ShardSolver:
             with closing(Journal(directory, self.ranks.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_item(IndexSet(missing), directory)
                 loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
-                contribution = sweep(
-                    self.ranks, ChunkQueue(items, self.ranks.size), loop, reporter, self.stop
-                )
+                queue = ChunkQueue(items, self.ranks.size)
+                contribution = sweep(self.ranks, queue, loop, reporter, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write into the folder of {self.output}: {error.strerror or error}"
@@ -104,9 +103,8 @@ class ShardSolver:
             ) from error
         finally:
             reporter.close()
-        return RunContribution(
-            host=socket.gethostname(), failures=list(reasons.examples.values()), statistics=contribution
-        )
+        failures = list(reasons.examples.values())
+        return RunContribution(host=socket.gethostname(), failures=failures, statistics=contribution)
 
     def _solve_item(
         self, missing: IndexSet, directory: Path

@@ -90,18 +90,13 @@ class SweepWideComputation:
             self.results = self.item_results.read()
             queue = DependentItemQueue(items, self.results, self.ranks.size)
         self._exchange_starts(items)
-        reporter = (
-            ProgressReporter(None, f"{title}, curves", items.progress_noun)
-            if self.ranks.is_first and title
-            else SilentProgress()
-        )
+        reporter: ProgressReporter | SilentProgress = SilentProgress()
+        if self.ranks.is_first and title:
+            reporter = ProgressReporter(None, f"{title}, curves", items.progress_noun)
         loop = SweepCallbacks(
-            solve=lambda item: self._solve_item(items, item),
-            store=keep,
-            prepare=prepare,
-            new_results=take_results,
+            solve=partial(self._solve_item, items), store=keep, prepare=prepare, new_results=take_results,
             item_label=items.item_label,
-        )
+        )  # fmt: skip
         try:
             return sweep(self.ranks, queue, loop, reporter, self.stop)
         finally:
