@@ -70,12 +70,9 @@ def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
 def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
     varies."""
-    own_quantities = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
-    return [
-        _name_and_value_texts(name, values)
-        for name, values in own_quantities.items()
-        if len(np.unique(values)) > 1
-    ]
+    quantities = view.quantities.items()
+    varied = ((n, v) for n, v in quantities if n not in ARM_SCALES and len(np.unique(v)) > 1)
+    return [_name_and_value_texts(name, values) for name, values in varied]
 
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:

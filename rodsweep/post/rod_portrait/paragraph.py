@@ -54,11 +54,10 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
     if not isfinite(end):
         search_text = "could not be searched"
     elif end_text != requested_force:
-        early = results.views["thresholds"].has_status("ended_early").all()
-        ends = "the search ended early: the list was full, or modes could not be counted"
-        search_text += (
-            f", not to {requested_force}: {ends if early else f'just above {end_text} the {kind} is crushed'}"
-        )
+        reason = f"just above {end_text} the {kind} is crushed"
+        if results.views["thresholds"].has_status(ENDED_EARLY).all():
+            reason = "the search ended early: the list was full, or modes could not be counted"
+        search_text += f", not to {requested_force}: {reason}"
     yield f"The {kind} with {results.rod.description} {search_text}."
     if results.rod.arm:
         yield from arm_sentences(results)
@@ -99,10 +98,8 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     criticalities = v["criticality"][is_same_crossing & np.isfinite(v["criticality"])]
     if not criticalities.size:
         return ""
-    a = float(v["amplitude_coefficient"][is_same_crossing][0])
-    return (
-        f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
-    )
+    side = "above" if v["amplitude_coefficient"][is_same_crossing][0] > 0 else "below"
+    return f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {side} this load"
 
 
 def _branch_sentences(results: RodResults) -> Iterator[str]:
@@ -200,18 +197,13 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
         v = view.point_values(0)
         word = str(view.status_names[0])
         if word not in CYCLE_STATUSES:
-            clauses.append(
-                f"at {units.load_text(F)} a motion from a small deflection leads to no cycle that is drawn "
-                f"({word.replace('_', ' ')})"
-            )
+            no_cycle = f"no cycle that is drawn ({word.replace('_', ' ')})"
+            clauses.append(f"at {units.load_text(F)} a motion from a small deflection leads to {no_cycle}")
             continue
         period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
         y = units.length.text(float(v["tip_y_max"]), float(v["tip_y_max"] * v["amplitude_error"]))
-        unstable = ", unstable," if word == "unstable" else ""
-        clauses.append(
-            f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"
-            f"{cycle_caveat(view)}"
-        )
+        place = f"at {units.load_text(F)}{', unstable,' if word == 'unstable' else ''}"
+        clauses.append(f"{place} the period is {period} and the largest y of the tip {y}{cycle_caveat(view)}")
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."
 

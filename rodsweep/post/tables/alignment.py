@@ -93,10 +93,8 @@ def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[s
     if not rows:
         return []
     *columns, proses = zip(*rows, strict=True)
-    aligned_columns = zip(
-        *(point_aligned(column) if any(column) else column for column in columns), strict=True
-    )
-    row_starts = [COLUMN_GAP.join(cells) for cells in aligned_columns]
+    aligned = (point_aligned(column) if any(column) else column for column in columns)
+    row_starts = [COLUMN_GAP.join(cells) for cells in zip(*aligned, strict=True)]
     prose_width = width - max(map(len, row_starts)) - len(COLUMN_GAP)
     lines = []
     for row_start, text in zip(row_starts, proses, strict=True):
@@ -105,9 +103,5 @@ def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[s
             lines.append(f"{row_start}{COLUMN_GAP}{first_line}".rstrip())
             lines += [" " * (width - prose_width) + line for line in other_lines]
         else:
-            lines += (
-                [row_start.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
-                if text
-                else [row_start.rstrip()]
-            )
+            lines += [row_start.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
     return lines

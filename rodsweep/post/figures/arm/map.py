@@ -72,23 +72,20 @@ def draw_arm_map(request: FigureRequest) -> str:
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
     figure, plots = _new_panels(len(panels), request.look.is_narrow, bool(y))
     handles: list[Artist] = []
+    covers = []
     for subplot, panel in zip(plots, panels, strict=True):
         if y:
-            handles = [*handles, *_draw_map(subplot, panel, view, (x, y), index)]
+            handles += _draw_map(subplot, panel, view, (x, y), index)
         else:
-            handles = [*handles, *_draw_curves(subplot, panel, view, x, index)]
-    cover_texts = [
-        _cover_invalid_cells(plot, view, panel, (x, y), index)
-        for plot, panel in zip(plots, panels, strict=True)
-    ]
+            handles += _draw_curves(subplot, panel, view, x, index)
+        covers.append(_cover_invalid_cells(subplot, view, panel, (x, y), index))
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
-    style.legend_below(figure, [*reversed(entries.values()), *cover_texts[0]], columns=3)
+    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     band_axes = [DRAG_AXIS] if not y and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
     figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + band_axes)))
     labels = " and ".join(panel.label for panel in panels)
-    constants_text = _section_text(
-        view, {name: place for name, place in indices.items() if name not in band_axes}
-    )
+    constants = {name: place for name, place in indices.items() if name not in band_axes}
+    constants_text = _section_text(view, constants)
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{constants_text}")
 
 
@@ -152,9 +149,8 @@ def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: A
     x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
-    for colour, (line, values) in zip(
-        colours, (panel.threshold_lines or {"": panel.values}).items(), strict=False
-    ):
+    lines = panel.threshold_lines or {"": panel.values}
+    for colour, (line, values) in zip(colours, lines.items(), strict=False):
         line_format = "o" if name == DRAG_AXIS else "-o"
         axes.plot(x, values[index], line_format, ms=2.5, lw=1.2, color=colour)
         handles += _draw_drag_band(axes, view, name, values, index, colour)
@@ -177,13 +173,10 @@ def _draw_drag_band(
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
     drag = view.arm_axes.index(DRAG_AXIS)
-    values_by_drag = np.moveaxis(values, drag, -1)[
-        tuple(axis_index for i, axis_index in enumerate(index) if i != drag)
-    ]
-    low, high = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
-    axes.fill_between(
-        _axis_values_and_label(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1
-    )
+    values_by_drag = np.moveaxis(values, drag, -1)[(*index[:drag], *index[drag + 1 :])]
+    bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
+    x_values, _ = _axis_values_and_label(view, x)
+    axes.fill_between(x_values, *bounds, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
     line = DRAG_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 

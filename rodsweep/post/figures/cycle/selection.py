@@ -85,9 +85,8 @@ class StoredCycle:
     @property
     def has_transient(self) -> bool:
         """Whether the motion from the initial state is stored."""
-        return TRANSIENT_VARIABLE_NAMES[0] in self.values and bool(
-            np.isfinite(self.values[TRANSIENT_VARIABLE_NAMES[0]]).all()
-        )
+        times = self.values.get(TRANSIENT_VARIABLE_NAMES[0])
+        return times is not None and bool(np.isfinite(times).all())
 
     def heading(self, *lines: str) -> str:
         """Title of a panel: the label, if not empty, above the given lines."""
@@ -135,9 +134,8 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            raise InputError(
-                f"--point {number}: the motion of this point from its initial state is not stored"
-            )
+            problem = "the motion of this point from its initial state is not stored"
+            raise InputError(f"--point {number}: {problem}")
     return _selected_cycles(view, points, is_stored, "transient")
 
 
@@ -159,9 +157,8 @@ def _selected_cycles(
     statuses = view.status_names
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
-        raise InputError(
-            f"{view.path} holds no {noun} that could be drawn; the statuses of its points are: {states}"
-        )
+        reason = f"the statuses of its points are: {states}"
+        raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
@@ -185,9 +182,8 @@ def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
     exist."""
     count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
-        raise InputError(
-            f"--point is given {len(points)} times; one figure shows at most {MAX_CYCLES} points"
-        )
+        most = f"one figure shows at most {MAX_CYCLES} points"
+        raise InputError(f"--point is given {len(points)} times; {most}")
     for number in points:
         if not 1 <= number <= count:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
@@ -220,14 +216,11 @@ def shared_and_own_of_arms(
     for example because they are on axes.
     """
     texts = []
+    names = given_quantities(view)
     for number in numbers:
-        quantities = {
-            n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in given_quantities(view)
-        }
-        changes = {
-            name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
-        }
-        texts.append({name: text for name, text in (quantities | changes).items() if name not in omitted})
+        entry = {n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in names}
+        entry |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
+        texts.append({name: text for name, text in entry.items() if name not in omitted})
     common = {name: text for name, text in texts[0].items() if all(entry[name] == text for entry in texts)}
     labels = [", ".join(text for name, text in entry.items() if name not in common) for entry in texts]
     return ", ".join(common.values()), labels

@@ -39,18 +39,15 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     name = abscissa_parameter(first_view)
     units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [
-        branch for view, units_of_view in pairs for branch in amplitude_branches(view, name, units_of_view)
-    ]
+    branches = [branch for view, own_units in pairs for branch in amplitude_branches(view, name, own_units)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first_view.path} gives {len(branches)} lines over {name}, and a figure has room for "
             f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    style.require_content(
-        first_view, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude"
-    )
+    has_amplitude = any(np.isfinite(branch.amplitude_y).any() for branch in branches)
+    style.require_content(first_view, has_amplitude, "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
     common_text, branch_texts = _common_and_own_texts(branches, name)
@@ -59,11 +56,8 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
-    handles += draw_square_root_laws(
-        panels[1],
-        [law for branch in branches for law in square_root_laws(branch.x, branch.amplitude_y, branch.hopf)],
-        units[0].names[0] * units[0].in_si,
-    )
+    laws = [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)]
+    handles += draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
         style.scale_axis(panel, "x", np.unique(branches[0].x))
@@ -117,11 +111,11 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
         return {id(view): (style.escape_dollar_signs(view.path.stem), None) for view in views}
-    direction_texts = {"up": f"${style.SYMBOLS[name]}$ rising", "down": f"${style.SYMBOLS[name]}$ falling"}
-    return {
-        id(view): (direction_texts[direction], direction == "up")
-        for view, direction in zip(views, directions, strict=True)
+    entries = {
+        "up": (f"${style.SYMBOLS[name]}$ rising", True),
+        "down": (f"${style.SYMBOLS[name]}$ falling", False),
     }
+    return {id(view): entries[direction] for view, direction in zip(views, directions, strict=True)}
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str) -> None:
@@ -132,10 +126,9 @@ def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: boo
         finite_indices = np.flatnonzero(np.isfinite(values))
         if len(finite_indices) < MIN_ARROW_POINTS:
             continue
-        ends = finite_indices[len(finite_indices) * 3 // 4 - 1], finite_indices[len(finite_indices) * 3 // 4]
-        start, end = ends if upward else ends[::-1]
-        head = branch.x[end], values[end]
-        tail = branch.x[start], values[start]
+        place = len(finite_indices) * 3 // 4
+        ends = finite_indices[place - 1], finite_indices[place]
+        tail, head = ((branch.x[i], values[i]) for i in (ends if upward else ends[::-1]))
         axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
@@ -145,11 +138,9 @@ def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tup
     axis."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
-        names = {
-            name,
-            *(quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name),
-        }
-        return shared_and_own_of_arms(view, [branch.first_number for branch in branches], names)
+        names = [quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name]
+        numbers = [branch.first_number for branch in branches]
+        return shared_and_own_of_arms(view, numbers, {name, *names})
     return shared_and_own_texts([branch.parameters for branch in branches])
 
 
