@@ -56,15 +56,13 @@ def draw_criticality(request: FigureRequest) -> str:
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
     the task does not have, and if nothing can be drawn."""
     view = request.only_view()
-    style.require_content(
-        view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
-    )
+    has_normal_form = np.isfinite(view.variables["criticality"]).any()
+    style.require_content(view, has_normal_form, "Hopf point with a normal form")
     names = list(varied_parameters_at_points(view))
     if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
-        return request.write(
-            _curves_figure(view, names[0]),
-            f"the normal forms of Hopf points along {names[0]}{left_out_clause(view.point_columns, names)}",
-        )
+        omissions = left_out_clause(view.point_columns, names)
+        caption = f"the normal forms of Hopf points along {names[0]}{omissions}"
+        return request.write(_curves_figure(view, names[0]), caption)
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
@@ -79,9 +77,8 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     is_finite = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    criticality, a, landau_real = (
-        view.by_point(key)[is_finite] for key in ("criticality", "amplitude_coefficient", "landau_real")
-    )
+    keys = ("criticality", "amplitude_coefficient", "landau_real")
+    criticality, a, landau_real = (view.by_point(key)[is_finite] for key in keys)
     style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
     linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_FRACTION))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
@@ -124,11 +121,8 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     style.draw_coloured_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
-    entries = [
-        Patch(facecolor=class_colour, label=word)
-        for i, (word, class_colour) in enumerate(CRITICALITY_CLASSES)
-        if (classes == i).any()
-    ]
+    drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
+    entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
     style.legend_below(figure, entries, columns=3)
     set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
@@ -137,13 +131,11 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
 def _class_indices(criticality: Array) -> Array:
     """Index in CRITICALITY_CLASSES for each rod, (ny, nx). criticality: signs of Re c at the Hopf points of
     the rods, (ny, nx, crossings); NaN for a missing Hopf point."""
-    first_criticality = criticality[..., 0]
+    first = criticality[..., 0]
     has_later_subcritical = (criticality[..., 1:] == 1).any(axis=-1)
     # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and the index 0.
-    classes = np.select(
-        [first_criticality == -1, first_criticality == 1, first_criticality == 0], [1.0, 3.0, 4.0], 0.0
-    )
-    return np.where((first_criticality == -1) & has_later_subcritical, 2.0, classes)
+    cases = [(first == -1) & has_later_subcritical, first == -1, first == 1, first == 0]
+    return np.select(cases, [2.0, 1.0, 3.0, 4.0], 0.0)
 
 
 def draw_predictions(view: ResultView) -> tuple[Figure, str]:
@@ -168,12 +160,8 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
-    drawn_kinds = {int(kind) for kind in kinds[drawn_rods].ravel() if np.isfinite(kind)}
-    handles = [
-        Line2D([], [], color="0.3", ls=ls, label=word)
-        for k, (ls, word) in CRITICALITY_LINES.items()
-        if k in drawn_kinds
-    ]
+    drawn_looks = (look for kind, look in CRITICALITY_LINES.items() if (kinds[drawn_rods] == kind).any())
+    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for ls, word in drawn_looks]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]

@@ -56,9 +56,7 @@ def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
     `request.shapes`, if given, computes them."""
     view = request.views[0]
-    if request.shapes is None or all(
-        variable in view.variables for variable in NEEDED_VARIABLES.get(name, ())
-    ):
+    if request.shapes is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.status_names == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle

@@ -80,10 +80,8 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    boundaries = [
-        *_draw_crushing(axes, ratio, *pixel_coordinates),
-        *hatch_compressed(axes, view, ratio, *pixel_coordinates),
-    ]
+    boundaries: list[Any] = [*_draw_crushing(axes, ratio, *pixel_coordinates)]
+    boundaries += hatch_compressed(axes, view, ratio, *pixel_coordinates)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
@@ -135,10 +133,7 @@ def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figur
     y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    fractions = np.linspace(0, 1, PIXEL_COUNT + 1)
-    edges = (
-        x[0] * (x[-1] / x[0]) ** fractions if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * fractions
-    )
+    edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
     rows = [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
     table: Array = np.array(rows)
     keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
@@ -162,9 +157,8 @@ def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, ma
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
     is_known = map_.classes != crushed_class
-    computed = ClassifiedPoints(
-        plane.fractions_of_axes(columns[is_known], rows[is_known]), map_.classes[is_known]
-    )
+    places = plane.fractions_of_axes(columns[is_known], rows[is_known])
+    computed = ClassifiedPoints(places, map_.classes[is_known])
     row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, row_values, row_classes = classes_between_crossings(view, line, row)
@@ -175,11 +169,8 @@ def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, ma
         number = v[f"{kind}_number"]
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
             number = np.where(v["curve_kind"] == 1, number, 0)
-        masks = [number == region_number for region_number in np.unique(number[number > 0])]
-        curves += [
-            plane.fractions_of_axes(v[f"{kind}_{line}"][region_number], v[f"{kind}_{row}"][region_number])
-            for region_number in masks
-        ]
+        for mask in (number == curve for curve in np.unique(number[number > 0])):
+            curves.append(plane.fractions_of_axes(v[f"{kind}_{line}"][mask], v[f"{kind}_{row}"][mask]))
     undecided = flag_number("undecided", palette.words)
     pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
     return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

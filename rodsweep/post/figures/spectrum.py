@@ -96,10 +96,9 @@ def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Seq
 def _draw_line_per_value(view: ResultView, curve_parameter: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
     for a map; returns a sentence."""
-    lines = [
-        without_infinite_values(slice_at_values(view, {curve_parameter: float(value)}))
-        for value in view.parameter_values[curve_parameter]
-    ]
+    values = view.parameter_values[curve_parameter].tolist()
+    slices = (slice_at_values(view, {curve_parameter: value}) for value in values)
+    lines = map(without_infinite_values, slices)
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     others = [name for name in style.varied_axes(view) if name != curve_parameter]
     omissions = left_out_clause(view.parameter_values, others)
@@ -120,9 +119,8 @@ def _draw_files(request: FigureRequest) -> str:
     request.refuse_points(request.views[0])
     request.require_output()
     if len(request.views) > MAX_PANELS:
-        raise InputError(
-            f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
-        )
+        room = f"but a figure has room for {MAX_PANELS}; give fewer files"
+        raise InputError(f"{len(request.views)} files are given, {room}")
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
     omissions = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
@@ -169,7 +167,7 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
+    _note_points(axes, x, y, growth)
     note = "black: zero growth, interpolated between the points"
     set_heading(figure, view, style.constant_parameters_text(view, *names), note)
     return figure

@@ -38,15 +38,14 @@ def draw_thresholds(request: FigureRequest) -> str:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
-        if request.what and view.quantities and view.variables["status"].size > 1:
-            raise InputError(
-                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove "
-                "--what or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
-            )
         if request.what:
-            raise InputError(
-                f"{view.path}: --what {request.what} needs one or two varied parameters; remove --what"
-            )
+            reason = "needs one or two varied parameters; remove --what"
+            if view.quantities and view.variables["status"].size > 1:
+                reason = (
+                    "is not for a grid over an arm's quantities; remove --what or draw lines over the other "
+                    "quantities with --at, such as --at 'length=12 cm'"
+                )
+            raise InputError(f"{view.path}: --what {request.what} {reason}")
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     long = style.varied_axes(view)
@@ -56,9 +55,9 @@ def draw_thresholds(request: FigureRequest) -> str:
     if request.what == "map" or (len(long) == 2 and not has_few_lines and request.what != "lines"):
         figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{omissions}", MAP_ASPECT)
-    if len(long) == 1 or has_few_lines:
-        return request.write(*draw_lines_of_grid(view, long, searched_range_clause(view)))
     search = searched_range_clause(view)
+    if len(long) == 1 or has_few_lines:
+        return request.write(*draw_lines_of_grid(view, long, search))
     return request.write(*draw_selected_lines(view, long, request.look.is_narrow, search))
 
 
@@ -72,9 +71,8 @@ def _draw_files(request: FigureRequest) -> str:
     # A list over an arm's quantities has many.
     names = style.varied_axes(views[0]) if views[0].is_grid else []
     if len(views) > len(FILE_COLOURS):
-        raise InputError(
-            f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
-        )
+        room = f"a figure of thresholds has room for {len(FILE_COLOURS)}"
+        raise InputError(f"{len(views)} files are given; {room}")
     for view in views:
         if view.task != views[0].task:
             raise InputError(

@@ -88,11 +88,9 @@ def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) 
     are equal at all points."""
     if not is_in_si:
         return style.parameter_text(points.common_parameters)
-    varied_quantities = {
-        quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name in points.names
-    }
-    numbers = [int(points.point_indices[0, 0]) + 1, int(points.point_indices[-1, -1]) + 1]
-    return shared_and_own_of_arms(view, numbers, {*points.names, *varied_quantities})[0]
+    varied = (quantity for quantity, name in CHANGED_PARAMETER.items() if name in points.names)
+    numbers = [int(points.point_indices[place]) + 1 for place in ((0, 0), (-1, -1))]
+    return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
 
 
 def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:

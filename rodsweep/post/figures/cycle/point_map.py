@@ -38,9 +38,8 @@ def point_map(view: ResultView) -> PointMap:
     do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
     if len(names) != 2:
-        raise InputError(
-            f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(names)}"
-        )
+        clause = _varied_parameters_clause(names)
+        raise InputError(f"{view.path}: a map is drawn over two parameters, and {clause}")
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in names)
     indices = np.full((len(y), len(x)), -1)
@@ -88,9 +87,8 @@ def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
     centres, from_coordinates = axis_coordinates(values)
     midpoints = (centres[1:] + centres[:-1]) / 2
-    return from_coordinates(
-        np.concatenate(([2 * centres[0] - midpoints[0]], midpoints, [2 * centres[-1] - midpoints[-1]]))
-    )
+    ends = (2 * centres[0] - midpoints[0], 2 * centres[-1] - midpoints[-1])
+    return from_coordinates(np.array([ends[0], *midpoints, ends[1]]))
 
 
 def cell_centres(edges: Array) -> Array:

@@ -67,9 +67,8 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
     shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
-    colours = ListedColormap(
-        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices)))
-    )
+    darkness = np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices))
+    colours = ListedColormap(matplotlib.colormaps["viridis_r"](darkness))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
@@ -102,9 +101,8 @@ def _new_panels(
     (left, right), (low, high) = limits_of_shapes(cycles)
     if count == 1 and not is_narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
-        table: dict[str, Axes] = figure.subplot_mosaic(
-            [["shapes", "x"], ["shapes", "y"]], width_ratios=(1, 1.25)
-        )
+        places = [["shapes", "x"], ["shapes", "y"]]
+        table: dict[str, Axes] = figure.subplot_mosaic(places, width_ratios=(1, 1.25))
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes = SHAPES_WIDTH * (high - low) / (right - left)

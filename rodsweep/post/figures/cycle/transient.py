@@ -69,7 +69,6 @@ def label_time_axes(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
     lower.set_xlabel(cycle.units.time_label)
     if 0 < tau1 < np.inf:
-        tau1_axis = upper.secondary_xaxis(
-            "top", functions=(lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
-        )
+        scales = (lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
+        tau1_axis = upper.secondary_xaxis("top", functions=scales)
         tau1_axis.set_xlabel(r"time $t/\tau_1$")

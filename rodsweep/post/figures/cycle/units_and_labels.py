@@ -65,18 +65,10 @@ class CycleUnits:
         power."""
         if self.in_si:
             length, time, _, power = self.names
-            return (
-                rf"tip $(x_{{\max}} - x_{{\min}})/2$ ({length})",
-                rf"tip $y_{{\max}}$ ({length})",
-                f"period $T$ ({time})",
-                f"mean power ({power})",
-            )
-        return (
-            r"tip $(x_{\max} - x_{\min})/2L$",
-            r"tip $y_{\max}/L$",
-            r"period $T/\tau_2$",
-            r"mean power $\times\,L\tau_2/k_3$",
-        )
+            tip = rf"tip $(x_{{\max}} - x_{{\min}})/2$ ({length})", rf"tip $y_{{\max}}$ ({length})"
+            return *tip, f"period $T$ ({time})", f"mean power ({power})"
+        tip = r"tip $(x_{\max} - x_{\min})/2L$", r"tip $y_{\max}/L$"
+        return *tip, r"period $T/\tau_2$", r"mean power $\times\,L\tau_2/k_3$"
 
     @property
     def energy_and_power_labels(self) -> tuple[str, str, str]:
@@ -134,9 +126,7 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
     cycles = list(zip(views, indices, times, power_units, strict=True))
     period = max(_largest_in_units(view, "period", chosen, time) for view, chosen, time, _ in cycles)
-    mean_power = max(
-        _largest_in_units(view, "injection_mean", chosen, power) for view, chosen, _, power in cycles
-    )
+    mean_power = max(_largest_in_units(view, "injection_mean", chosen, p) for view, chosen, _, p in cycles)
     length = views[0].typed_units.get("length", "m")
     time_unit = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]

@@ -86,12 +86,9 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
         return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
     def hides_growth(roots: str) -> bool:
-        followed_growths = (_followed_roots(view, roots).real.max(axis=1) for view in views)
+        followed = (_followed_roots(view, roots).real.max(axis=1) for view in views)
         stored = (view.by_point("growth_rate").max(axis=1) for view in views)
-        return any(
-            ((followed_growth <= 0) & (all_growth > 0)).any()
-            for followed_growth, all_growth in zip(followed_growths, stored, strict=True)
-        )
+        return any(((own <= 0) & (all_ > 0)).any() for own, all_ in zip(followed, stored, strict=True))
 
     return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
@@ -200,14 +197,13 @@ def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThre
         axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.
-    starts, ends = (
-        [
-            change.position if isinstance(change, LocatedThreshold) else getattr(change, inner_end)
-            for change in located
-            if change.kind == kind
-        ]
-        for kind, inner_end in (("hopf", "high"), ("restabilization", "low"))
-    )
+    starts, ends = list[float](), list[float]()
+    for change in located:
+        bounds = [change.position] if isinstance(change, LocatedThreshold) else [change.low, change.high]
+        if change.kind == "hopf":
+            starts.append(bounds[-1])
+        elif change.kind == "restabilization":
+            ends.append(bounds[0])
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))
     if len(starts) > len(ends):

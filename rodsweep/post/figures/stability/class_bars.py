@@ -65,9 +65,8 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
     search. The first interval has the class "monotone"; the last is "not stored" if the file has no room for
     all crossings."""
-    kinds, F, counts = (
-        view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after")
-    )
+    names = ("crossing_kind", "crossing_F", "unstable_after")
+    kinds, F, counts = (view.by_point(name)[rod] for name in names)
     end = float(view.variables["F_end"].ravel()[rod])
     crossing_count = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0

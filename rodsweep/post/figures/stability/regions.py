@@ -41,12 +41,16 @@ class DrawnPlane:
         return np.column_stack(columns)
 
     @staticmethod
-    def pixel_centres(axis: Array) -> Array:
-        """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
-        fractions = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
+    def positions(axis: Array, fractions: Array) -> Array:
+        """Coordinates, (n,), at fractions, (n,), of the axis with the values `axis`."""
         if is_logarithmic(axis):
             return np.asarray(axis[0] * (axis[-1] / axis[0]) ** fractions)
         return np.asarray(axis[0] + (axis[-1] - axis[0]) * fractions)
+
+    @classmethod
+    def pixel_centres(cls, axis: Array) -> Array:
+        """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
+        return cls.positions(axis, (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +64,8 @@ class ClassifiedPoints:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
         the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT)."""
         is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
-        coordinates = self.coordinates[is_inside]
-        return ClassifiedPoints(coordinates, self.classes[is_inside]), regions[
-            tuple(_pixels_of_points(coordinates).T)
-        ]
+        inside = ClassifiedPoints(self.coordinates[is_inside], self.classes[is_inside])
+        return inside, regions[tuple(_pixels_of_points(inside.coordinates).T)]
 
 
 def pixel_classes(
@@ -97,14 +99,11 @@ def pixel_classes(
                 break
             is_inside = np.full(len(source.coordinates), True) if of_region is None else of_region == region
             if is_inside.any():
-                table[pixels] = _nearest_classes(
-                    pixels, source.coordinates[is_inside], source.classes[is_inside]
-                )
+                known = (source.coordinates[is_inside], source.classes[is_inside])
+                table[pixels] = _nearest_classes(pixels, *known)
                 break
     if walls.any() and not walls.all():
-        nearest_pixels = scipy.ndimage.distance_transform_edt(
-            walls, return_distances=False, return_indices=True
-        )
+        _, nearest_pixels = scipy.ndimage.distance_transform_edt(walls, return_indices=True)
         table = table[tuple(nearest_pixels)]
     return table
 

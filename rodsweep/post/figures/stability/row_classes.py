@@ -50,13 +50,9 @@ def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Ar
             continue
         low, high = _uncrushed_row(view, build, line, int(index))
         ends = [low, *positions[index, stored_indices].tolist(), high]
-        is_monotone = (
-            kinds[index, stored_indices[0]] == ONSET and unstable_counts[index, stored_indices[0]] == 0
-        )
-        curve_words = ["monotone" if is_monotone else ""]
-        curve_words += [
-            class_above_crossing(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices
-        ]
+        crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
+        curve_words = ["monotone" if crossings[0] == (ONSET, 0) else ""]
+        curve_words += [class_above_crossing(*crossing) for crossing in crossings]
         if len(stored_indices) < counts[index] or np.isfinite(undecided_from[index]):
             curve_words[-1] = ""
         for word, (start, end) in zip(curve_words, pairwise(ends), strict=True):

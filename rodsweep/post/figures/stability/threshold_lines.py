@@ -192,11 +192,10 @@ def _kind_entries(table: Array) -> list[Line2D]:
 def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
     finite."""
-    omissions = [
-        f"{name} = {value:g}"
-        for name in names
-        for value in view.parameter_values[name][~np.isfinite(_abscissa_values(view, name))]
-    ]
+    omissions = []
+    for name in names:
+        is_left_out = ~np.isfinite(_abscissa_values(view, name))
+        omissions += [f"{name} = {value:g}" for value in view.parameter_values[name][is_left_out]]
     return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
