@@ -2,24 +2,8 @@
 
 from ..model.arm.quantities import QUANTITIES
 from ..model.parameters import PARAMETERS
-from .task_keywords import (
-    BranchKeywords,
-    CriticalityKeywords,
-    LimitCycleKeywords,
-    ModesKeywords,
-    SpectrumKeywords,
-    ThresholdsKeywords,
-)
+from .task_keywords import KEYWORDS_OF_TASK
 
-OPTIONS_BY_TASK = {
-    "spectrum": SpectrumKeywords,
-    "modes": ModesKeywords,
-    "thresholds": ThresholdsKeywords,
-    "criticality": CriticalityKeywords,
-    "limit_cycle": LimitCycleKeywords,
-    "branch": BranchKeywords,
-}
-"""Options of the methods of an arm and of a rod, by name of the method."""
 ARM_ADVICE = {
     "load_kind": "the load is given as pressure or force; an arm without load answers in Pa, and "
     'rs.sweep(task, arm={..., "load_kind": "force"}) in newton',
@@ -56,5 +40,5 @@ def rod_argument_hint(name: str) -> str:
 
 def _option_hint(name: str, owner: str) -> str:
     """Advice on an option of tasks: the methods of `owner` that take it; empty if `name` is no option."""
-    tasks = [task for task, options in OPTIONS_BY_TASK.items() if name in options.__annotations__]
+    tasks = [task for task, options in KEYWORDS_OF_TASK.items() if name in options.__annotations__]
     return f"{name} is an option of tasks, as in {owner}.{tasks[0]}({name}=...)" if tasks else ""

@@ -74,8 +74,7 @@ class Arm(SlenderArm):
     @refusing_wrong_arguments("arm.report()")
     def report(self) -> "ArmReport":
         """Report on the arm: verdict, numbers with formulas and sources, and effects that the model
-        neglects.
-        """
+        neglects."""
         from ..verdict.arm import arm_report
 
         return arm_report(self)
@@ -116,8 +115,7 @@ class Arm(SlenderArm):
     @refusing_wrong_arguments("arm.thresholds(F_max=100)")
     def thresholds(self, **options: Unpack[ThresholdsKeywords]) -> Answer:
         """Loads at which the arm starts to oscillate, flutters, and becomes stable again. The arm needs no
-        load.
-        """
+        load."""
         return self._answer("thresholds", options)
 
     @refusing_wrong_arguments("arm.spectrum(modes=4)")
@@ -167,9 +165,8 @@ class Arm(SlenderArm):
         # `load_kind` is no quantity of the arm; the kind of the loads is given to the portrait as `load`.
         quantities = {name: value for name, value in section.items() if value != default.get(name, value)}
         description = DescribedRod(arm=quantities, load=self.load or LOADS[0])
-        return solved_portrait(
-            repr(self), PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy), progress
-        )
+        request = PortraitRequest(rod=description, F_max=F_max, accuracy=accuracy)
+        return solved_portrait(repr(self), request, progress)
 
     def _answer(self, task: str, options: Mapping[str, Any]) -> Answer:
         for name in options:
@@ -206,11 +203,10 @@ class Arm(SlenderArm):
     @property
     def _given_quantities(self) -> dict[str, Any]:
         """The quantities of the arm that are not None, by name."""
-        return {name: getattr(self, name) for name in self._quantity_names if getattr(self, name) is not None}
+        values = {name: getattr(self, name) for name in self._quantity_names}
+        return {name: value for name, value in values.items() if value is not None}
 
     def __repr__(self) -> str:
         default = {field.name: field.default for field in fields(self)}
-        arguments = (
-            f"{name}={value!r}" for name, value in self._given_quantities.items() if value != default[name]
-        )
-        return f"Arm({', '.join(arguments)})"
+        given = {name: value for name, value in self._given_quantities.items() if value != default[name]}
+        return f"Arm({', '.join(f'{name}={value!r}' for name, value in given.items())})"

@@ -78,27 +78,18 @@ def _open_result_file(path: Path) -> xr.Dataset:
 
 def with_arm_indexes(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with an index for every quantity of an arm that varies along an axis, so that `sel` accepts
-    this quantity.
-    """
-    for name in PARAMETER_STORED_ALONG:
-        if (
-            name in data.coords
-            and data[name].dims == (PARAMETER_STORED_ALONG[name],)
-            and name not in data.xindexes
-        ):
+    this quantity."""
+    for name in (n for n in PARAMETER_STORED_ALONG if n in data.coords and n not in data.xindexes):
+        if data[name].dims == (PARAMETER_STORED_ALONG[name],):
             data = data.set_xindex(name)
     return data
 
 
 def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) -> xr.Dataset:
-    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically.
-
-    config: the config as a tree of keys.
-    """
+    """The Dataset with its variables in the order of the layout, as HDF5 stores variables alphabetically."""
     layout_variables = (*layout.variables, *sweep_wide_variables(config, "point" not in data.dims))
-    order = {
-        name: i for i, name in enumerate([*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in layout_variables)])
-    }
+    ordered_names = (*DIMENSIONS, *ALL_QUANTITIES, *(v.name for v in layout_variables))
+    order = {name: i for i, name in enumerate(ordered_names)}
     names = sorted(data.variables, key=lambda name: order.get(str(name), len(order)))
     variables = {name: data.variables[name] for name in names}
     coords = {name: variables.pop(name) for name in names if name in data.coords}
@@ -107,8 +98,7 @@ def in_layout_order(data: xr.Dataset, layout: Layout, config: dict[str, Any]) ->
 
 def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
     """The Dataset that xarray reads from a result file; InputError if values or dimensions differ from the
-    checksums in the file. header: header of the file.
-    """
+    checksums in the file."""
     digests = json.loads(header.attributes[SEAL_ATTRIBUTE])["variables"]
     with damage_refusals(path):
         try:
@@ -125,14 +115,11 @@ def _load_with_checksums(path: Path, header: ResultHeader) -> xr.Dataset:
 
 def with_checksums(data: xr.Dataset) -> xr.Dataset:
     """The Dataset with the checksums of its variables and attributes as an attribute, by which readers verify
-    a file written by xarray.
-    """
-    variables = {
-        str(name): variable_digest(
-            v.dtype, v.shape, map(str, v.dims), v.attrs, [np.ascontiguousarray(v.values)]
-        )
-        for name, v in data.variables.items()
-    }
+    a file written by xarray."""
+    variables = {}
+    for name, v in data.variables.items():
+        numbers = [np.ascontiguousarray(v.values)]
+        variables[str(name)] = variable_digest(v.dtype, v.shape, map(str, v.dims), v.attrs, numbers)
     digests = {"attributes": attribute_digests(data.attrs), "variables": variables}
     return data.assign_attrs({SEAL_ATTRIBUTE: json.dumps(digests)})
 
@@ -160,10 +147,7 @@ def view_of_dataset(data: xr.Dataset, path: Path) -> ResultView:
                 f"{', '.join(dimensions)}; give the complete result and select points with at={{...}}, or "
                 "draw a selection with xarray's own plot"
             )
-    variables = {str(name): array.values for name, array in data.variables.items()}
-    typed_units = {
-        str(name): str(v.attrs[TYPED_UNIT]) for name, v in data.variables.items() if TYPED_UNIT in v.attrs
-    }
-    return ResultView(
-        path, dict(data.attrs), variables, layout.parameters, flags, 0, layout.arm_axes, typed_units
-    )
+    stored = {str(name): variable for name, variable in data.variables.items()}
+    values = {name: variable.values for name, variable in stored.items()}
+    units = {name: str(v.attrs[TYPED_UNIT]) for name, v in stored.items() if TYPED_UNIT in v.attrs}
+    return ResultView(path, dict(data.attrs), values, layout.parameters, flags, 0, layout.arm_axes, units)

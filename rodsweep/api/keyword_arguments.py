@@ -50,8 +50,6 @@ def config_tree(task: str, keywords: Mapping[str, Any]) -> ConfigTree:
                 _add_key(tree.setdefault(name, {}), key, entry)
             continue
         section = _section_of(name, sections)
-        if section is None:
-            section = _section_of(_similar_key(name, sections), sections)
         values_of_section = tree.setdefault(section, {}) if section else tree
         _add_key(values_of_section, name, plain_keyword(f"{section}.{name}" if section else name, value))
     _write_out_arm(task, tree)
@@ -67,8 +65,7 @@ def _add_key(section: dict[str, Any], key: str, value: Any) -> None:
 
 def _write_out_arm(task: str, tree: ConfigTree) -> None:
     """Replaces an `rs.Arm` in the tree by its quantities, in place. The load is included only if the task
-    takes a load.
-    """
+    takes a load."""
     parameters = tree.get("parameters", {})
     arm = parameters.get("arm")
     if isinstance(arm, SlenderArm):
@@ -77,21 +74,16 @@ def _write_out_arm(task: str, tree: ConfigTree) -> None:
         names = [name for name in ArmConfig.model_fields if name not in omitted]
         complete_arm = with_load_in_si(arm) if has_load else arm
         quantities = {name: getattr(complete_arm, name) for name in names}
-        for name, default in DEFAULT_VALUES.items():
-            quantities[name] = None if quantities[name] == default else quantities[name]
-        if (
-            not has_load and arm.load == "force"
-        ):  # thresholds have the unit of the load that the arm would take
+        if not has_load and arm.load == "force":  # loads at thresholds have the unit of the arm's load
             quantities["load_kind"] = arm.load
-        parameters["arm"] = {
-            name: plain_value(value) for name, value in quantities.items() if value is not None
-        }
+        given = {name: value for name, value in quantities.items() if value is not None}
+        written = {n: v for n, v in given.items() if n not in DEFAULT_VALUES or v != DEFAULT_VALUES[n]}
+        parameters["arm"] = {name: plain_value(value) for name, value in written.items()}
 
 
 def with_load_in_si(arm: ArmKind) -> ArmKind:
     """The arm with its load in SI units. For a load relative to flutter, the flutter threshold is computed
-    first.
-    """
+    first."""
     if arm.share_of_flutter is None:
         return arm
     from ..verdict.planes import arm_with_absolute_load
@@ -139,19 +131,17 @@ def _allowed_keys_by_section(task: str) -> dict[str, Collection[str]]:
     return {name: tuple(section.model_fields) for name, section in sections.items()} | {"": top_keys}
 
 
-def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str | None:
-    """Name of the first section with the key `name`; None if no section has this key. sections: allowed keys
-    by name of the section.
-    """
-    return next((section for section, allowed in sections.items() if name in allowed), None)
+def _section_of(name: str, sections: Mapping[str, Collection[str]]) -> str:
+    """Name of the first section with the key `name`, or else with the most similar key. sections: allowed
+    keys by name of the section. Raises InputError if no key is similar."""
+    section = next((section for section, allowed in sections.items() if name in allowed), None)
+    return _section_of(_similar_key(name, sections), sections) if section is None else section
 
 
 def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
-    """The allowed key that is most similar to the unknown key `name`.
-
-    For a quantity of an arm, whose section is not in `sections`, the first allowed key may be returned:
-    validation then names the right section. Raises InputError with a list of all keys if no key is similar.
-    """
+    """The allowed key that is most similar to the unknown key `name`. For a quantity of an arm, whose section
+    is not in `sections`, the first allowed key may be returned: validation then names the right section.
+    Raises InputError with a list of all keys if no key is similar."""
     allowed = [key for keys in sections.values() for key in keys]
     similar = similar_keys(name, allowed)
     if not similar and name not in ArmConfig.model_fields:
@@ -161,8 +151,7 @@ def _similar_key(name: str, sections: Mapping[str, Collection[str]]) -> str:
 
 class AxisRange(TypedDict):
     """An axis of a sweep as a range. start, stop: first and last value; for a quantity of an arm, with a
-    unit. num: number of values. spacing: "linear" or "log".
-    """
+    unit. num: number of values. spacing: "linear" or "log"."""
 
     start: float | str
     stop: float | str
@@ -220,9 +209,7 @@ def plain_value(value: Any) -> Any:
 
 
 def plain_keyword(key: str, value: Any) -> Any:
-    """`value` in the types of a YAML config; InputError for a masked value. key: name of the keyword, for the
-    message.
-    """
+    """`value` in the types of a YAML config; InputError for a masked value."""
     try:
         return plain_value(value)
     except ValueError as error:
@@ -231,8 +218,7 @@ def plain_keyword(key: str, value: Any) -> Any:
 
 def _with_unit(value: Any, unit: str) -> Any:
     """Text of the number `value` with a unit; for a list, the list of these texts; `value` unchanged if
-    `unit` is empty.
-    """
+    `unit` is empty."""
     if isinstance(value, list):
         return [_with_unit(item, unit) for item in value]
     return f"{value!r} {unit}" if unit else value

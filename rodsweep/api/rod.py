@@ -196,8 +196,8 @@ class SoftRod:
         options = dict(options)
         progress = options.pop("progress", None)
         used_names = CONFIGS[task].rod_parameters_used(options)
-        names = [name for name in (*used_names, *OPTIONAL_PARAMETERS) if name in self._values]
-        values: dict[str, Any] = {name: self._values[name] for name in names}
+        names = (*used_names, *OPTIONAL_PARAMETERS)
+        values: dict[str, Any] = {name: self._values[name] for name in names if name in self._values}
         tree = config_tree(task, values | self._given_material | options)
         solved = solve_in_process(job_of_tree(tree), progress=progress)
         return Answer(repr(self), solved, solved.messages[0])
@@ -218,11 +218,9 @@ class SoftRod:
 
 def _material_section(values: Mapping[str, Any]) -> MaterialConfig | None:
     """The validated section `material` of a rod; None if all values in `values` are None. Raises InputError
-    for invalid values.
-    """
-    tree = {
-        name: plain_keyword(f"material.{name}", value) for name, value in values.items() if value is not None
-    }
+    for invalid values."""
+    given = {name: value for name, value in values.items() if value is not None}
+    tree = {name: plain_keyword(f"material.{name}", value) for name, value in given.items()}
     if not tree:
         return None
     material = with_profile_read({"material": tree}, Path())["material"]

@@ -15,7 +15,7 @@ from ..results.file.view import ResultView
 from ..solve.backend.availability import require_solvers
 from ..solve.backend.solver_pools import destroy_pooled_solvers
 from ..solve.solve_lock import exclusive_solve
-from ..solve_progress import reporting_to, solve_part
+from ..solve_progress import SolvePosition, reporting_to, solve_part
 from ..sweep.points.groups import PointGroups, SolveGroup
 from ..sweep.progress import ProgressReporter, SilentProgress, in_notebook
 from ..sweep.stop import RankListener, SingleRankCommunication, StopRequest
@@ -88,9 +88,7 @@ def _point_text_of(job: Job) -> Callable[[int], str]:
 
 
 def _solve_attributes(start_time: str, reasons: Sequence[str]) -> dict[str, Any]:
-    """Attributes of a result whose solve ends now. start_time: time at which the solve started. reasons:
-    reasons why points failed.
-    """
+    """Attributes of a result whose solve ends now."""
     from ..solve.backend import petsc
 
     return {
@@ -108,17 +106,14 @@ def _solve_points(
     job: Job, solver: Solver, plan: FilePlan, display: Display
 ) -> tuple[dict[str, np.ndarray], list[str], list[str]]:
     """Returns (variables, messages, reasons). variables: values by name of the variable, with the dimensions
-    of the points first. messages: one message for each point. reasons: reasons why points failed. display:
-    progress display.
-    """
+    of the points first. messages: one message for each point. reasons: reasons why points failed."""
     reasons = FailureReasons(_point_text_of(job))
     count = job.points.count
     columns = {name: np.repeat(value[None], count, axis=0) for name, value in plan.layout.empty_point.items()}
     messages = [""] * count
     unsolved = range(count) if solver.grouped is None else _solve_groups(*solver.grouped, columns, display)
-    for solved_count, (index, outcome) in enumerate(
-        _solve_outcomes(unsolved, count, solver, display), count - len(unsolved) + 1
-    ):
+    outcomes = _solve_outcomes(unsolved, count, solver, display)
+    for solved_count, (index, outcome) in enumerate(outcomes, count - len(unsolved) + 1):
         record = solver.record(index, outcome)
         for name, array in columns.items():
             array[index] = record[name]
@@ -126,21 +121,15 @@ def _solve_points(
         reasons.add(index, outcome)
         display(solved_count)
     shape = job.points.shape
-    return (
-        {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()},
-        messages,
-        [*reasons.examples.values()],
-    )
+    values = {name: array.reshape(*shape, *array.shape[1:]) for name, array in columns.items()}
+    return values, messages, [*reasons.examples.values()]
 
 
 def _solve_groups(
     groups: PointGroups, solve_group: SolveGroup, columns: dict[str, np.ndarray], display: Display
 ) -> Sequence[int]:
     """Fills the variables of all points that are solved together; returns the flat indices of all other
-    points.
-
-    columns: variables by name, (points, ...). display: progress display.
-    """
+    points. columns: variables by name, (points, ...)."""
     unsolved: list[int] = []
     solved_count = 0
     for indices in map(groups.indices, range(groups.count)):
@@ -156,8 +145,7 @@ def _solve_groups(
 
 def _sweep_wide_result(solver: SweepWideSolver, view: ResultView, display: Display) -> SweepWideResult:
     """Variables that depend on all points, for example curves, and points that change. view: the solved
-    points. display: progress display.
-    """
+    points."""
     results = dict[int, NamedArrays]()
     while (items := solver.work_items(view, results)) and (chosen := items.items_to_solve(results)):
         name = items.item_label(chosen[0])
@@ -170,7 +158,7 @@ def _change_points(
     result: SweepWideResult, job: Job, plan: FilePlan, values: dict[str, np.ndarray], messages: list[str]
 ) -> None:
     """Replaces variables and messages of the points that change. values: variables by name, with the
-    dimensions of the points first. messages: message of each point."""
+    dimensions of the points first."""
     for index, changed in result.changed_points.items():
         position = np.unravel_index(index, job.points.shape)
         for variable in plan.layout.variables:
@@ -182,20 +170,15 @@ def _solve_outcomes(
     unsolved: Sequence[int], count: int, solver: Solver, display: Display
 ) -> Iterator[tuple[int, Any]]:
     """Solves the points with flat indices `unsolved`; yields (flat index, outcome) of each point. Along a
-    chain, each point starts from the solution of the previous point.
-
-    count: number of all points. display: progress display.
-    """
+    chain, each point starts from the solution of the previous point. count: number of all points."""
     solved_count = count - len(unsolved)
 
     @contextmanager
     def point_progress() -> Iterator[None]:
         """Marks the reports in the `with` block as reports of the next point."""
         name = f"point {solved_count + 1} of {count}" if count > 1 else ""
-        with (
-            solve_part(name, (solved_count / count, (solved_count + 1) / count)),
-            reporting_to(display_listener(display, name)),
-        ):
+        share = solved_count / count, (solved_count + 1) / count
+        with solve_part(name, share), reporting_to(display_listener(display, name)):
             yield
 
     if solver.chained is None:
@@ -220,7 +203,7 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
     """Progress display of a solve, which appears after a second.
 
     progress: whether to display progress; None: only in a terminal or a notebook. total: number of points,
-    None if unknown. title: text before the bar. Raises InputError for any other value of `progress`.
+    None if unknown. Raises InputError for any other value of `progress`.
     """
     progress = plain_keyword("progress", progress)
     if not (progress is None or isinstance(progress, bool)):
@@ -231,12 +214,9 @@ def progress_display(progress: bool | None, total: int | None, title: str) -> Di
 
 def display_listener(display: Display, name: str) -> RankListener:
     """Listener that shows the progress of the solve `name` in the display `display`. Ctrl-C still raises
-    KeyboardInterrupt.
-    """
-    return RankListener(
-        SingleRankCommunication(
-            lambda position: display.show_position(position.text, position.completed_fraction or 0.0)
-        ),
-        StopRequest(),
-        lambda: name,
-    )
+    KeyboardInterrupt."""
+
+    def show(position: SolvePosition) -> None:
+        display.show_position(position.text, position.completed_fraction or 0.0)
+
+    return RankListener(SingleRankCommunication(show), StopRequest(), lambda: name)

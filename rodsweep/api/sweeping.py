@@ -66,16 +66,13 @@ def sweep(
         raise InputError(f"ranks = {ranks!r} is not allowed; it should be a whole number, 1 or above")
     tree = config_tree(task, keywords)
     if ranks is not None:
-        points = point_count_of_valid_tree(tree)
-        _refuse_idle_ranks(ranks, points)
+        _refuse_idle_ranks(ranks, point_count_of_valid_tree(tree))
         return _solve_on_ranks(task, tree, ranks, strict, progress_display(progress, None, task))
     return solve_in_process(job_of_tree(tree), None if strict else _warn_of_failed_points, progress).dataset
 
 
 def _warn_of_failed_points(indices: Sequence[int], error: Exception) -> None:
-    """Issues a RuntimeWarning with the traceback of an unforeseen exception. indices: flat indices of the
-    failed points.
-    """
+    """Issues a RuntimeWarning with the traceback of an unforeseen exception."""
     first = indices[0] + 1
     last_number = indices[-1] + 1
     points = f"point {first}" if first == last_number else f"points {first} to {last_number}"
@@ -96,10 +93,8 @@ def _refuse_idle_ranks(ranks: int, points: int | None) -> None:
 
 def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, display: Display) -> xr.Dataset:
     """The Dataset of the task `task` that `rodsweep run` computes on `ranks` MPI ranks in a temporary
-    directory. tree: config tree. strict: whether an unforeseen exception, a bug of rodsweep, is raised.
-    display: progress display. Raises EnvironmentIncomplete if mpiexec cannot be started, or the exception of
-    `_run_failure_exception`.
-    """
+    directory. strict: whether an unforeseen exception, a bug of rodsweep, is raised. Raises
+    EnvironmentIncomplete if mpiexec cannot be started, or the exception of `_run_failure_exception`."""
     points = tree["parameters"].get("points")
     if points is not None:
         tree = tree | {"parameters": tree["parameters"] | {"points": str(Path(points).absolute())}}
@@ -122,8 +117,7 @@ def _solve_on_ranks(task: str, tree: ConfigTree, ranks: int, strict: bool, displ
 
 def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple[int, str]:
     """Runs the command `words` in the directory `folder` and shows its progress; returns (exit status,
-    standard error).
-    """
+    standard error)."""
     # os.environ, as this process was started: a started MPI adds variables to the C environment only.
     run = subprocess.Popen(
         words, cwd=folder, env=dict(os.environ), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
@@ -145,11 +139,8 @@ def _run_with_progress(words: list[str], folder: str, display: Display) -> tuple
 
 
 def _run_failure_exception(launcher: str, status: int, errors: str, is_file_created: bool) -> Exception:
-    """Exception for a run that did not complete.
-
-    is_file_created: whether the ranks had created the result file. launcher: path of mpiexec. status: exit
-    status of the launcher. errors: standard error of the run.
-    """
+    """Exception for a run that did not complete. is_file_created: whether the ranks had created the result
+    file. errors: standard error of the run."""
     lines = [line for line in errors.splitlines() if line.startswith("rodsweep: ")]
     if lines:
         return REFUSAL_OF_STATUS.get(status, RuntimeError)(lines[0].removeprefix("rodsweep: "))
@@ -161,12 +152,10 @@ def _run_failure_exception(launcher: str, status: int, errors: str, is_file_crea
 
 def _mpiexec_path() -> str:
     """Path of mpiexec in the folder of this Python, else on the search path; EnvironmentIncomplete if mpiexec
-    is not found.
-    """
+    is not found."""
     next_to_python = shutil.which("mpiexec", path=str(Path(sys.executable).parent))
     path = next_to_python or shutil.which("mpiexec")
     if path is None:
-        raise EnvironmentIncomplete(
-            "mpiexec, which starts the ranks, is not found; `make install` provides it"
-        )
+        message = "mpiexec, which starts the ranks, is not found; `make install` provides it"
+        raise EnvironmentIncomplete(message)
     return path

@@ -81,3 +81,14 @@ class LimitCycleKeywords(TaskKeywords, total=False):
     transient: int
     most_periods: int
     time: Literal["tau2", "tau1"]
+
+
+KEYWORDS_OF_TASK = {
+    "spectrum": SpectrumKeywords,
+    "modes": ModesKeywords,
+    "thresholds": ThresholdsKeywords,
+    "criticality": CriticalityKeywords,
+    "limit_cycle": LimitCycleKeywords,
+    "branch": BranchKeywords,
+}
+"""Keyword arguments of the methods of an arm and of a rod, by name of the method."""

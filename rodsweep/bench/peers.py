@@ -95,10 +95,8 @@ def _import_directory(directory: Path) -> ModuleType:
 
 
 def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> Peers:
-    """Contribution of the installed peers to the study with the name `study`. package: as returned by
-    `peer_package`. quick: whether to use fewer settings. folder: empty directory in which programs are
-    compiled. NO_PEERS if there is no package, or the package has no such study.
-    """
+    """Contribution of the installed peers to the study with the name `study`. folder: empty directory in
+    which programs are compiled. NO_PEERS if there is no package, or the package has no such study."""
     module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS

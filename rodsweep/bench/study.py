@@ -3,7 +3,7 @@
 import resource
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from math import inf, isfinite, isnan, nan
 from pathlib import Path
@@ -132,7 +132,7 @@ def time_runs(runs: Sequence[Callable[[], Outcome]], rounds: Sequence[int]) -> l
 
 def timing_order(rounds: Sequence[int]) -> Iterator[int]:
     """Indices of functions in the order of timing: round by round, so that a slow period of the machine
-    affects all functions. rounds: number of rounds of each function."""
+    affects all functions."""
     for round_number in range(max(rounds)):
         yield from (i for i, round_count in enumerate(rounds) if round_number < round_count)
 
@@ -173,28 +173,26 @@ class CaseWithErrorMeasure(NamedTuple):
 def measure_case(
     name: str, case: Any, contenders: Sequence[TimedMethod], rounds: int, judge: Judge
 ) -> list[Measurement]:
-    """Measurements of all contenders on one case, timed in turn. name: name of the case. judge: function from
-    a method's result to the fields of `Measurement`. rounds: number of timed rounds."""
+    """Measurements of all contenders on one case, timed in turn. judge: function from a method's result to
+    the fields of `Measurement`."""
     return measure_cases([CaseWithErrorMeasure(name, case, judge)], contenders, rounds)
 
 
 def measure_cases(
     entries: Sequence[CaseWithErrorMeasure], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
-    """Measurements of all contenders on all cases `entries`, timed in turn. rounds: number of timed
-    rounds."""
+    """Measurements of all contenders on all cases `entries`, timed in turn."""
     pairs = [(entry, contender) for entry in entries for contender in contenders]
     runs = [partial(result_or_error, contender.run, entry.case) for entry, contender in pairs]
     times = time_runs(runs, [0 if contender.is_slow else rounds for _, contender in pairs])
     measurements = []
     for (entry, c), timed in zip(pairs, times, strict=True):
-        min_seconds = min(timed.seconds)
         failed = isinstance(timed.outcome, Exception)
-        empty = Measurement(
-            entry.name, c.method, c.setting, timed.median, inf, c.group, least_seconds=min_seconds
-        )
-        failure = {"failure": f"failed ({type(timed.outcome).__name__})"}
-        measurements.append(replace(empty, **(failure if failed else entry.judge(timed.outcome))))
+        judged = {"failure": f"failed ({type(timed.outcome).__name__})"}
+        fields = {"error": inf} | (judged if failed else entry.judge(timed.outcome))
+        names = {"case": entry.name, "method": c.method, "setting": c.setting, "group": c.group}
+        fields |= names | {"seconds": timed.median, "least_seconds": min(timed.seconds)}
+        measurements.append(Measurement(**fields))
     return measurements
 
 
@@ -243,8 +241,6 @@ def markdown_table(titles: str, line: str, rows: Iterable[Mapping[str, object]])
     """
     lines = [f"| {titles} |", "|" + "---|" * (titles.count("|") + 1)]
     for row in rows:
-        cells = {
-            k: BlankIfNan(value) if isinstance(value, int | float) else value for k, value in row.items()
-        }
+        cells = {k: BlankIfNan(v) if isinstance(v, int | float) else v for k, v in row.items()}
         lines.append(f"| {line.format_map(cells)} |")
     return "\n".join(lines)

@@ -39,8 +39,7 @@ LONGEST_MESSAGE = 350
 
 def _one_line(message: str) -> str:
     """The message on one line, shortened to about LONGEST_MESSAGE characters, because quoted values may be
-    long.
-    """
+    long."""
     line = printable(" ".join(message.split()))
     return line if len(line) <= LONGEST_MESSAGE else f"{line[: LONGEST_MESSAGE - 100]} ... {line[-90:]}"
 
@@ -90,10 +89,8 @@ def main() -> None:
 
 def _prepare_streams() -> None:
     """Opens /dev/null for standard streams that were closed before the start, as by `>&-` in a shell.
-
     Otherwise the next opened file would get the file descriptor of a closed stream, and C libraries would
-    write messages into this file.
-    """
+    write messages into this file."""
     for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
         if getattr(sys, name) is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_RDWR), mode))
@@ -106,8 +103,7 @@ def _prepare_streams() -> None:
 
 def _drop_unwritable_streams() -> None:
     """Redirects standard streams that cannot be flushed to /dev/null; otherwise Python would exit with
-    120.
-    """
+    120."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()

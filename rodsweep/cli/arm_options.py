@@ -34,11 +34,11 @@ MATERIAL_OPTIONS: dict[str, dict[str, Any]] = {
 """Arguments of `click.option` for the options of shape and material that are not quantities, by option."""
 CommandFunction = Callable[..., Any]
 """Function of a command."""
+Decorator = Callable[[CommandFunction], CommandFunction]
+"""Decorator of the function of a command."""
 
 
-def arm_options(
-    omitted: Collection[str] = (), is_required: bool = True
-) -> Callable[[CommandFunction], CommandFunction]:
+def arm_options(omitted: Collection[str] = (), is_required: bool = True) -> Decorator:
     """Decorator that adds the options of an arm's material, and an option for each quantity except the
     quantities in `omitted`.
 
@@ -55,17 +55,15 @@ def arm_options(
     return add_options
 
 
-def _quantity_option(name: str, required: bool) -> Callable[[CommandFunction], CommandFunction]:
-    """Decorator that adds the option of one quantity of an arm. name: name of the quantity. required: whether
-    the option is required.
-    """
+def _quantity_option(name: str, required: bool) -> Decorator:
+    """Decorator that adds the option of one quantity of an arm."""
     meaning = QUANTITIES[name].meaning
     help_text = f"{meaning[0].upper()}{meaning[1:]}{HELP_REMARKS.get(name, '')}."
     option = "--" + name.replace("_", "-")
     return click.option(option, name, metavar="QUANTITY", required=required, help=help_text)
 
 
-def parameter_options(command: Callable[..., Any]) -> Callable[..., Any]:
+def parameter_options(command: CommandFunction) -> CommandFunction:
     """Decorator that adds an option for every parameter of a rod except F. No option is required."""
     for name in reversed([name for name in (*NONLINEAR_PARAMETERS, *OPTIONAL_PARAMETERS) if name != "F"]):
         parameter = PARAMETERS[name]

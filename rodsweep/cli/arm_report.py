@@ -15,8 +15,8 @@ LINE_STYLES = {"headline": "bold", "warning": "yellow"}
 def print_arm_report(typed_values: dict[str, str | None], poisson: float, segments: tuple[str, ...]) -> None:
     """Prints the report on an arm.
 
-    typed_values: values of the options by name of the quantity or law, None if not given. poisson: Poisson's
-    ratio. segments: texts of the option --segment. Raises InputError, whose message names the options.
+    typed_values: values of the options by name of the quantity or law, None if not given. Raises InputError,
+    whose message names the options.
     """
     from ..model.arm.arm import SlenderArm
     from ..verdict.arm import arm_report
@@ -41,8 +41,7 @@ QUANTITY_IN_SENTENCE = re.compile(
 
 def with_option_names(sentence: str) -> str:
     """The error message `sentence`, with names of options such as --tip-radius in place of names of
-    quantities.
-    """
+    quantities."""
     text = QUANTITY_IN_SENTENCE.sub(lambda match: "--" + match[0].replace("_", "-"), sentence)
     text = text.replace("--segments", "--segment")
     return text if text.startswith("--") else f"--{text}"

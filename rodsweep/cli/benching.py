@@ -39,9 +39,8 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
         from ..bench.sweep.study import sweep_study
         from ..bench.thresholds.study import thresholds_study
     except ModuleNotFoundError as error:
-        raise EnvironmentIncomplete(
-            f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
-        ) from None
+        hint = f"the benchmark needs {error.name}: pip install 'rodsweep[bench]'"
+        raise EnvironmentIncomplete(hint) from None
     from ..results.file.benchmark_file import write_measurements
 
     studies: dict[str, Callable[[bool, Peers], BenchmarkReport]] = {

@@ -66,13 +66,10 @@ def _arm_lines(job: Job) -> list[str]:
     rod, validity of the model at rest."""
     arm = job.config.parameters.arm
     assert arm is not None
-    columns = job.points.columns_by_name | {
-        v.name: values for v, values in job.quantities if v.name == "tau2"
-    }
+    quantities = {variable.name: np.asarray(values) for variable, values in job.quantities}
+    columns = job.points.columns_by_name | {"tau2": quantities["tau2"]}
     texts = (f"{name} = {span_text(np.asarray(values))}" for name, values in columns.items())
-    validity = validity_sentence(
-        ArmValidity(job.config, job.points).variables_at_rest(), condition=" at rest"
-    )
+    at_rest = ArmValidity(job.config, job.points).variables_at_rest()
     load_clause = ", and compression, by the load that it finds"
     if "F" in job.task.coordinates():  # rows along F
         load_clause = ", and compression, by the loads of the rows"
@@ -82,10 +79,11 @@ def _arm_lines(job: Job) -> list[str]:
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",
         *_wall_lines(arm),
-        *plane_lines({variable.name: np.asarray(values) for variable, values in job.quantities}),
+        *plane_lines(quantities),
         f"the arm as a rod: {', '.join(texts)} s",
         *_lines_on_points_without_rod(job.points),
-        f"{validity}; the run also tests inertia, by the frequency of the arm's motion{load_clause}",
+        f"{validity_sentence(at_rest, condition=' at rest')}; the run also tests inertia, by the frequency "
+        f"of the arm's motion{load_clause}",
     ]
 
 
@@ -100,12 +98,11 @@ def _wall_lines(arm: ArmConfig) -> list[str]:
     """Warning for tubes with thin walls, in a list; empty if all walls are thick enough."""
     if arm.inner_radius is None:
         return []
-    names = ("length", "radius", "inner_radius", "poisson")
-    # Only poisson may be missing; its default is that of rubber.
-    values = [
-        arm.quantity_axes[name].array() if name in arm.quantity_axes else np.array([0.5]) for name in names
-    ]
-    length, radius, inner_radius, poisson = np.meshgrid(*values)
+    axes = arm.quantity_axes
+    sizes = [axes[name].array() for name in ("length", "radius", "inner_radius")]
+    of_rubber = np.array([0.5])
+    poisson_values = axes["poisson"].array() if "poisson" in axes else of_rubber
+    length, radius, inner_radius, poisson = np.meshgrid(*sizes, poisson_values)
     tubes = inner_radius < radius
     effect = wall_flattening_effect(length[tubes], radius[tubes], inner_radius[tubes], poisson[tubes])
     worst_index = int(np.argmax(effect.value))
@@ -116,8 +113,7 @@ def _wall_lines(arm: ArmConfig) -> list[str]:
 
 def _lines_on_points_without_rod(points: Points) -> list[str]:
     """Lines with the number of different rods, and with the number of points to which the rod model does not
-    apply, by reason.
-    """
+    apply, by reason."""
     lines = list[str]()
     rods = rod_numbers(points)
     if rods is not None:

@@ -9,7 +9,7 @@ from .. import __version__
 from ..errors import InputError
 from ..wording import counted
 from .arm_options import arm_options
-from .file_names import FILE_TYPE, link_target, result_file_path, with_suffix_replaced
+from .file_names import FILE_TYPE, OUTPUT, link_target, result_file_path, with_suffix_replaced
 from .launchers import launcher_rank_values
 from .usage_errors import CommandGroup
 
@@ -33,10 +33,7 @@ def commands(context: click.Context) -> None:
 @commands.command()
 @click.argument("config", type=FILE_TYPE)
 @click.option(
-    "-o",
-    "--output",
-    type=FILE_TYPE,
-    help="Result file; by default CONFIG's name with .h5, in the working directory.",
+    *OUTPUT, type=FILE_TYPE, help="Result file; by default CONFIG's name with .h5, in the working directory."
 )
 @overrides_option
 @click.option("--fresh", is_flag=True, help="Replace an existing result file instead of continuing it.")
@@ -59,10 +56,8 @@ def run(config: Path, output: Path | None, overrides: tuple[str, ...], shard: st
     from .run.running import run_config
 
     if options["fresh"] and options["extend"]:
-        raise InputError(
-            "--fresh and --extend are both given; give one of them: --fresh replaces the file, --extend adds "
-            "points to it"
-        )
+        effects = "--fresh replaces the file, --extend adds points to it"
+        raise InputError(f"--fresh and --extend are both given; give one of them: {effects}")
     parsed = parsed_shard(shard)
     suffix = f"-{parsed.number}-of-{parsed.shard_count}.h5" if parsed.shard_count > 1 else ".h5"
     output = result_file_path(output or Path(config.stem + suffix))
@@ -96,7 +91,7 @@ def merge(output: Path, shards: tuple[Path, ...]) -> None:
 
 @commands.command()
 @click.argument("file", type=FILE_TYPE)
-@click.option("-o", "--output", type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
+@click.option(*OUTPUT, type=FILE_TYPE, help="By default FILE's name with -snapshot before .h5.")
 def snapshot(file: Path, output: Path | None) -> None:
     """Write the finished points of the result FILE, without disturbing the run."""
     from ..results.file.current_state import write_snapshot
@@ -142,24 +137,19 @@ def schema() -> None:
 @click.argument("what", type=click.Choice(["spectrum", "thresholds", "limit_cycle", "sweep"]), required=False)
 @click.option("--quick", is_flag=True, help="Fewer rounds, rods and settings, for a first impression.")
 @click.option(
-    "-o",
-    "--output",
-    type=FILE_TYPE,
-    help="Markdown file; the numbers (.h5) and figures go into the same folder.",
+    *OUTPUT, type=FILE_TYPE, help="Markdown file; the numbers (.h5) and figures go into the same folder."
 )
 @click.option(
-    "--peers",
-    "directory",
-    type=FILE_TYPE,
+    "--peers", "directory", type=FILE_TYPE,
     help="Folder of the peers timed with rodsweep; by default `benchmarks` of the running checkout.",
-)
+)  # fmt: skip
 def bench(what: str | None, quick: bool, output: Path | None, directory: Path | None) -> None:
     """Time WHAT (by default all studies) and the available peers, and state the error of every result."""
     from .benching import run_benchmarks
 
     output = output or Path("bench.md")
-    is_not_a_file = output.exists() and not output.is_file()
-    if is_not_a_file or not output.parent.is_dir() or output.suffix != ".md":
+    is_other = output.exists() and not output.is_file()
+    if is_other or not output.parent.is_dir() or output.suffix != ".md":
         raise InputError(f"--output {output}: the name must end in .md, in an existing directory")
     run_benchmarks(what, quick, output, directory)
 

@@ -11,6 +11,8 @@ from ..results import RESULT_ENDINGS
 
 FILE_TYPE = click.Path(path_type=Path)
 """Type of arguments and options that name a file."""
+OUTPUT = ("-o", "--output")
+"""Names of the option for the file that a command writes."""
 
 
 def result_file_path(path: Path) -> Path:

@@ -5,8 +5,7 @@ import os
 
 def launcher_rank_values() -> list[str]:
     """Values of the environment variables in which launchers store the rank of a process; empty if the
-    process was started without a launcher.
-    """
+    process was started without a launcher."""
     names = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK", "SLURM_PROCID")
     return [os.environ[name] for name in names if name in os.environ]
 

@@ -45,21 +45,14 @@ class TabulatedSpectra(SpectrumTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         points = self.points
-        random_numbers = np.random.default_rng(1).standard_normal(
-            (OUTCOME_COUNT, 3, self.config.spectrum.modes)
-        )
+        shape = (OUTCOME_COUNT, 3, self.config.spectrum.modes)
+        solved = partial(
+            Spectrum, status=SpectrumStatus.ok, unstable_count=0, certified=True, elements=1, order=20,
+            seconds=1e-7,
+        )  # fmt: skip
         outcomes = [
-            Spectrum(
-                status=SpectrumStatus.ok,
-                eigenvalues=100 * (-np.abs(a) + 1j * b),
-                error_estimate=1e-12 * c,
-                unstable_count=0,
-                certified=True,
-                elements=1,
-                order=20,
-                seconds=1e-7,
-            )
-            for a, b, c in random_numbers
+            solved(eigenvalues=100 * (-np.abs(a) + 1j * b), error_estimate=1e-12 * c)
+            for a, b, c in np.random.default_rng(1).standard_normal(shape)
         ]
 
         def solve(index: int) -> Spectrum:
@@ -74,9 +67,8 @@ class TabulatedSpectra(SpectrumTask):
 
 def record_memory(directory: Path) -> None:
     """Writes the peak memory of this rank in bytes into a file of the directory."""
-    (
-        directory / f"{FIRST_RANK_PREFIX if prints_messages() else OTHER_RANKS_PREFIX}-{os.getpid()}"
-    ).write_text(str(peak_memory()))
+    prefix = FIRST_RANK_PREFIX if prints_messages() else OTHER_RANKS_PREFIX
+    (directory / f"{prefix}-{os.getpid()}").write_text(str(peak_memory()))
 
 
 def peak_memory() -> int:

@@ -11,7 +11,7 @@ from ..errors import InputError
 from ..model.arm.quantities import UNITS
 from ..model.parameters import PARAMETERS
 from .arm_options import arm_options, parameter_options
-from .file_names import FILE_TYPE, link_target, with_suffix_replaced
+from .file_names import FILE_TYPE, OUTPUT, link_target, with_suffix_replaced
 from .portrait_rod import QUANTITIES_WITHOUT_OPTION, rod_of_options, solve_with_progress
 
 PORT_TYPE = click.IntRange(0, 65535)
@@ -21,55 +21,39 @@ PORT_TYPE = click.IntRange(0, 65535)
 @click.command()
 @click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
 @click.option(
-    "-o",
-    "--output",
-    type=FILE_TYPE,
+    *OUTPUT, type=FILE_TYPE,
     help="Figure file (.png, .pdf, .svg; .gif or .mp4 for an animation); by default FILE's name.",
-)
+)  # fmt: skip
 @click.option(
-    "--roots",
-    type=click.Choice(["rightmost", "smallest", "all"]),
+    "--roots", type=click.Choice(["rightmost", "smallest", "all"]),
     help="Roots of spectra to draw: all stored roots, or two roots of each point: the rightmost, or the "
     "smallest in magnitude, as in the paper; by default the choice whose curves swap places less often.",
-)
+)  # fmt: skip
 @click.option(
     "--what",
     type=click.Choice(["cycle", "amplitude", "maps", "energy", "transient", "animation", "lines", "map"]),
     help="Figure of limit_cycle, or (lines, map) of thresholds; by default the figure that suits the file.",
 )
 @click.option(
-    "--point",
-    "points",
-    type=int,
-    multiple=True,
-    metavar="N",
+    "--point", "points", type=int, multiple=True, metavar="N",
     help="Points of limit_cycle to draw, from 1; up to 3 times.",
-)
+)  # fmt: skip
 @click.option(
-    "--at",
-    "at",
-    multiple=True,
-    metavar="NAME=VALUE",
+    "--at", multiple=True, metavar="NAME=VALUE",
     help="Draw only points at which a parameter has this value, such as k1=150, or a quantity of an arm, "
     "such as 'length=12 cm'.",
-)
+)  # fmt: skip
 @click.option("--title", is_flag=True, help="Put the title of the config above the figure.")
 @click.option(
-    "--width",
-    metavar="WIDTH",
+    "--width", metavar="WIDTH",
     help="Width of the figure, with type of 8 pt: single (3.375 in), double (7 in), or a length such as "
     "'89 mm'.",
-)
+)  # fmt: skip
 @click.option("--style", metavar="STYLE", help="Name or file of a matplotlib style.")
 def plot(
-    files: tuple[Path, ...],
-    output: Path | None,
-    roots: str | None,
-    what: str | None,
-    points: tuple[int, ...],
-    at: tuple[str, ...],
-    **look: Any,
-) -> None:
+    files: tuple[Path, ...], output: Path | None, at: tuple[str, ...],
+    roots: str | None, what: str | None, points: tuple[int, ...], **look: Any,
+) -> None:  # fmt: skip
     """Draw the result FILE, or several: spectra in panels, thresholds or limit cycles in one figure."""
     from ..post.figures import draw
     from ..post.figures.grid_slices import slice_at_values
@@ -96,17 +80,16 @@ def _parsed_at_values(at: tuple[str, ...]) -> dict[str, str]:
             raise InputError(f"--at {printable(text)} must be NAME=VALUE, such as k1=150 or 'length=12 cm'")
         name = name.strip()
         if name in values:
-            raise InputError(
-                f"--at {printable(name)} is given twice ({printable(values[name])} and "
-                f"{printable(value.strip())}); give one value for each parameter"
-            )
+            both = f"{printable(values[name])} and {printable(value.strip())}"
+            one = "give one value for each parameter"
+            raise InputError(f"--at {printable(name)} is given twice ({both}); {one}")
         values[name] = value.strip()
     return values
 
 
 @click.command()
 @click.argument("file", type=FILE_TYPE)
-@click.option("-o", "--output", type=FILE_TYPE, help="A .csv or .tsv file; by default FILE's name with .csv.")
+@click.option(*OUTPUT, type=FILE_TYPE, help="A .csv or .tsv file; by default FILE's name with .csv.")
 @click.option("--table", metavar="NAME", help="Table to write: points, or a list such as crossings.")
 @click.option("--columns", metavar="A,B,C", help="Columns to write, in this order; by default all.")
 @click.option("--units", is_flag=True, help="Put units into the headings: F_onset [k3/L^2].")
@@ -127,7 +110,7 @@ def export(
 
 @click.command()
 @click.argument("files", type=FILE_TYPE, nargs=-1, required=True, metavar="FILE...")
-@click.option("-o", "--output", type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
+@click.option(*OUTPUT, type=FILE_TYPE, help="A .html file; by default FILE's name with .html.")
 def report(files: tuple[Path, ...], output: Path | None) -> None:
     """Write one HTML page about the result FILEs, to share: answer, figures, tables, config, provenance."""
     from ..post.report import require_page, write_report
@@ -146,12 +129,11 @@ def report(files: tuple[Path, ...], output: Path | None) -> None:
 @click.option("--profile", metavar="FILE", help="A CSV file with factors along the rod, as material.profile.")
 @click.option("--F-max", "F_max", type=float, default=DEFAULT_F_MAX, show_default=True, help="Largest force.")
 @click.option(
-    "--accuracy",
-    type=float,
+    "--accuracy", type=float,
     help="Relative accuracy; by default 1e-5 on branches, and the accuracy of each other task.",
-)
+)  # fmt: skip
 @click.option(
-    "-o", "--output", type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
+    *OUTPUT, type=FILE_TYPE, default=Path("portrait.png"), show_default=True,
     help="A .png, .pdf or .svg file, or a .html page with tables.",
 )  # fmt: skip
 def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any) -> None:
@@ -180,7 +162,7 @@ def portrait(F_max: float, accuracy: float | None, output: Path, **options: Any)
 
 
 @click.command()
-@click.argument("source", type=click.Path(path_type=Path), required=False, metavar="[FILE | CONFIG]")
+@click.argument("source", type=FILE_TYPE, required=False, metavar="[FILE | CONFIG]")
 @click.option(
     "--port", type=PORT_TYPE, default=0, show_default=True, help="Port of the page; 0 chooses a free port."
 )

@@ -29,9 +29,8 @@ def rod_of_options(
 ) -> "DescribedRod":
     """The rod described by options; InputError for options outside their ranges.
 
-    parameters: parameters of the rod. quantities: quantities of an arm, poisson and segments. material: law,
-    section and profile. Values of omitted options are None. A parameter given in addition to an arm replaces
-    the arm's parameter.
+    quantities: quantities of an arm, poisson and segments. material: law, section and profile. Values of
+    omitted options are None. A parameter given in addition to an arm replaces the arm's parameter.
     """
     from ..config.parameters_section import DEFAULT_VALUES_OF_PARAMETERS, REQUIRED_PARAMETERS
     from ..model.arm.arm import SlenderArm
@@ -56,10 +55,9 @@ def rod_of_options(
         return DescribedRod(parameters=parameter_values, material=_read_material(material_values), arm=of_arm)
     for name in REQUIRED_PARAMETERS:
         if name not in parameter_values:
-            raise InputError(
-                f"--{name} is missing; give {', '.join(f'--{each}' for each in REQUIRED_PARAMETERS)}, "
-                "or the quantities of an arm, such as --length"
-            )
+            options = ", ".join(f"--{each}" for each in REQUIRED_PARAMETERS)
+            arm = "or the quantities of an arm, such as --length"
+            raise InputError(f"--{name} is missing; give {options}, {arm}")
     values = {name: parameter_values.get(name, DEFAULT_VALUES_OF_PARAMETERS.get(name)) for name in PARAMETERS}
     return DescribedRod(parameters=_options_that_are_set(values), material=_read_material(material_values))
 

@@ -1,6 +1,5 @@
 """Computations shared by all ranks before the result file exists: flutter forces, and variables that do not
-depend on points.
-"""
+depend on points."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -21,8 +20,7 @@ from ..tasks.protocol import Task
 @dataclass(slots=True)
 class _SharedComputations:
     """Computations divided among the ranks of `ranks`. Each rank omits its remaining items after a stop
-    signal, recorded in `stop`.
-    """
+    signal, recorded in `stop`."""
 
     ranks: Ranks
     stop: StopRequest
@@ -62,9 +60,8 @@ def shared_flutter_forces(config: Config, ranks: Ranks, stop: StopRequest) -> Fl
     None if a stop signal came before the computation ended.
     """
     rods = ranks.call_on_first_rank(lambda: rods_for_flutter_forces(config))
-    if not all(
-        rod.is_uniform_and_linear for rod in rods
-    ):  # a rank without a rod must start PETSc with the others
+    if not all(rod.is_uniform_and_linear for rod in rods):
+        # A rank without a rod must start PETSc with the others.
         ranks.require_on_all_ranks(require_solvers)
         ranks.require_on_all_ranks(start_solvers)
     computations = _SharedComputations(ranks, stop)

@@ -1,5 +1,6 @@
 """The values of one parameter in a config: a number, a list or a range, and their JSON schema."""
 
+from itertools import pairwise
 from math import inf
 from typing import Annotated, Any, Literal
 
@@ -15,6 +16,8 @@ RANGE_ENDS = ("start", "stop")
 """Keys of the ends of a range."""
 NUMBER_SCHEMA: dict[str, Any] = {"anyOf": [{"type": "number"}, {"enum": ["inf", "+inf", "-inf"]}]}
 """JSON schema of one value on an axis: a number, or a text for infinity."""
+COUNT_SCHEMA = {"type": "integer", "minimum": 1, "maximum": MAX_AXIS_VALUES, "description": "how many"}
+"""JSON schema of the number of values of a range."""
 AXIS_SCHEMA: dict[str, Any] = {
     "description": "a number, a list in increasing order, or a range",
     "anyOf": [
@@ -25,12 +28,7 @@ AXIS_SCHEMA: dict[str, Any] = {
             "properties": {
                 "start": {"type": "number", "description": "the first value"},
                 "stop": {"type": "number", "description": "the last value"},
-                "num": {
-                    "type": "integer",
-                    "minimum": 1,
-                    "maximum": MAX_AXIS_VALUES,
-                    "description": "how many",
-                },
+                "num": COUNT_SCHEMA,
                 "spacing": {"enum": ["linear", "log"], "default": "linear"},
             },
             "required": [*RANGE_ENDS, "num"],
@@ -90,14 +88,9 @@ class Axis(StrictConfigSection):
         # The ends stay unscaled, so that a longer range contains exactly the same values.
         return self.model_copy(update={"factor": scale * self.factor})
 
-    def equals_within_rounding(self, other: "Axis") -> bool:
-        """Whether two axes have the same values within rounding."""
-        return self.size == other.size and np.allclose(self.array(), other.array(), rtol=1e-12, atol=0)
-
     def array(self) -> Array:
-        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to
-        QUANTITY_DIGITS digits.
-        """
+        """Values of the axis in increasing order, (size,); for an arm's quantity rounded to QUANTITY_DIGITS
+        digits."""
         if self.values is not None:
             values = np.array(self.values)
         elif self.spacing == "log":
@@ -121,10 +114,9 @@ def as_axis(value: Any) -> Axis:
     if not value:
         raise ValueError("the list is empty; give at least one number")
     numbers = tuple(as_float(entry) for entry in value)
-    if any(high <= low for low, high in zip(numbers[:-1], numbers[1:], strict=True)):
-        raise ValueError(
-            f"{short_repr(value)} is not sorted; list the numbers in increasing order, each once"
-        )
+    if any(high <= low for low, high in pairwise(numbers)):
+        text = short_repr(value)
+        raise ValueError(f"{text} is not sorted; list the numbers in increasing order, each once")
     return Axis(values=numbers)
 
 

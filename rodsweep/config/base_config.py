@@ -19,6 +19,7 @@ from .values import Number, StrictConfigSection, Text
 ModeCount = Annotated[int, Field(ge=1, le=100)]
 NodeCount = Annotated[int, Field(ge=3, le=513)]
 CrossingCount = Annotated[int, Field(ge=1, le=1000)]
+MaterialField = Field(description="a mapping of law, section and profile")
 
 
 class Config(StrictConfigSection):
@@ -34,9 +35,7 @@ class Config(StrictConfigSection):
     """Relative error of each eigenvalue, threshold and mode. `limit_cycle` and `branch`, whose
     numbers are cycles, have other limits and defaults."""
 
-    material: Annotated[MaterialConfig | None, Field(description="a mapping of law, section and profile")] = (
-        None
-    )
+    material: Annotated[MaterialConfig | None, MaterialField] = None
     """Constitutive law and profile of the arm; by default a linear law and a uniform arm."""
 
     allows_crushed_rods: ClassVar[bool] = False
@@ -50,8 +49,7 @@ class Config(StrictConfigSection):
     @property
     def parameter_names(self) -> tuple[str, ...]:
         """Names of the parameters of a point: the parameters that the task needs, and the optional parameters
-        in the config.
-        """
+        in the config."""
         return (*self.rod_parameters_used({}), *self.optional_parameters_in_use)
 
     @property
@@ -59,11 +57,8 @@ class Config(StrictConfigSection):
         """Names of the optional parameters in the config, given by name or implied by the arm's shape."""
         arm = self.parameters.arm
         cone_parameters = () if arm is None else arm.cone_parameters
-        return tuple(
-            n
-            for n in OPTIONAL_PARAMETERS
-            if n in self.parameters.given_optional_parameters or n in cone_parameters
-        )
+        used_names = {*self.parameters.given_optional_parameters, *cone_parameters}
+        return tuple(name for name in OPTIONAL_PARAMETERS if name in used_names)
 
     @property
     def stated_build(self) -> Build | None:
@@ -73,8 +68,7 @@ class Config(StrictConfigSection):
     @property
     def build(self) -> Build:
         """Constitutive law and profile of the rods, from the section `material`, else from the arm, else the
-        default.
-        """
+        default."""
         if self.stated_build is not None:
             return self.stated_build
         return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
@@ -91,14 +85,13 @@ class Config(StrictConfigSection):
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
-        """Names of the parameters of a rod that the task uses. options: options of the task, by name."""
+        """Names of the parameters of a rod that the task uses."""
         return NONLINEAR_PARAMETERS
 
     @property
     def options_without_effect(self) -> dict[str, str]:
         """Options without effect in this config, by name; the value is the setting with which the option
-        would have an effect.
-        """
+        would have an effect."""
         return {}
 
     def refuse_options_without_effect(self) -> None:
@@ -123,21 +116,16 @@ class Config(StrictConfigSection):
             settings["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return settings
-        if self.parameters.arm_axes:  # the grid's axes do not contain parameters with one value
+        if arm_axes := self.parameters.arm_axes:  # these axes do not contain parameters with one value
             given_axes = self.parameters.given_axes
-            given_values = {
-                name: float(given_axes[name].array()[0]) if name in given_axes else None
-                for name in self.parameter_names
-            }
-            settings["parameters"] |= {
-                k: v for k, v in given_values.items() if k not in self.parameters.arm_axes
-            }
+            names = [name for name in self.parameter_names if name not in arm_axes]
+            first_values = {n: float(axis.array()[0]) for n, axis in given_axes.items() if n in names}
+            settings["parameters"] |= {name: first_values.get(name) for name in names}
         return settings | {"arm": self.parameters.arm.settings_of_results}
 
     def refuse_solved_parameter(self, name: str, reason: str) -> None:
         """Raises ValueError, with the reason `reason`, if the config gives the parameter `name`, for which
-        the task solves.
-        """
+        the task solves."""
         if name in self.parameters.given_axes:
             raise ValueError(f"parameters.{name} is given but the task {self.task} {reason}")
 

@@ -99,8 +99,7 @@ def key_docstrings(section: type[BaseModel]) -> dict[str, str]:
 
 def _describe_keys(schema: dict[str, Any], section: type[BaseModel]) -> None:
     """Adds the docstrings of the keys of `section` as descriptions to `schema`, in place; removes pydantic's
-    titles.
-    """
+    titles."""
     parameters = {name: f"{p.long_name}, in {p.unit}" for name, p in PARAMETERS.items()}
     meanings = parameters | key_docstrings(section)
     for name, key in schema["properties"].items():
@@ -121,17 +120,15 @@ def no_key_given(names: Iterable[str]) -> Schema:
 
 def all_keys_given(names: Iterable[str], *conditions: Schema) -> Schema:
     """JSON schema of the condition that all keys in `names` are given and all schemas in `conditions` are
-    satisfied.
-    """
+    satisfied."""
     return {"allOf": [*map(key_is_given, names), *conditions]}
 
 
 def with_axis_bounds(
     schema: Schema, bound: Mapping[str, float], allowed_texts: tuple[str, ...] = ()
 ) -> Schema:
-    """Copy of the JSON schema of an axis, with bounds on every number. bound: JSON schema keywords of the
-    bounds. allowed_texts: allowed spellings of inf.
-    """
+    """Copy of the JSON schema of an axis, with bounds on every number. allowed_texts: allowed spellings of
+    inf."""
     copy = deepcopy(schema)
     for node in iterate_subschemas(copy):
         kinds = node.get("anyOf", [])
@@ -144,25 +141,17 @@ def with_axis_bounds(
 
 
 def add_parameter_bounds(properties: Schema, axis: Schema) -> None:
-    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place.
-
-    axis: JSON schema of an axis without bounds.
-    """
+    """Adds the bounds of the parameters to the JSON schemas `properties` of a section's keys, in place."""
     for name, parameter in PARAMETERS.items():
         if name in properties:
             kinds = [axis if "$ref" in kind else kind for kind in properties[name]["anyOf"]]
-            allowed_texts = ("inf", "+inf") if parameter.rigid_adjective else ()
-            properties[name]["anyOf"] = [
-                with_axis_bounds(kind, parameter.allowed.schema_bounds, allowed_texts) for kind in kinds
-            ]
+            bounds = parameter.allowed.schema_bounds, ("inf", "+inf") if parameter.rigid_adjective else ()
+            properties[name]["anyOf"] = [with_axis_bounds(kind, *bounds) for kind in kinds]
 
 
 def add_arm_conditions(section: Schema, axis: Schema) -> None:
     """Adds the conditions of an arm to its JSON schema `section`, in place: unit and sign of every quantity,
-    exactly one kind of cross-section, and at most one load.
-
-    axis: JSON schema of an axis without bounds.
-    """
+    exactly one kind of cross-section, and at most one load."""
     for name, key in section["properties"].items():
         bound = BOUNDS_OF_ARM.get(name, {})
         if "anyOf" in key:
@@ -176,15 +165,12 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
             if node.get("type") == "string":
                 node["pattern"] = pattern
     required = ["length", "young"]
-    circle = all_keys_given([*required, "radius"], no_key_given(["width", "height", "segments"]))
-    rectangle = all_keys_given(
-        [*required, "width", "height"], no_key_given([*SECTION_SIZE_NAMES[0], "segments"])
-    )
-    segments_condition = all_keys_given(
-        ["segments"], no_key_given([*SECTION_SIZE_NAMES[0], *SECTION_SIZE_NAMES[1]])
-    )
+    round_sizes, rectangle_sizes = SECTION_SIZE_NAMES
+    circle = all_keys_given([*required, "radius"], no_key_given([*rectangle_sizes, "segments"]))
+    rectangle = all_keys_given([*required, *rectangle_sizes], no_key_given([*round_sizes, "segments"]))
+    in_segments = all_keys_given(["segments"], no_key_given([*round_sizes, *rectangle_sizes]))
     section["allOf"] = [
-        {"oneOf": [circle, rectangle, segments_condition]},
+        {"oneOf": [circle, rectangle, in_segments]},
         {"not": all_keys_given(["inner_radius", "tip_radius"])},
         *({"not": all_keys_given(pair)} for pair in combinations((*LOAD_KEYS, "load_kind"), 2)),
     ]
@@ -193,8 +179,8 @@ def add_arm_conditions(section: Schema, axis: Schema) -> None:
 def points_condition(parameter_names: Iterable[str], lists: bool) -> Schema:
     """JSON schema of the condition that `parameters` defines points: by axes, an arm, or a file of points.
 
-    parameter_names: names of the parameters of the task. lists: whether the task accepts a file of points. If
-    F is needed, either the arm has a load or F is given; otherwise both are forbidden.
+    lists: whether the task accepts a file of points. If F is needed, either the arm has a load or F is given;
+    otherwise both are forbidden.
     """
     axes = tuple(name for name in parameter_names if PARAMETERS[name].default is None)
     loads = [all_keys_given([name]) for name in LOAD_KEYS]

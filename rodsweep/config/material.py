@@ -1,6 +1,5 @@
 """The section `material` of a config: constitutive law, cross-section, and a profile along the arm, which may
-be a CSV file.
-"""
+be a CSV file."""
 
 import csv
 from functools import cached_property
@@ -26,8 +25,7 @@ FactorColumn = Annotated[
 
 class ProfileTable(StrictConfigSection):
     """Table of factors that multiply stiffnesses and drags along the arm, in columns of equal length. An
-    omitted column is 1 along the whole arm.
-    """
+    omitted column is 1 along the whole arm."""
 
     u: Annotated[
         list[Number], Field(max_length=MAX_PROFILE_ROWS, description="a list of numbers from 0 to 1")
@@ -50,10 +48,9 @@ class ProfileTable(StrictConfigSection):
     @cached_property
     def profile(self) -> Profile:
         """The `Profile` of this table; ValueError for an invalid table."""
-        factors = {name: getattr(self, name) for name in FACTOR_NAMES}
-        columns = {
-            name: [1.0] * len(self.u) if column is None else column for name, column in factors.items()
-        }
+        given = {name: getattr(self, name) for name in FACTOR_NAMES}
+        ones = [1.0] * len(self.u)
+        columns = {name: ones if column is None else column for name, column in given.items()}
         for name, column in columns.items():
             if len(column) != len(self.u):
                 raise ValueError(

@@ -89,8 +89,7 @@ class ParametersSection(LinearAxes):
     @property
     def axes(self) -> dict[str, Axis]:
         """Axes of the swept parameters, by name: the given axes and, for a grid of parameters, axes computed
-        from the arm's quantities.
-        """
+        from the arm's quantities."""
         if self.arm is None or self.arm_axes:
             return self.given_axes
         axes = self.arm.dimensionless_axes() | self.given_axes
@@ -154,14 +153,12 @@ class ParametersSection(LinearAxes):
             )
 
     def _require_arm(self, arm: ArmConfig, needs_force: bool) -> None:
-        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines points.
-
-        needs_force: whether F is a parameter of the task.
-        """
+        """Raises ValueError unless the arm, with the parameters given in addition to the arm, defines
+        points."""
         arm.require_allowed_values()
         refuse_conflicting_keys(arm, needs_force, self.given_axes)
         varied_axes = {name: axis for name, axis in self.given_axes.items() if axis.size > 1}
-        count = arm.grid_point_count(math.prod(axis.size for axis in varied_axes.values()))
+        count = math.prod(axis.size for axis in (*arm.quantity_axes.values(), *varied_axes.values()))
         if self.arm_axes and count > MAX_ARM_GRID_POINTS:
             raise ValueError(
                 f"parameters.arm makes a grid of {count} points, more than the {MAX_ARM_GRID_POINTS} "

@@ -8,8 +8,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, PlainSerializer
 
 class StrictConfigSection(BaseModel):
     """Base class of a config's sections: unknown keys are refused, types are not converted, values are
-    frozen.
-    """
+    frozen."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -47,8 +46,7 @@ def cell_number(cell: str) -> float:
 
 def short_repr(value: Any) -> str:
     """`repr` of a value for messages, cut to 60 characters; a phrase if `repr` fails because the value is too
-    large.
-    """
+    large."""
     try:
         text = repr(value)
     except (ValueError, RecursionError):  # an integer of thousands of digits, or a tree too deep
@@ -58,8 +56,7 @@ def short_repr(value: Any) -> str:
 
 def printable_name(name: object, max_length: int = 200) -> str:
     """The name as text for a message, or `repr` of the text if the text is not printable; shortened in the
-    middle to at most `max_length` characters.
-    """
+    middle to at most `max_length` characters."""
     text = str(name)
     if not text.isprintable():
         text = repr(text)

@@ -51,8 +51,7 @@ class AnswersFromFile:
 
     def answer(self, kind: str, state: PageState) -> AnswerVariables | None:
         """Stored answer to a request of the kind `kind` for the state `state` of the page; None if the file
-        has no such answer.
-        """
+        has no such answer."""
         if state.tab != self.state.tab or state.law != self.state.law:
             return None
         if kind == "cycle":
@@ -63,8 +62,7 @@ class AnswersFromFile:
 
     def cycle_to_film(self, state: PageState) -> Dataset | None:
         """Stored cycle of the rod of `state`, with axes of length 1; None if no such cycle is stored, or too
-        few shapes for a film.
-        """
+        few shapes for a film."""
         numbers = self._matching_points(state)
         is_other = state.tab != self.state.tab or state.law != self.state.law
         if is_other or not self.has_cycles or len(numbers) == 0 or "shape_x" not in self.data:
@@ -100,11 +98,8 @@ class AnswersFromFile:
         return values
 
     def _matching_points(self, state: PageState, free_controls: Collection[str] = ()) -> NDArray[np.integer]:
-        """Indices, (n,), of the points of the file that have the parameters of `state`.
-
-        The parameters in `free_controls`, and the parameter along a row of a phase diagram, may have any
-        value.
-        """
+        """Indices, (n,), of the points of the file that have the parameters of `state`. The parameters in
+        `free_controls`, and the parameter along a row of a phase diagram, may have any value."""
         is_matching = np.ones(self.data["status"].size, dtype=bool)
         along_rows = {name for name in state.values if self._is_along_rows(name)}
         for name, text in state.values.items():
@@ -123,8 +118,7 @@ class AnswersFromFile:
 
     def _data_at(self, numbers: NDArray[np.integer]) -> Dataset:
         """Data at the points with the indices `numbers`, with the dimension `POINT_DIMENSION` for the
-        points.
-        """
+        points."""
         if not self.dims:
             return self.data.expand_dims(POINT_DIMENSION)
         return self.data.stack({POINT_DIMENSION: self.dims}, create_index=False).isel(
@@ -156,8 +150,7 @@ class AnswersFromFile:
 
     def _cycles_over_force(self, state: PageState) -> AnswerVariables | None:
         """Stored cycles of the rod of `state` at all forces; None if the file has fewer than two such
-        points.
-        """
+        points."""
         numbers = self._matching_points(state, (state.load,))
         if len(numbers) < 2:
             return None
@@ -172,8 +165,7 @@ class AnswersFromFile:
 
     def _branch(self, state: PageState) -> AnswerVariables | None:
         """Stored branches of the rod of `state` along the force; None if the file has no computed branches of
-        this rod.
-        """
+        this rod."""
         numbers = self._matching_points(state, (state.load,))
         if len(numbers) == 0 or "branch_F" not in self.data:
             return None
@@ -193,8 +185,7 @@ class AnswersFromFile:
 
 def _matches_control(value: float, stored: float) -> bool:
     """Whether `value`, from a control, equals the value `stored`, or `stored` rounded to one of the
-    CONTROL_DIGITS, up to EQUALITY_TOLERANCE.
-    """
+    CONTROL_DIGITS, up to EQUALITY_TOLERANCE."""
     rounded = [float(f"{stored:.{digits}g}") for digits in CONTROL_DIGITS]
     return any(
         number == value or abs(number - value) <= EQUALITY_TOLERANCE * abs(number)

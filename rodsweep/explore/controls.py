@@ -1,6 +1,5 @@
 """Sliders, text fields and menus of the page, and a timer for pauses of the user. Every change by the user is
-reported by the name and the new text of the changed value.
-"""
+reported by the name and the new text of the changed value."""
 
 from collections.abc import Callable
 from functools import partial
@@ -22,8 +21,7 @@ ChangeCallback = Callable[..., None]
 
 class SliderField:
     """Text field and slider for the same value. A change of the field or of the slider calls `changed(name,
-    text)`.
-    """
+    text)`."""
 
     def __init__(self, scale: ControlScale, changed: Callable[[str, str], None], sheets: list[StyleSheet]):
         self.scale = scale
@@ -45,8 +43,7 @@ class SliderField:
 
     def show(self, text: str) -> None:
         """Shows `text` in the field, and moves the slider to the value of `text` unless the user is dragging
-        the slider.
-        """
+        the slider."""
         self._is_updating = True
         try:
             self.text.value = text
@@ -124,8 +121,7 @@ class Controls:
 
     def show_largest_load(self, state: PageState, axis: PictureAxis) -> None:
         """Writes, for an arm, the pressure that corresponds to the largest force above the field of this
-        force. axis: axis of the load.
-        """
+        force."""
         pressure = f": {state.largest_force() * axis.factor:.4g} kPa" if state.tab == "arm" else ""
         self.F_max.title = LARGEST_FORCE + pressure
 
@@ -147,8 +143,7 @@ PAUSE_MILLISECONDS = 900
 
 class PauseTimer:
     """Runs `callback` on the event loop of a document once the controls have not changed for a while:
-    PAUSE_MILLISECONDS after the last `restart`.
-    """
+    PAUSE_MILLISECONDS after the last `restart`."""
 
     def __init__(self, document: Document, callback: Callable[[], None]):
         self.document = document

@@ -28,8 +28,7 @@ STOPPED_SENTENCE = "Stopped. A change of the rod starts the solve again."
 
 class Page:
     """Page in a browser tab. stored: answers from a result file, used instead of solves; None if there is no
-    file.
-    """
+    file."""
 
     def __init__(
         self, document: Document, solvers: Solvers, state: PageState, stored: AnswersFromFile | None = None
@@ -149,8 +148,7 @@ class Page:
 
     def _show_error(self, sentence: str) -> None:
         """Cancels all solves and shows the error message `sentence` in place of all pictures except a drawn
-        diagram.
-        """
+        diagram."""
         self.pause_timer.cancel()
         for kind in (*kinds.TIP_KINDS, *kinds.MANUAL_KINDS):
             self._cancel_request(kind)
@@ -177,8 +175,7 @@ class Page:
 
     def _send_request(self, kind: str, tip: TipPosition | None = None, is_solved_again: bool = False) -> None:
         """Sends a new request of the kind `kind`. A stored answer replaces the solve, unless
-        `is_solved_again`. tip: position of the dragged tip, in L.
-        """
+        `is_solved_again`. tip: position of the dragged tip, in L."""
         state = state_to_solve(kind, self.state, self.drawn_around)
         cycle_file = self.stored if (kind, tip) == ("film", None) else None
         cycle = None if cycle_file is None else cycle_file.cycle_to_film(state)

@@ -1,6 +1,5 @@
-"""Contents of a page: controls, pictures, tables and texts, and the pictures that each kind of
-answer fills.
-"""
+"""Contents of a page: controls, pictures, tables and texts, and the pictures that each kind of answer
+fills."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -69,8 +68,7 @@ class PageContents:
 
     def connect(self, document: Document, callbacks: Mapping[str, Callable[..., None]]) -> None:
         """Adds all models to a Bokeh document. callbacks: callbacks, by name of the button; "diagram_point"
-        and "load" for clicks in pictures.
-        """
+        and "load" for clicks in pictures."""
         for kind, button in self.buttons.items():
             button.on_click(callbacks[kind])
         for event in (Tap, Pan):
@@ -94,17 +92,12 @@ class PageContents:
 
     def show_point(self, state: PageState, F: float) -> None:
         """Marks the parameters of `state` in all pictures, and updates address, config and Python lines. F:
-        the load, in k3/L^2.
-        """
+        the load, in k3/L^2."""
         axis = load_axis(state)
-        load_on_axis = F * axis.factor
         self.controls.show_largest_load(state, axis)
-        self.growth.move_load_line(load_on_axis)
-        self.branches.move_load_line(load_on_axis)
-        load = SCALES[state.tab][state.load]
-        second_scale = SCALES[state.tab][state.second]
-        x = load.value(state.values[state.load])
-        y = second_scale.value(state.values[state.second])
+        self.growth.move_load_line(F * axis.factor)
+        self.branches.move_load_line(F * axis.factor)
+        x, y = (SCALES[state.tab][name].value(state.values[name]) for name in (state.load, state.second))
         if x is not None and y is not None:
             self.diagram.move_point(x, y)
         self.buttons["cycles"].visible = can_follow_cycle_curves(state)
@@ -112,8 +105,7 @@ class PageContents:
 
     def show(self, kind: str, answer: dict[str, Any], state: PageState) -> None:
         """Draws the answer `answer` to a request of the kind `kind` in all pictures that show this answer,
-        and updates the table of numbers; the answer "film" is saved as a file.
-        """
+        and updates the table of numbers; the answer "film" is saved as a file."""
         if kind == "spectrum":
             self.spectrum.show(answer)
             self.mode.show(answer)
@@ -140,8 +132,7 @@ class PageContents:
 
     def show_message(self, kind: str, sentence: str) -> None:
         """Shows a sentence in place of the pictures for requests of the kind `kind`; for requests on cycle
-        curves, drags and films, above the picture.
-        """
+        curves, drags and films, above the picture."""
         self.numbers.show(kind, None)
         if kind == "cycle":
             self.beating.remove_all_shapes()

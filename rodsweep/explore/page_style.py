@@ -17,13 +17,11 @@ def template_text(name: str) -> str:
 
 def style_sheet(name: str) -> InlineStyleSheet:
     """Style sheet for Bokeh's widgets, from the file `name` in TEMPLATES. A widget inherits the colours of
-    the page, but not its style sheets.
-    """
+    the page, but not its style sheets."""
     return InlineStyleSheet(css=template_text(name))
 
 
 def colour_script(figures: Sequence[figure]) -> CustomJS:
     """Browser script that gives the figures the colours of the light or dark colour scheme, at once and after
-    every change of the scheme.
-    """
+    every change of the scheme."""
     return CustomJS(args={"figures": list(figures)}, code=template_text("colours.js"))

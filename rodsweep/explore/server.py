@@ -49,8 +49,7 @@ class UndelayedServer(HTTPServer):
 
 class BatchConnection(ServerConnection):
     """Connection to a page. All changes by one callback are sent in a single message; Bokeh itself sends one
-    message per change.
-    """
+    message per change."""
 
     def __init__(self, *arguments: Any):
         super().__init__(*arguments)
@@ -58,8 +57,7 @@ class BatchConnection(ServerConnection):
 
     def send_patch_document(self, event: DocumentPatchedEvent) -> Awaitable[None]:
         """Queues a change of the document and returns a coroutine that sends the queue. Bokeh awaits the
-        coroutines of all changes after the callback; the first coroutine sends all changes.
-        """
+        coroutines of all changes after the callback; the first coroutine sends all changes."""
         self._changes.append(event)
         return self._send_all()
 
@@ -110,8 +108,7 @@ class ExploreServer:
 
     def start(self) -> None:
         """Starts the server and the solver processes. The server answers browsers once the event loop
-        runs.
-        """
+        runs."""
         # A browser that leaves a page while an answer is being sent is no reason for a warning.
         logging.getLogger("bokeh.server.views.ws").setLevel(logging.ERROR)
         self.server.start()
@@ -132,9 +129,7 @@ class ExploreServer:
 
 
 def _page_query(arguments: dict[str, list[bytes]]) -> str:
-    """Query string of the page's address, without Bokeh's own arguments. arguments: values by name, from the
-    HTTP request.
-    """
+    """Query string of the page's address, without Bokeh's own arguments."""
     from urllib.parse import urlencode
 
     values_by_name = {name: values[-1].decode(errors="replace") for name, values in arguments.items()}
@@ -151,8 +146,7 @@ def _bound_sockets(port: int) -> list[socket.socket]:
 async def serve(state: PageState, stored: AnswersFromFile | None, port: int, is_opened: bool) -> None:
     """Serves the page until SIGINT (Ctrl-C) or SIGTERM. state: state with which a page opens. stored: answers
     from a result file, or None. port: TCP port; 0 for any free port. is_opened: whether to open a browser; if
-    none can be opened, a line on standard error says so.
-    """
+    none can be opened, a line on standard error says so."""
     stopped = asyncio.Event()
     for number in (signal.SIGINT, signal.SIGTERM):
         asyncio.get_running_loop().add_signal_handler(number, stopped.set)

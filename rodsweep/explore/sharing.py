@@ -4,6 +4,7 @@ from base64 import b64decode, b64encode
 from collections.abc import Callable, Sequence
 from html import escape
 from pathlib import Path
+from typing import Any
 
 from bokeh.core.properties import String
 from bokeh.model import DataModel
@@ -40,8 +41,7 @@ FILM_COMMANDS = """# the film of the arm:
 
 class ExportedLines(DataModel):
     """Config and Python lines that the buttons copy and save. These texts are updated at every change of the
-    controls, because they are not part of the page's layout.
-    """
+    controls, because they are not part of the page's layout."""
 
     config = String(default="")
     python = String(default="")
@@ -64,30 +64,20 @@ class ExportPanel:
             for name in ("address", "yaml", "python")
         )
         self.shared_lines = ExportedLines()
-        self.task = Select(
-            title="Config of the task",
-            name="task",
-            options=CONFIG_TASKS,
-            value=CONFIG_TASKS[0],
-            stylesheets=[widgets],
-        )
+        tasks = {"options": CONFIG_TASKS, "value": CONFIG_TASKS[0]}
+        self.task = Select(title="Config of the task", name="task", **tasks, stylesheets=[widgets])
         self.task.on_change("value", self._choose_task)
         save = Button(label="Save the config", name="save_button", stylesheets=[widgets])
-        save.js_on_click(
-            CustomJS(args={"lines": self.shared_lines}, code=template_text("download.js") + SAVE_SCRIPT)
-        )
+        save.js_on_click(_saving_script(SAVE_SCRIPT, lines=self.shared_lines))
         self.file = FileInput(title="Load a config", name="load", accept=".yaml,.yml", stylesheets=[widgets])
         self.file.on_change("value", self._load_chosen_file)
-        copies = [
-            Button(label=f"Copy the {label}", name=f"copy_{name}", stylesheets=[widgets])
-            for label, name in (("config", "yaml"), ("Python lines", "python"))
-        ]
-        for button, name in zip(copies, ("config", "python"), strict=True):
-            button.js_on_click(CustomJS(args={"lines": self.shared_lines}, code=COPY_SCRIPT.format(name)))
+        copies = []
+        for label, name, lines in (("config", "yaml", "config"), ("Python lines", "python", "python")):
+            copies.append(Button(label=f"Copy the {label}", name=f"copy_{name}", stylesheets=[widgets]))
+            copy_lines = CustomJS(args={"lines": self.shared_lines}, code=COPY_SCRIPT.format(lines))
+            copies[-1].js_on_click(copy_lines)
         self.film = Div(name="film", tags=[""], visible=False)
-        self.film.js_on_change(
-            "tags", CustomJS(args={"film": self.film}, code=template_text("download.js") + FILM_SCRIPT)
-        )
+        self.film.js_on_change("tags", _saving_script(FILM_SCRIPT, film=self.film))
         self.address.js_on_change("tags", CustomJS(args={"address": self.address}, code=ADDRESS_SCRIPT))
         self.root = Column(
             self.address, self.task, self.yaml, Row(copies[0], save), self.file, self.python, copies[1],
@@ -108,11 +98,8 @@ class ExportPanel:
         """
         address = self._state.address()
         self.address.update(text=f'<a href="?{escape(address)}">This page as an address</a>', tags=[address])
-        for text_field, lines in (
-            (self.python, self.shared_lines.python),
-            (self.yaml, self.shared_lines.config),
-        ):
-            text_field.text = f"<pre>{escape(lines)}</pre>"
+        self.python.text = f"<pre>{escape(self.shared_lines.python)}</pre>"
+        self.yaml.text = f"<pre>{escape(self.shared_lines.config)}</pre>"
 
     def save_film(self, gif: bytes) -> None:
         """Makes the browser save a film; gif: content of the file."""
@@ -132,17 +119,15 @@ class ExportPanel:
 
     def _load_chosen_file(self, attribute: str, previous: str, content: str) -> None:
         """Passes the text of the chosen file to the page. content: content in base64; empty after a clearing.
-        The other arguments, from Bokeh, are not used.
-        """
+        The other arguments, from Bokeh, are not used."""
         if content:
             self._loaded(b64decode(content).decode(errors="replace"))
             self.file.clear()  # otherwise a browser does not report the same file when it is chosen again
 
 
 def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select | Row]:
-    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file format.
-    arm: animated line of the arm.
-    """
+    """Menu of the pictures, and a row of buttons, each of which saves the chosen picture in one file
+    format."""
     widgets = style_sheet("widgets.css")
     figures = {card.root.name: card.figure for card in cards}
     names = list(figures)
@@ -150,17 +135,20 @@ def _picture_buttons(cards: Sequence[Card], arm: GlyphRenderer) -> list[Select |
     buttons = []
     for kind in ("png", "svg"):
         button = Button(label=kind.upper(), name=f"{kind}_button", stylesheets=[widgets])
-        code = template_text("download.js") + template_text("picture.js")
         arguments = {"figures": figures, "choice": selection, "type": kind, "animated": arm}
-        button.js_on_click(CustomJS(args=arguments, code=code))
+        button.js_on_click(_saving_script(template_text("picture.js"), **arguments))
         buttons.append(button)
     return [selection, Row(*buttons)]
 
 
+def _saving_script(code: str, **arguments: Any) -> CustomJS:
+    """Browser script that saves a file; code: its lines after the function `download`."""
+    return CustomJS(args=arguments, code=template_text("download.js") + code)
+
+
 def state_from_config_text(text: str, F_max: str = DEFAULT_F_MAX) -> PageState:
     """State of the page for `text`, a config in YAML. F_max: largest force if the config has none. For an
-    invalid config, raises the same InputError as the command line.
-    """
+    invalid config, raises the same InputError as the command line."""
     source = "the loaded file"
     tree = parsed_yaml(text, source)
     if not isinstance(tree, dict):

@@ -52,14 +52,12 @@ class ControlScale:
     @property
     def ends(self) -> tuple[float, float]:
         """Slider positions of the two ends: `low` and `high`, or their common logarithms for a logarithmic
-        slider.
-        """
+        slider."""
         return (log10(self.low), log10(self.high)) if self.is_logarithmic else (self.low, self.high)
 
     def position(self, text: str) -> float | None:
         """Slider position for a text that the user typed, clipped to the ends; None if the text is invalid or
-        NaN.
-        """
+        NaN."""
         value = self.value(text)
         start, end = self.ends
         if value is None or isnan(value):
@@ -125,27 +123,20 @@ def _arm_scale(
     )
 
 
-SCALES = {
-    "rod": {
-        scale.name: scale
-        for scale in (
-            _rod_scale("F", -20, 200, logarithmic=False),
-            _rod_scale("k1", 10, 1e7, has_inf=True),
-            _rod_scale("k2", 1, 1e7, has_inf=True),
-            _rod_scale("gamma3", 1e-6, 10),
-            _rod_scale("gamma1", 0.1, 10),
-            _rod_scale("taper", 0.3, 2, logarithmic=False),
-        )
-    },
-    "arm": {
-        scale.name: scale
-        for scale in (
-            _arm_scale("length", 1, 100, "cm", 1e2),
-            _arm_scale("radius", 0.5, 50, "mm", 1e3),
-            _arm_scale("young", 1, 1e4, "kPa", 1e-3),
-            _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
-            _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
-        )
-    },
-}
+ROD_SLIDERS = (
+    _rod_scale("F", -20, 200, logarithmic=False),
+    _rod_scale("k1", 10, 1e7, has_inf=True),
+    _rod_scale("k2", 1, 1e7, has_inf=True),
+    _rod_scale("gamma3", 1e-6, 10),
+    _rod_scale("gamma1", 0.1, 10),
+    _rod_scale("taper", 0.3, 2, logarithmic=False),
+)
+ARM_SLIDERS = (
+    _arm_scale("length", 1, 100, "cm", 1e2),
+    _arm_scale("radius", 0.5, 50, "mm", 1e3),
+    _arm_scale("young", 1, 1e4, "kPa", 1e-3),
+    _arm_scale("viscosity", 1e-2, 1e3, "Pa s", 1.0),
+    _arm_scale("pressure", 0, 20, "kPa", 1e-3, logarithmic=False),
+)
+SCALES = {tab: {s.name: s for s in scales} for tab, scales in (("rod", ROD_SLIDERS), ("arm", ARM_SLIDERS))}
 """Scale of every slider, by tab and by name of the parameter or quantity."""

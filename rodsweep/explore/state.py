@@ -1,6 +1,5 @@
 """State of the page: the texts of all controls. The state can be written as address, config or Python
-lines.
-"""
+lines."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -91,8 +90,7 @@ class PageState:
 
     def subject(self) -> SoftRod | Arm:
         """Rod or arm of the visible tab. For invalid values, raises the same InputError as the command
-        line.
-        """
+        line."""
         material: dict[str, Any] = dict(MATERIAL_CHOICES[self.law])
         if self.tab == "arm":
             return Arm(**{name: text.strip() for name, text in self.arm.items()}, **material)
@@ -105,8 +103,7 @@ class PageState:
 
     def parameters(self) -> dict[str, Any]:
         """Parameters of the tab "rod" as numbers by name, without a taper of 1. A text that is not a number
-        is returned as text.
-        """
+        is returned as text."""
         values = {name: float_or_text(text) for name, text in self.rod.items()}
         return {name: value for name, value in values.items() if name != "taper" or value != 1}
 
@@ -187,8 +184,7 @@ def from_address(query: str, default: PageState | None = None) -> PageState:
 
 def _require_choice(key: str, value: str, allowed: Any) -> str:
     """Returns `value` if it is one of `allowed`; raises InputError otherwise. key: name of the choice, for
-    the message.
-    """
+    the message."""
     if value not in allowed:
         raise InputError(f"{key} = {short_repr(value)} is not allowed; it must be {' or '.join(allowed)}")
     return value

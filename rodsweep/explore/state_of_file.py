@@ -71,9 +71,7 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     if isinstance(config, BranchConfig) and config.branch.along != "F":
         ends = (config.branch.start, config.branch.stop)
         axes[config.branch.along] = np.array([sum(ends) / 2])
-    rod = {
-        name: _middle_value_text(axes[name]) if name in axes else text for name, text in DEFAULT_ROD.items()
-    }
+    rod = DEFAULT_ROD | {name: _middle_value_text(axes[name]) for name in DEFAULT_ROD if name in axes}
     second = _second_parameter("rod", axes)
     state = PageState(rod=rod, law=material, across=second, F_max=F_max)
     F = axes.get("F", np.zeros(1))
@@ -88,8 +86,7 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
 
 def _largest_force(config: Config, default: str) -> str:
     """Largest force of a search for thresholds, or of branches along F, as text; `default` for other
-    tasks.
-    """
+    tasks."""
     key = LARGEST_FORCE_KEYS.get(config.task)
     options: Any = getattr(config, config.task, None)
     if key is not None and getattr(options, "along", "F") == "F":
@@ -108,10 +105,8 @@ def _state_of_arm(config: Config, path: Path) -> PageState:
     quantities = {name: value for name, value in quantities.items() if value is not None}
     omitted = [name for name in quantities if name not in (*DEFAULT_ARM, *HIDDEN_QUANTITIES)]
     if omitted:
-        raise InputError(
-            f"{path}: the page cannot show an arm with {omitted[0]}; "
-            f"its controls are {', '.join(DEFAULT_ARM)}"
-        )
+        reason = f"the page cannot show an arm with {omitted[0]}"
+        raise InputError(f"{path}: {reason}; its controls are {', '.join(DEFAULT_ARM)}")
     texts = dict(DEFAULT_ARM)
     axes = {name: quantities[name].array() for name in DEFAULT_ARM if name in quantities}
     for name, values in axes.items():
@@ -150,29 +145,20 @@ def _exact_number_text(value: float) -> str:
 
 def stored_diagram(data: Dataset, state: PageState) -> dict[str, Any] | None:
     """Diagram of a result file over the load and the second parameter of `state`, at the middle values of all
-    other parameters; None if the file contains no such diagram.
-    """
+    other parameters; None if the file contains no such diagram."""
     second_name = state.second
     dims = set(data["status"].dims)
     if second_name not in dims or data.sizes[second_name] < 2:
         return None
-    middle_indices = {
-        n: data.sizes[n] // 2 for n in state.values if n in dims and n not in (state.load, second_name)
-    }
-    data = data.isel(middle_indices)
+    others = [name for name in state.values if name in dims and name not in (state.load, second_name)]
+    data = data.isel({name: data.sizes[name] // 2 for name in others})
+    rows = data[second_name].values
     if state.tab == "arm":
         scale = SCALES["arm"]["pressure"]
         pressure = (scale.value(state.arm["pressure"]) or 0.0) / scale.factor
-        return (
-            diagram_from_arm_result(data, data[second_name].values, pressure)
-            if "crossing_pressure" in data
-            else None
-        )
-    over_F = data.sizes.get("F", 1) > 1
+        return diagram_from_arm_result(data, rows, pressure) if "crossing_pressure" in data else None
     if "crossing_F" in data:
-        return diagram_from_row_result(
-            data, data[second_name].values, "crossing_F", float(data["F_end"].max())
-        )
-    if "unstable_count" in data and over_F:
+        return diagram_from_row_result(data, rows, "crossing_F", float(data["F_end"].max()))
+    if "unstable_count" in data and data.sizes.get("F", 1) > 1:
         return diagram_from_phase_result(data, second_name)
     return None

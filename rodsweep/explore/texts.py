@@ -1,6 +1,5 @@
 """Texts of the page that change with every answer. These texts are outside Bokeh's layout, because each
-change of a Bokeh `Div` causes a new layout of the whole page.
-"""
+change of a Bokeh `Div` causes a new layout of the whole page."""
 
 from collections.abc import Mapping, Sequence
 from html import escape
@@ -26,8 +25,7 @@ class PageText(DataModel):
 class SolvingIndicator(PageText):
     """The text "solving ...". kinds: kinds of requests being solved; the numbers and pictures of these kinds
     fade, because they belong to an earlier state. is_stoppable: whether the button "Stop" is visible next to
-    the text.
-    """
+    the text."""
 
     kinds = List(String)
     is_stoppable = Bool(default=False)
@@ -45,15 +43,13 @@ def add_texts(document: Document, texts: Sequence[PageText]) -> None:
 
 def solving_text(kinds: Sequence[str], progress: Mapping[str, str]) -> str:
     """Text "solving ..." for the given kinds of requests; empty if `kinds` is empty. progress: progress as
-    text, by kind.
-    """
+    text, by kind."""
     names = [KIND_WORDS.get(kind, kind) + progress.get(kind, "") for kind in kinds]
     return f"solving {', '.join(names)} ..." if names else ""
 
 
 def progress_text(text: str, completed_fraction: float | None) -> str:
     """Progress of a solve as text in parentheses. text: current step of the solve. completed_fraction:
-    completed fraction of the work; None if unknown.
-    """
+    completed fraction of the work; None if unknown."""
     percent = "" if completed_fraction is None else f", {completed_fraction:.0%}"
     return f" ({escape(text)}{percent})"

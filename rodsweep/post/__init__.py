@@ -1,3 +1,2 @@
 """Summaries, tables, figures and reports from result files. Only this package imports matplotlib. The package
-contains no solver.
-"""
+contains no solver."""

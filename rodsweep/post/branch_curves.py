@@ -150,9 +150,8 @@ class RodBranches:
     @property
     def coexistence_ranges(self) -> list[ParameterRange]:
         """Ranges of the parameter in which a stable cycle exists and the straight rod is stable."""
-        return intersection_of_ranges(
-            self.stable_cycle_ranges, self.straight_ranges(branch_ends(self.view))[0]
-        )
+        stable_straight, _ = self.straight_ranges(branch_ends(self.view))
+        return intersection_of_ranges(self.stable_cycle_ranges, stable_straight)
 
     @property
     def coexistence_is_decided(self) -> bool:
@@ -189,7 +188,7 @@ def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
 
 
 def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBranch:
-    """Branch with the given number, from 1. v: variables of the rod. parameter: followed parameter."""
+    """Branch with the given number, from 1."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
     special_before = special[v["special_point"][special] == 0]
@@ -217,8 +216,7 @@ def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBr
 def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]) -> Array:
     """The parameter at the vertices of a branch, (n,); cycles are moved by at most twice their absolute error
     into the range between the special points before and after them. is_special: mask of the special points,
-    (n,).
-    """
+    (n,)."""
     x = x.copy()
     for start, end in pairwise(np.flatnonzero(is_special)):
         interior = slice(start + 1, end)
@@ -228,7 +226,7 @@ def _within_special_points(x: Array, error: Array, is_special: NDArray[np.bool_]
 
 
 def _special_point(v: dict[str, Array], index: int) -> StoredSpecialPoint:
-    """Special point at index `index` of the stored list. v: variables of the rod."""
+    """Special point at index `index` of the stored list."""
     values = {field.name: v[f"special_{field.name}"][index].item() for field in fields(StoredSpecialPoint)}
     texts = {"kind": SPECIAL_KINDS[values["kind"]], "reason": END_REASONS[values["reason"]]}
     return StoredSpecialPoint(**values | texts)

@@ -1,6 +1,5 @@
 """Lines about the cost and the provenance of a result: computing time, MPI ranks, dates, versions, BLAS
-kernels.
-"""
+kernels."""
 
 from typing import Any
 
@@ -13,8 +12,7 @@ from ..wording import counted, duration, plural
 
 def time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str]:
     """Lines about the computing time of the points in the mask `is_computed`, of any shape; an empty list if
-    no point is computed. noun: noun for a point.
-    """
+    no point is computed."""
     if not is_computed.any():
         return []
     seconds = view.variables["seconds"][is_computed]
@@ -27,7 +25,7 @@ def time_lines(view: ResultView, is_computed: np.ndarray, noun: str) -> list[str
 
 
 def provenance_lines(a: dict[str, Any]) -> list[str]:
-    """Lines about dates, versions of the software, and BLAS kernels. a: attributes of the result file."""
+    """Lines about dates, versions of the software, and BLAS kernels."""
     return [
         f"computed {_dates_clause(a)}; rodsweep {a.get('rodsweep_version')}, PETSc {a.get('petsc_version')}, "
         f"SLEPc {a.get('slepc_version')}, commit {str(a.get('git_commit'))[:12]}",
@@ -37,22 +35,19 @@ def provenance_lines(a: dict[str, Any]) -> list[str]:
 
 def _dates_clause(a: dict[str, Any]) -> str:
     """Clause with the dates of start and end of the computation. The file of a shard has no end; the clause
-    then says whether all points of the shard are computed.
-    """
+    then says whether all points of the shard are computed."""
     if "started" not in a:
         return "not finished yet"
     if "finished" in a:
         return f"{a['started']} to {a['finished']}"
-    is_whole_shard = a.get("shard") and not a.get("stopped")
-    return (
-        f"from {a['started']} on, all points of shard {a['shard']}" if is_whole_shard else "not finished yet"
-    )
+    if a.get("shard") and not a.get("stopped"):
+        return f"from {a['started']} on, all points of shard {a['shard']}"
+    return "not finished yet"
 
 
 def rank_lines(a: dict[str, Any], noun: str) -> list[str]:
     """Lines about the last run: ranks, hosts, points, shard, reason of a stop, and fraction of the time spent
-    solving; empty if not stored. a: attributes of the result file. noun: noun for a point.
-    """
+    solving; empty if not stored."""
     if RANK_STATISTICS[0] not in a:
         return []
     points, busy_seconds, idle_seconds = (np.atleast_1d(a[name]) for name in RANK_STATISTICS)

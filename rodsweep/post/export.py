@@ -35,8 +35,7 @@ class ExportRequest:
 def export(view: ResultView, output: Path, request: ExportRequest) -> str:
     """Writes one table of a result to the file `output`, and returns a sentence about the table. Raises
     InputError for an unknown table or column, for an invalid file name, and if the file exists and may not be
-    replaced.
-    """
+    replaced."""
     if output.is_dir() or output.suffix not in SEPARATORS:
         endings = "; ".join((".csv separates columns by commas", ".tsv by tabs"))
         raise InputError(f"--output {output}: the name must end in .csv or .tsv ({endings})")
@@ -49,9 +48,7 @@ def export(view: ResultView, output: Path, request: ExportRequest) -> str:
 
 
 def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> None:
-    """Writes a table to `stream` as CSV. separator: character between columns. units: whether headings
-    contain units.
-    """
+    """Writes a table to `stream` as CSV. units: whether headings contain units."""
     lines = csv.writer(stream, delimiter=separator, lineterminator="\n")
     lines.writerow(column.heading_with_unit if units else column.name for column in table.columns)
     for start in range(0, table.rows, EXPORT_BATCH_ROWS):
@@ -61,8 +58,7 @@ def _write_csv(table: Table, separator: str, units: bool, stream: TextIO) -> Non
 
 def _written_table_sentence(table: Table, view: ResultView) -> str:
     """Sentence on the written table: numbers of rows and columns, number of points without a row, and names
-    of the other tables.
-    """
+    of the other tables."""
     text = f"{counted(table.rows, 'row')} of {table.name} in {counted(len(table.columns), 'column')}"
     if table.empty_points:
         text += f"; {table.empty_points} of {counted(view.variables['status'].size, 'point')} without a row"

@@ -55,8 +55,7 @@ class LocatedThreshold:
 @dataclass(frozen=True, slots=True)
 class UnlocatedThreshold:
     """Interval between two neighbouring points of a file in which the stability of the straight rod changes.
-    low, high: parameter values of the two points.
-    """
+    low, high: parameter values of the two points."""
 
     low: float
     high: float
@@ -66,8 +65,7 @@ class UnlocatedThreshold:
 
 def sort_position(change: LocatedThreshold | UnlocatedThreshold) -> float:
     """Parameter value by which thresholds are sorted: the position, or the lower end of a bracketing
-    interval.
-    """
+    interval."""
     return change.position if isinstance(change, LocatedThreshold) else change.low
 
 
@@ -95,9 +93,7 @@ class StoredThresholds:
         self, v: Mapping[str, np.ndarray], name: str, prefix: str, is_chosen: NDArray[np.bool_]
     ) -> None:
         """Adds the onsets and changes of stability in the mask `is_chosen`, (changes,), of the variables
-        whose names start with `prefix`. name: parameter along which the thresholds are located. v: variables
-        of the file.
-        """
+        whose names start with `prefix`. name: parameter along which the thresholds are located."""
         rods = np.stack([v[f"{prefix}_{other}"] for other in self.other_parameters], axis=-1)
         fields = (name, "error", "frequency", "kind")
         positions, error, frequency, kind = (v[f"{prefix}_{field}"] for field in fields)
@@ -105,15 +101,11 @@ class StoredThresholds:
         for i in np.flatnonzero(is_chosen):
             parameter = float(positions[i])
             word = CROSSING_KINDS[int(kind[i])]
-            if word == "onset":
-                point = LocatedThreshold(parameter, float(error[i]) * (abs(parameter) or 1.0), word)
-            elif counts is None or (word, int(counts[i])) in STABILITY_CHANGES:
-                point = LocatedThreshold(
-                    parameter, float(error[i]) * (abs(parameter) or 1.0), word, float(frequency[i])
-                )
-            else:
-                continue
-            self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
+            if word == "onset" or counts is None or (word, int(counts[i])) in STABILITY_CHANGES:
+                absolute_error = float(error[i]) * (abs(parameter) or 1.0)
+                rate = nan if word == "onset" else float(frequency[i])
+                point = LocatedThreshold(parameter, absolute_error, word, rate)
+                self.thresholds_by_rod.setdefault(tuple(rods[i].tolist()), []).append(point)
 
     def thresholds_up_to_end(self, line: ParameterLine) -> list[LocatedThreshold | UnlocatedThreshold]:
         """Thresholds from the start of the search to the largest parameter value of a line of points."""
@@ -144,10 +136,9 @@ class StoredThresholds:
         for i in np.flatnonzero(is_growing[1:] != is_growing[:-1]):
             low = float(x[i])
             high = float(x[i + 1])
+            kind = "hopf" if is_growing[i + 1] else "restabilization"
             if sum(_lies_between(point, low, high) for point in changes) % 2 == 0:
-                thresholds.append(
-                    UnlocatedThreshold(low, high, "hopf" if is_growing[i + 1] else "restabilization")
-                )
+                thresholds.append(UnlocatedThreshold(low, high, kind))
         return sorted(thresholds, key=sort_position)
 
 

@@ -10,15 +10,11 @@ from ..wording import counted
 def material_of(view: ResultView) -> Mapping[str, Any]:
     """The given keys of law, section, profile and segments of the arms of a file, in the section `material`
     of the config or in the arm; empty for uniform arms of linear material."""
-    section = dict(view.config.get("material") or {})
-    section |= {
-        name: value for name, value in (view.config.get("parameters", {}).get("arm") or {}).items() if value
-    }
+    arm = view.config.get("parameters", {}).get("arm") or {}
+    section = dict(view.config.get("material") or {}) | {name: value for name, value in arm.items() if value}
     shape_keys = {name: section[name] for name in ("profile", "segments") if section.get(name)}
     if section.get("law", "linear") != "linear":
-        shape_keys |= {
-            name: section.get(name, default) for name, default in (("law", ""), ("section", "fixed"))
-        }
+        shape_keys |= {"law": section["law"], "section": section.get("section", "fixed")}
     return shape_keys
 
 
@@ -42,7 +38,5 @@ def material_lines(view: ResultView) -> list[str]:
         rows = counted(len(columns.pop("u")), "row")
         lines.append(f"profile of {rows} along the arm: {', '.join(columns)}")
     if "segments" in section:
-        lines += [
-            f"segment {number}, {text}" for number, text in enumerate(map(str, section["segments"]), start=1)
-        ]
+        lines += [f"segment {number}, {text}" for number, text in enumerate(section["segments"], 1)]
     return lines

@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 def require_output_path(output: Path, endings: Sequence[str], noun: str, inputs: Sequence[Path] = ()) -> None:
     """Raises InputError if `output` has a suffix not in `endings`, if its directory does not exist, or if
     `output` is a directory or one of the files `inputs`; EnvironmentIncomplete if nothing may be written into
-    its directory. noun: noun for the file, for the message.
-    """
+    its directory. noun: noun for the file, for the message."""
     if output.suffix not in endings:
         raise InputError(f"--output {output}: the name must end in {', '.join(endings)}")
     if not output.parent.is_dir():

@@ -1,6 +1,5 @@
 """Distinction between curves of Hopf points that bound the region of stable straight rods, and curves of Hopf
-points of further modes.
-"""
+points of further modes. line: parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -14,18 +13,15 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
-    row. line: parameter along a row. row: parameter constant on a row.
+    row.
     """
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
     is_bound = dict.fromkeys(numbers, False)
     rows = view.point_columns[row]
     kinds, counts, positions = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
-    masks = {number: v["curve_number"] == number for number in numbers}
-    paths = {
-        number: (v[f"curve_{line}"][is_of_curve], v[f"curve_{row}"][is_of_curve])
-        for number, is_of_curve in masks.items()
-    }
+    masks = ((number, v["curve_number"] == number) for number in numbers)
+    paths = {number: (v[f"curve_{line}"][mask], v[f"curve_{row}"][mask]) for number, mask in masks}
     for index, i in zip(*np.nonzero(np.isfinite(positions)), strict=True):
         kind = CROSSING_KINDS[int(kinds[index, i])]
         if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):
@@ -37,8 +33,7 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
 
 def _distance_along_row(x: Array, y: Array, position: float, height: float) -> float:
     """Distance, along the row y = `height`, between x = `position` and a curve; inf if the curve does not
-    cross the row. x, y: vertices of the curve, (n,).
-    """
+    cross the row. x, y: vertices of the curve, (n,)."""
     low = np.minimum(y[:-1], y[1:])
     high = np.maximum(y[:-1], y[1:])
     segments = np.flatnonzero((low <= height) & (height <= high))

@@ -33,21 +33,19 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
     `target` to the file `output`.
 
     measurements: table with columns case, method, group, seconds and error. Rows without a finite error are
-    left out. xlabel: label of the time axis. Raises EnvironmentIncomplete if the file cannot be written.
+    left out. Raises EnvironmentIncomplete if the file cannot be written.
     """
     columns = {name: np.array(measurements[name]) for name in ("case", "method", "group", "seconds", "error")}
-    cases, methods, groups, seconds, errors = (
-        values[np.isfinite(columns["error"])] for values in columns.values()
-    )
+    has_error = np.isfinite(columns["error"])
+    cases, methods, groups, seconds, errors = (values[has_error] for values in columns.values())
     curve_looks = _curve_looks(dict(zip(methods.tolist(), groups.tolist(), strict=True)))
     titles = list(dict.fromkeys(cases.tolist()))
     is_wide = np.nanmax(seconds) > WIDE_TIME_RATIO * np.nanmin(seconds)
     column_count = ceil(sqrt(len(titles)))
     row_count = ceil(len(titles) / column_count)
     with matplotlib.rc_context(FIGURE_STYLE):
-        figure = Figure(
-            figsize=(PANEL_SIZE * column_count + 3.0, PANEL_SIZE * row_count + 0.5), layout="constrained"
-        )
+        size = PANEL_SIZE * column_count + 3.0, PANEL_SIZE * row_count + 0.5
+        figure = Figure(figsize=size, layout="constrained")
         grid = figure.subplots(row_count, column_count, sharex=True, sharey=True, squeeze=False)
         for axes, title in zip(grid.flat, titles, strict=False):
             axes.set(xscale="log", yscale="log")
@@ -71,8 +69,7 @@ def draw_work_precision(measurements: Table, xlabel: str, target: float | None, 
 
 def _curve_looks(groups: dict[str, str]) -> dict[str, dict]:
     """Keywords of matplotlib for the curve of each method: a colour for each group, a marker for each method
-    of a group. groups: group of each method.
-    """
+    of a group."""
     order = list(dict.fromkeys(groups.values()))
     curve_looks = {}
     for method, group in groups.items():

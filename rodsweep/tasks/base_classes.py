@@ -18,8 +18,7 @@ from .protocol import CheckRow, Task
 @dataclass(frozen=True, slots=True)
 class CertifiedTask(Task):
     """Base class of tasks with a certificate, which proves that the list of modes or crossings is
-    complete.
-    """
+    complete."""
 
     uncertified_risk: ClassVar[str]
     """Consequence of a missing certificate, as `check` prints it."""
@@ -39,8 +38,7 @@ class CertifiedTask(Task):
     @property
     def parameter_values(self) -> dict[str, np.ndarray]:
         """All values of each parameter at points, in searches and on lines, by name of the parameter, in
-        arrays of any shape.
-        """
+        arrays of any shape."""
         return self.points.rod_values | self.searched_ranges() | self.coordinates()
 
     def arms_line(self) -> str:
@@ -61,14 +59,12 @@ class CertifiedTask(Task):
 
     def searched_ranges(self) -> dict[str, np.ndarray]:
         """Ends of the searched range, (1,) or (2,), by name of the parameter; empty for tasks without a
-        search.
-        """
+        search."""
         return {}
 
     def certificate(self) -> tuple[bool, str]:
         """Returns (whether the run proves completeness, method of the proof or reason why there is no
-        proof).
-        """
+        proof)."""
         task = self.config.task
         if not getattr(self.config, task).certify:
             return False, f"{task}.certify: false; {self.uncertified_risk}"
@@ -82,19 +78,15 @@ class CertifiedTask(Task):
     @property
     def _has_varying_arm(self) -> bool:
         """Whether the material or the cross-section of some arm varies along its length. The characteristic
-        determinant D then has no closed form.
-        """
+        determinant D then has no closed form."""
         tapers = self.points.columns_by_name.get("taper", np.ones(1))
         return self.config.build.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, with a row on the certificate."""
         quantity, reason = self.never_modelled
-        rows = [
-            *rod_check_rows(self.parameter_values),
-            *material_check_rows(self.config, self.parameter_values),
-            *self.option_rows(),
-        ]
+        values = self.parameter_values
+        rows = [*rod_check_rows(values), *material_check_rows(self.config, values), *self.option_rows()]
         return [*rows, ("certificate", *self.certificate()), (quantity, False, reason)]
 
 
@@ -107,9 +99,6 @@ class HopfPointTask(CertifiedTask):
         "gravity, inertia, motion out of the plane",
         "not part of the overdamped problem",
     )
-    AXIAL_DRAG_ROW: ClassVar[CheckRow] = (
-        "axial drag",
-        True,
-        "parameters.gamma1; it changes cycles, but no Hopf point",
-    )
+    AXIAL_DRAG_ROW: ClassVar[CheckRow]
     """Row of `check` on the axial drag."""
+    AXIAL_DRAG_ROW = "axial drag", True, "parameters.gamma1; it changes cycles, but no Hopf point"

@@ -37,9 +37,8 @@ class BranchTask(HopfPointTask):
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.branch
-        list_lengths = (
-            f"at most {options.cycles} cycles and {options.special} special points of a rod are stored"
-        )
+        lengths = f"{options.cycles} cycles and {options.special} special points"
+        list_lengths = f"at most {lengths} of a rod are stored"
         return [
             self.AXIAL_DRAG_ROW,
             ("branches born at Hopf points", True, list_lengths),
@@ -68,37 +67,32 @@ class BranchTask(HopfPointTask):
         options = self.config.branch
         workspace = NewtonWorkspace()
         request = BranchRequest(**options.model_dump(), accuracy=self.config.accuracy)
+        lengths = options.along, options.cycles, options.special
         return Solver(
             statuses=tuple(BranchStatus),
             warm_up=warm_up,
             solve=lambda index: solve_branches(self.points.rod(index), request, workspace),
-            record=lambda index, result: branch_values(
-                result, options.along, options.cycles, options.special
-            ),
+            record=lambda index, result: branch_values(result, *lengths),
         )
 
 
 def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_count: int) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
-    parameter: the followed parameter. points: length of the list of cycles. special_count: length of the list
-    of special points.
+    points: length of the list of cycles. special_count: length of the list of special points.
     """
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
     cycles = [_cycle_values(point, parameter) | {"branch": number} for number, point in numbered]
-    starts = [0]
-    for curve in result.curves:
-        starts.append(starts[-1] + len(curve.points))
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
-    specials = [
-        _special_point_values(
-            special_point, starts[number - 1], crossing_by_value.get(special_point.parameter_value)
-        )
-        | {"special_branch": number, "special_meets": others.get((number, index), -1)}
-        for number, curve in enumerate(result.curves, 1)
-        for index, special_point in enumerate(curve.special_points)
-    ]
+    specials = []
+    start = 0  # index of the first cycle of the branch
+    for number, curve in enumerate(result.curves, 1):
+        for index, special_point in enumerate(curve.special_points):
+            crossing = crossing_by_value.get(special_point.parameter_value)
+            others_here = {"special_branch": number, "special_meets": others.get((number, index), -1)}
+            specials.append(_special_point_values(special_point, start, crossing) | others_here)
+        start += len(curve.points)
     is_complete = result.status.name != "failed"
     counts = {"hopf": len(result.crossings), "branch": len(result.curves), "point": len(cycles)}
     counts["special"] = len(specials)
@@ -114,14 +108,11 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     """For every symmetry breaking on a branch, the number of the second branch that begins or ends there.
 
     Keys: (number of the branch, from 1; index of the symmetry breaking among the branch's special points).
-    curves: all branches of a rod.
     """
     numbers = {}
     for number, curve in enumerate(curves, 1):
-        for breaking, index in (
-            (curve.start_breaking, 0),
-            (curve.end_breaking, len(curve.special_points) - 1),
-        ):
+        ends = (curve.start_breaking, 0), (curve.end_breaking, len(curve.special_points) - 1)
+        for breaking, index in ends:
             if breaking is not None:
                 numbers[number, index] = breaking.branch_number
                 numbers[breaking.branch_number, breaking.special_point_index] = number
@@ -129,7 +120,7 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
 
 
 def _cycle_values(point: "BranchPoint", parameter: str) -> dict[str, Any]:
-    """A cycle of a branch as variables of the file. parameter: the followed parameter."""
+    """A cycle of a branch as variables of the file."""
     attribute_names = {
         f"branch_{parameter}": "parameter_value",
         f"branch_{parameter}_error": "parameter_value_error",
@@ -149,15 +140,12 @@ SPECIAL_POINT_FIELDS = {
 def _special_point_values(
     point: "SpecialPoint", first_cycle_index: int, crossing: "Threshold | None"
 ) -> dict[str, Any]:
-    """Variables of the file for one special point.
-
-    first_cycle_index: index, among all cycles of the rod, of the first cycle of the point's branch. crossing:
-    crossing of the straight rod at the point, None if the point is not a Hopf point.
-    """
+    """Variables of the file for one special point. first_cycle_index: index, among all cycles of the rod, of
+    the first cycle of the point's branch. crossing: crossing of the straight rod at the point, None if the
+    point is not a Hopf point."""
+    number = first_cycle_index + point.index_of_cycle_before + 1
     values = {
-        "special_point": first_cycle_index + point.index_of_cycle_before + 1
-        if point.index_of_cycle_before >= 0
-        else 0,
+        "special_point": number if point.index_of_cycle_before >= 0 else 0,
         "special_reason": int(point.reason or 0),
         "special_unstable_after": crossing.unstable_after if crossing else -1,
     }

@@ -15,8 +15,7 @@ from .protocol import CheckRow
 
 def crushing_clause(config: Config) -> str:
     """Clause stating that a search along F ends below the crushing force (zero stretch); empty if no force
-    crushes the arm.
-    """
+    crushes the arm."""
     if config.is_uniform_and_linear:
         return ", or to just below k1"
     can_be_crushed = np.isfinite(config.build.constitutive_law.crushing_load)
@@ -35,8 +34,7 @@ def points_text(points: Points) -> str:
 
 def points_clause(points: Points, clause: str) -> str:
     """Text with the number of points and a clause on each point: "50 points (a list), each searched from
-    ...".
-    """
+    ..."."""
     return f"{points_text(points)}, {'each ' * (points.count > 1)}{clause}"
 
 
@@ -74,7 +72,6 @@ def arms_line(
     linear material.
 
     Empty for all other arms. columns: values of the rods' parameters by name, arrays of any shape.
-    first_mesh: function that returns the initial mesh.
     """
     if config.is_uniform_and_linear:
         return ""
@@ -87,9 +84,8 @@ def arms_line(
         return arms
     count = counted(mesh.element_count, "element")
     has_several_arms = any(len(np.unique(column)) > 1 for column in columns.values())
-    return (
-        f"{arms}; the first mesh{' of the hardest arm' * has_several_arms} has {count} of order {mesh.order}"
-    )
+    mesh_text = f"the first mesh{' of the hardest arm' * has_several_arms}"
+    return f"{arms}; {mesh_text} has {count} of order {mesh.order}"
 
 
 def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]:
@@ -107,13 +103,9 @@ def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]
 
 def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
-    radius.
-    """
-    if (
-        config.stated_build is None
-        and config.parameters.arm is not None
-        and config.parameters.arm.cone_parameters
-    ):
+    radius."""
+    arm = config.parameters.arm
+    if config.stated_build is None and arm is not None and arm.cone_parameters:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
     rows = f"a profile of {counted(len(profile.u), 'row')}"

@@ -46,8 +46,7 @@ def with_shapes(view: ResultView, numbers: Sequence[int]) -> ResultView:
 def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, Any]]:
     """Solves a point of the file again; returns (job of the point, variables of its cycle). number: number of
     the point, from 1. Raises InputError if the cycle cannot be solved here, or ends in a state that differs
-    from the stored state.
-    """
+    from the stored state."""
     job = _job_of_point(view, number)
     try:
         solver = job.solver()
@@ -58,9 +57,8 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
             f"{view.path} has no shapes of cycles, and the cycles cannot be solved here: {lack}; run with "
             "limit_cycle.shapes > 0, which stores them"
         ) from None
-    stored_period, error = (
-        float(view.variables[name].ravel()[number - 1]) for name in ("period", "period_error")
-    )
+    names = ("period", "period_error")
+    stored_period, error = (float(view.variables[name].ravel()[number - 1]) for name in names)
     allowed = MAX_PERIOD_DIFFERENCE * stored_period * (error + float(record["period_error"]))
     if not abs(float(record["period"]) - stored_period) <= allowed:
         raise InputError(
@@ -72,24 +70,14 @@ def _solve_stored_point(view: ResultView, number: int) -> tuple[Job, dict[str, A
 
 def _job_of_point(view: ResultView, number: int) -> Job:
     """Job that solves one point of the file again with SHAPE_COUNT shapes and SAMPLE_COUNT samples.
-
     Parameters, material, accuracy, harmonics and start are those of the file, for a start from a mode also
     amplitude and most_periods; a start from a neighbour becomes a start from the leading mode. number: number
-    of the point, from 1.
-    """
-    stored_options = view.config["limit_cycle"]
-    options = {
-        "shapes": SHAPE_COUNT,
-        "samples": SAMPLE_COUNT,
-        "harmonics": stored_options["harmonics"],
-        "start": "hopf",
-    }
-    if stored_options["start"] != "hopf":
-        options |= {
-            "start": "mode",
-            "amplitude": stored_options["amplitude"],
-            "most_periods": stored_options["most_periods"],
-        }
+    of the point, from 1."""
+    stored = view.config["limit_cycle"]
+    is_from_hopf = stored["start"] == "hopf"
+    kept = ["harmonics"] if is_from_hopf else ["harmonics", "amplitude", "most_periods"]
+    options = {"shapes": SHAPE_COUNT, "samples": SAMPLE_COUNT, "start": "hopf" if is_from_hopf else "mode"}
+    options |= {name: stored[name] for name in kept}
     document = {
         "task": "limit_cycle",
         "parameters": _parameters_of_point(view.as_list, number),
@@ -103,8 +91,7 @@ def _job_of_point(view: ResultView, number: int) -> Job:
 def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
     """Section `parameters` of a config with one point of a list of points: the parameters of a rod, or an arm
     and its follower force, with the parameters that the file's config gives in addition to the arm. number:
-    number of the point, from 1.
-    """
+    number of the point, from 1."""
     point_values = {name: float(column[number - 1]) for name, column in view.point_columns.items()}
     section = view.config["parameters"]
     if "arm" not in section:
@@ -118,6 +105,5 @@ def _parameters_of_point(view: ResultView, number: int) -> dict[str, Any]:
         arm[key] = value if values is None else float(values[number - 1 if values.size > 1 else 0])
     if "drag" in arm:
         arm["drag"] = DRAG_NAMES[int(arm["drag"])]
-    return {name: value for name, value in point_values.items() if name == "F" or name in section} | {
-        "arm": arm
-    }
+    given = {name: value for name, value in point_values.items() if name == "F" or name in section}
+    return given | {"arm": arm}

@@ -62,8 +62,7 @@ class LimitCycleTask(Task):
     @property
     def chains(self) -> Chains | None:
         """Chains of points, each started from the cycle of the previous point; None if there are no
-        chains.
-        """
+        chains."""
         options = self.config.limit_cycle
         if options.start != "neighbour":
             return None
@@ -72,8 +71,7 @@ class LimitCycleTask(Task):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Times of samples, shapes and transients, and material coordinates of shapes, (n,) each, by name of
-        the dimension.
-        """
+        the dimension."""
         options = self.config.limit_cycle
         extents = {"sample": options.samples, "shape": options.shapes}
         times = {name: np.arange(count) / count for name, count in extents.items() if count}
@@ -120,11 +118,9 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         if options.start == "hopf":
             return largest_first_mesh(self.points, coarse_mesh_along_branch)
-        accuracy = (
-            self.config.accuracy
-            if options.method == "integration"
-            else accuracy_of_motion_mesh(options.transient > 0)
-        )
+        accuracy = accuracy_of_motion_mesh(options.transient > 0)
+        if options.method == "integration":
+            accuracy = self.config.accuracy
         return largest_first_mesh(self.points, lambda rod: motion_mesh(rod, accuracy))
 
     def check_rows(self) -> list[CheckRow]:
@@ -132,6 +128,10 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle
         gamma1 = np.unique(self.points.rod_values["gamma1"])[:5]
         is_integrated = options.method == "integration"
+        transient_row = "tip from the start to the cycle", False, f"limit_cycle.method: {options.method}"
+        if not is_integrated:
+            transient_row = self._stored_values_row(transient_row[0], "transient", TRANSIENT_VARIABLES)
+        tip_variables = TIP_VARIABLES + ENERGY_VARIABLES
         return [
             *rod_check_rows(self.points.rod_values),
             *material_check_rows(self.config, self.points.rod_values),
@@ -139,24 +139,16 @@ class LimitCycleTask(Task):
             ("nonlinear motion", True, "task: limit_cycle; in the plane, geometrically exact"),
             ("energy budget", True, "means and fluctuations over a cycle"),
             ("Floquet multipliers", not is_integrated, f"limit_cycle.method: {options.method}"),
-            self._stored_values_row(
-                "tip and energy over a cycle", "samples", TIP_VARIABLES + ENERGY_VARIABLES
-            ),
+            self._stored_values_row("tip and energy over a cycle", "samples", tip_variables),
             self._stored_values_row("shapes over a cycle", "shapes", SHAPE_VARIABLES),
-            ("tip from the start to the cycle", False, f"limit_cycle.method: {options.method}")
-            if is_integrated
-            else self._stored_values_row("tip from the start to the cycle", "transient", TRANSIENT_VARIABLES),
+            transient_row,
             ("period in units of tau1", options.time == "tau1", f"limit_cycle.time: {options.time}"),
             ("gravity, inertia, motion out of the plane", False, "not part of the overdamped problem"),
         ]
 
     def _stored_values_row(self, description: str, option: str, variables: tuple[Variable, ...]) -> CheckRow:
         """Row of `check` on variables that are stored only on request, with number and size of the stored
-        values.
-
-        description: description of the variables. option: name of the option of limit_cycle with the number
-        of values per point.
-        """
+        values. option: name of the option of limit_cycle with the number of values per point."""
         options = self.config.limit_cycle
         count: int = getattr(options, option)
         if not count:
@@ -217,20 +209,16 @@ class LimitCycleTask(Task):
     def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
-        multipliers = cycle.multipliers
-        unknown_multipliers = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
-        stored_multipliers = SimpleNamespace(
-            multipliers=unknown_multipliers if multipliers is None else multipliers
-        )
-        values = outcome_values(
-            CYCLE_VARIABLES, stored_multipliers, cycle.errors, cycle.measures, cycle, names=MULTIPLIER_FIELDS
-        )
+        unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)
+        multipliers = unknown if cycle.multipliers is None else cycle.multipliers
+        stored_multipliers = SimpleNamespace(multipliers=multipliers)
+        sources = stored_multipliers, cycle.errors, cycle.measures, cycle
+        values = outcome_values(CYCLE_VARIABLES, *sources, names=MULTIPLIER_FIELDS)
         if options.time == "tau1":  # t/tau1 = (t/tau2) k2/gamma3
             values[PERIOD_TAU1.name] = cycle.measures.period * point["k2"] / point["gamma3"]
         if options.samples:
-            values |= _values_of_arrays(TIP_VARIABLES, cycle.tip) | _values_of_arrays(
-                ENERGY_VARIABLES, cycle.energy
-            )
+            values |= _values_of_arrays(TIP_VARIABLES, cycle.tip)
+            values |= _values_of_arrays(ENERGY_VARIABLES, cycle.energy)
         if options.shapes:
             values |= _values_of_arrays(SHAPE_VARIABLES, cycle.shape)
         if options.transient:
@@ -240,7 +228,6 @@ class LimitCycleTask(Task):
 
 def _values_of_arrays(variables: tuple[Variable, ...], arrays: np.ndarray | None) -> dict[str, Any]:
     """Values of variables by name, from arrays in the order of the variables; NaN for all variables if
-    `arrays` is None.
-    """
+    `arrays` is None."""
     names = [variable.name for variable in variables]
     return dict.fromkeys(names, np.nan) if arrays is None else dict(zip(names, arrays, strict=True))

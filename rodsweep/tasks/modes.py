@@ -40,8 +40,7 @@ class ModesTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices.
-        """
+        variables of the points by name, shape (points, own dimensions), readable by slices."""
         return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
@@ -59,15 +58,13 @@ class ModesTask(CertifiedTask):
 
     def first_mesh(self) -> Elements | None:
         accuracy = mesh_accuracy(self.config.accuracy, vectors=False)
-        return largest_first_mesh(
-            self.points, lambda rod: spectrum_mesh(rod, self.config.modes.modes, accuracy)
-        )
+        modes = self.config.modes.modes
+        return largest_first_mesh(self.points, lambda rod: spectrum_mesh(rod, modes, accuracy))
 
     def cost(self) -> CostEstimate:
         options = self.config.modes
-        spectra = spectra_cost(
-            self.points, options.modes, mesh_accuracy(self.config.accuracy, False), options.certify
-        )
+        accuracy = mesh_accuracy(self.config.accuracy, vectors=False)
+        spectra = spectra_cost(self.points, options.modes, accuracy, options.certify)
         return modes_cost(spectra, self.points.count, options.modes, options.growth)
 
     def solver(self) -> Solver:
@@ -75,9 +72,8 @@ class ModesTask(CertifiedTask):
         from ..solve.spectrum.status import SpectrumStatus
 
         options = self.config.modes
-        request = ModesRequest(
-            options.modes, self.config.accuracy, options.nodes, options.growth, options.certify
-        )
+        numbers = options.modes, self.config.accuracy, options.nodes
+        request = ModesRequest(*numbers, options.growth, options.certify)
         warm_up_request = ModesRequest(2, 1e-4, 9, options.growth, True)
         return Solver(
             statuses=tuple(SpectrumStatus),
@@ -91,14 +87,12 @@ def mode_values(result: "Modes", growth: bool) -> dict[str, Any]:
     """Variables of the file for the modes of one rod; growth: whether transient growth was computed."""
     vectors = result.vectors
     names = {"elements": "element_count"}
-    values = outcome_values(
-        MODE_VARIABLES + POINT_VARIABLES, vectors.resolution, result, result.spectrum, names=names
-    )
+    sources = vectors.resolution, result, result.spectrum
+    values = outcome_values(MODE_VARIABLES + POINT_VARIABLES, *sources, names=names)
     values |= outcome_values(MODE_SCALAR_VARIABLES, vectors)
-    fields = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
-    for name, field in zip(
-        fields, (*vectors.right_modes, *vectors.mode_strains, *vectors.left_modes), strict=True
-    ):
+    field_names = ("Y", "Theta", "h2", "Pi", "adjoint_Y", "adjoint_Theta")
+    fields = (*vectors.right_modes, *vectors.mode_strains, *vectors.left_modes)
+    for name, field in zip(field_names, fields, strict=True):
         values[f"{name}_real"] = field.real
         values[f"{name}_imag"] = field.imag
     if growth:

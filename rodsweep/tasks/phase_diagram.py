@@ -87,8 +87,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of `check`: the rows of a linear task and, if cycles are requested, a row on the nonlinear
-        motion.
-        """
+        motion."""
         linear = CertifiedTask.check_rows(self)
         if not self.config.phase_diagram.cycles:
             return linear
@@ -113,8 +112,7 @@ class PhaseDiagramTask(CertifiedTask):
         )
 
     def _with_soft_and_pulled_rows(self, lines: CostEstimate, is_varying: bool) -> CostEstimate:
-        """The cost `lines` of rows along F with the further time of soft and of pulled rows. is_varying:
-        whether any arm is not uniform."""
+        """The cost `lines` of rows along F with the further time of soft and of pulled rows."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
         rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
         rods = [self.rod_of_row(int(row)) for row in rows]
@@ -154,8 +152,7 @@ class PhaseDiagramTask(CertifiedTask):
     def coexistence_row(
         self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
     ) -> "CoexistenceRow":
-        """Solves a row with cycles. index: flat index of the row. workspace: memory of
-        Newton's matrices. starts: special points from which further branches are followed."""
+        """Solves a row with cycles. starts: special points from which further branches are followed."""
         from ..solve.branch.coexistence import solve_coexistence
 
         rod = self.rod_of_row(index)
@@ -173,8 +170,7 @@ class PhaseDiagramTask(CertifiedTask):
 
     def rod_of_row(self, index: int) -> Rod:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
-        along the row. index: flat index of the row.
-        """
+        along the row."""
         return self.points.rod(index, gamma1=self.config.gamma1)
 
     def row_request(self) -> "RowRequest":
@@ -195,7 +191,7 @@ class PhaseDiagramTask(CertifiedTask):
 def row_values(result: "DiagramRow", line: str, max_crossings: int) -> dict[str, Any]:
     """Variables of the file for one row.
 
-    line: parameter that varies along the row. max_crossings: length of the list of crossings.
+    max_crossings: length of the list of crossings.
     """
     classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
     changes = crossing_values(result.thresholds, max_crossings, line, "crossing_at")

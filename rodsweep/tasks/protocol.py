@@ -63,13 +63,11 @@ class SweepWideSolver(Protocol):
 
     def initial_data(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
         """Initial data, by key, that this rank has cached for the work items numbered `item_numbers` of
-        `items`, to be sent to all ranks.
-        """
+        `items`, to be sent to all ranks."""
 
     def add_initial_data(self, starts: Mapping[Any, Any]) -> None:
         """Caches initial data received from a different rank. starts: initial data by key, as from
-        `initial_data`.
-        """
+        `initial_data`."""
 
     def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""
@@ -113,21 +111,22 @@ class Solver:
 
         solve_group: new function that solves a group, if the solver has groups.
         """
-        wrapped = self.chained
+        chained = self.chained
         grouped = self.grouped
-        if wrapped is not None:
-            step = wrapped.solve_from
-            wrapped = replace(
-                wrapped,
-                solve_from=lambda index, state: solve_wrapper(index, state, lambda: step(index, state)),
-            )
-        if grouped is not None and solve_group is not None:
-            grouped = grouped[0], solve_group
 
         def solve(index: int) -> Any:
             return solve_wrapper(index, None, lambda: (self.solve(index), None))[0]
 
-        return replace(self, solve=solve, chained=wrapped, grouped=grouped, **changed)
+        if chained is not None:
+            step = chained.solve_from
+
+            def solve_from(index: int, state: State) -> tuple[Any, State]:
+                return solve_wrapper(index, state, lambda: step(index, state))
+
+            chained = replace(chained, solve_from=solve_from)
+        if grouped is not None and solve_group is not None:
+            grouped = grouped[0], solve_group
+        return replace(self, solve=solve, chained=chained, grouped=grouped, **changed)
 
 
 def solve_on_one_rank(items: Sequence[Any], work: Callable[[Any], Any]) -> list[Any]:
@@ -146,8 +145,7 @@ class Task(ABC):
     @property
     def chains(self) -> Chains | None:
         """Chains of points, each started from the solution of the previous point; None if there are no
-        chains.
-        """
+        chains."""
         return None
 
     @property
@@ -157,14 +155,12 @@ class Task(ABC):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Coordinates, (extent,), of the dimensions other than the points, by name of the dimension. By
-        default empty.
-        """
+        default empty."""
         return {}
 
     def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Variables of the file that depend only on the config. in_order: maps a function over items, shared
-        among the ranks. By default empty.
-        """
+        among the ranks. By default empty."""
         return ()
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:

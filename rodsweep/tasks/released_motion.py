@@ -25,8 +25,7 @@ task limit_cycle."""
 @dataclass(frozen=True, kw_only=True)
 class ReleasedMotion:
     """Motion of a rod after its tip is released, and the limit cycle or state of rest that the motion
-    reaches.
-    """
+    reaches."""
 
     status: str
     """Status of the task limit_cycle."""
@@ -74,11 +73,10 @@ def released_motion(job: Job, tip: tuple[float, float]) -> ReleasedMotion | None
 
     task = job.task
     assert isinstance(task, LimitCycleTask)
+    request = replace(task.cycle_request(), tip=tip, frames=FRAMES_PER_RETURN)
     # One thread, as in the command: threads change the order of sums.
     with blas_pool().limit(limits=1, user_api="blas"):
-        cycle = solve_cycle(
-            job.points.rod(0), replace(task.cycle_request(), tip=tip, frames=FRAMES_PER_RETURN)
-        )
+        cycle = solve_cycle(job.points.rod(0), request)
     if cycle.motion_shapes is None:
         return None
     x, y = cycle.motion_shapes.shapes

@@ -64,15 +64,11 @@ class PortraitRequest:
         F: float | None = None,
         default_accuracy: float | None = None,
     ) -> Job:
-        """Job of a task for this rod. options: options of the task, by name. F: force, None for tasks that
-        vary the force. default_accuracy: relative accuracy if the request has none; None for the default of
-        the task.
-        """
+        """Job of a task for this rod. F: force, None for tasks that vary the force. default_accuracy:
+        relative accuracy if the request has none; None for the default of the task."""
+        given = self.rod.parameters
         names = (*CONFIGS[task].rod_parameters_used(options), *OPTIONAL_PARAMETERS)
-        given_parameters = self.rod.parameters
-        values: dict[str, Any] = {
-            name: given_parameters[name] for name in names if name in given_parameters and name != "F"
-        }
+        values: dict[str, Any] = {name: given[name] for name in names if name in given and name != "F"}
         values |= {"arm": dict(self.rod.arm)} if self.rod.arm else {}
         values |= {} if F is None else {"F": F}
         document: dict[str, Any] = {"task": task, "parameters": values, task: dict(options)}
@@ -101,13 +97,10 @@ def rod_results(request: PortraitRequest, solve: SolveJob = solved_view) -> RodR
             missing.setdefault(task, str(error))
             return None
 
-    branch_options = request.branch_options
-    for task, options, accuracy in (
-        ("criticality", F_max, None),
-        ("branch", branch_options, BRANCH_ACCURACY),
-    ):
-        if (view := solved(task, options, default_accuracy=accuracy)) is not None:
-            views[task] = view
+    if (view := solved("criticality", F_max)) is not None:
+        views["criticality"] = view
+    if (view := solved("branch", request.branch_options, default_accuracy=BRANCH_ACCURACY)) is not None:
+        views["branch"] = view
     modes = {
         kind: (F, view)
         for kind, F in first_threshold_forces(views["thresholds"]).items()
@@ -130,10 +123,7 @@ def _cycle_at_force(
 ) -> ResultView | None:
     """The limit cycle at the force F, solved from the Hopf point or, if no cycle is found, from a large
     deflection. If both starts find no cycle, the result of the first start that gave a result; None if both
-    gave None.
-
-    solve: function (task, options, F) that solves a task, and returns None for invalid input.
-    """
+    gave None. solve: function (task, options, F) that solves a task, and returns None for invalid input."""
     result = None
     for start in ({"start": "hopf"}, {"start": "mode", "amplitude": LARGE_DEFLECTION}):
         view = solve("limit_cycle", {**start, "shapes": SHAPE_COUNT}, F)
@@ -145,8 +135,7 @@ def _cycle_at_force(
 
 def first_threshold_forces(thresholds: ResultView) -> dict[str, float]:
     """Force of the first threshold of each kind in MODE_THRESHOLD_KINDS, at which the leading mode is
-    drawn.
-    """
+    drawn."""
     kinds, forces = (thresholds.by_point(f"crossing_{name}")[0] for name in ("kind", "F"))
     first_forces = {}
     for kind in MODE_THRESHOLD_KINDS:

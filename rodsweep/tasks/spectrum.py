@@ -65,15 +65,13 @@ class SpectrumTask(CertifiedTask):
 
     def coordinates(self) -> dict[str, np.ndarray]:
         """Material coordinates u of the nodes of eigenvectors, (nodes,), by name of the dimension; empty if
-        no eigenvectors are requested.
-        """
+        no eigenvectors are requested."""
         return {"u": lobatto_points(self._vector_nodes)} if self._vector_nodes else {}
 
     def variables_from_config(self, in_order: OrderedMap = solve_on_one_rank) -> tuple[FilledVariable, ...]:
         """Longitudinal growth rates, along the parameters on which these rates depend; for arms that are not
         uniform or not of linear material, also their relative errors. Empty if longitudinal modes are not
-        requested.
-        """
+        requested."""
         gamma1 = self.config.parameters.constant_parameters.get("gamma1")
         if gamma1 is None:
             return ()
@@ -90,11 +88,9 @@ class SpectrumTask(CertifiedTask):
         return tuple((variable, table[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
-        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ.
-
-        dimensions: names of the dimensions of these points. shape: their lengths. columns: values of the
-        parameters on which the rates depend, by name, flattened to (points,).
-        """
+        """Returns (dimensions, shape, columns) of the points at which longitudinal rates differ. dimensions:
+        names of the dimensions of these points. shape: their lengths. columns: values of the parameters on
+        which the rates depend, by name, flattened to (points,)."""
         points = self.points
         linear = self.config.build.constitutive_law is LINEAR
         parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
@@ -108,8 +104,7 @@ class SpectrumTask(CertifiedTask):
 
     def variables_from_points(self, values: Mapping[str, Any]) -> tuple[FilledVariable, ...]:
         """Thresholds of the rods along F; empty if any arm is not uniform or not of linear material. values:
-        variables of the points by name, shape (points, own dimensions), readable by slices.
-        """
+        variables of the points by name, shape (points, own dimensions), readable by slices."""
         return force_change_variables(self.points, values) if self.config.is_uniform_and_linear else ()
 
     def headline(self) -> str:
@@ -117,14 +112,11 @@ class SpectrumTask(CertifiedTask):
 
     def option_rows(self) -> list[CheckRow]:
         options = self.config.spectrum
-        vectors = "spectrum.vectors adds them"
+        vectors = f"on {options.nodes} nodes" if options.vectors else "spectrum.vectors adds them"
         longitudinal = "they decouple; spectrum.longitudinal adds them"
-        if options.vectors:
-            vectors = f"on {options.nodes} nodes"
         if options.longitudinal:
-            longitudinal = (
-                "closed form, no mesh" if self.config.is_uniform_and_linear else "on elements of their own"
-            )
+            is_closed_form = self.config.is_uniform_and_linear
+            longitudinal = "closed form, no mesh" if is_closed_form else "on elements of their own"
         return [
             ("transverse modes", True, "task: spectrum"),
             ("longitudinal modes", options.longitudinal, longitudinal),
@@ -160,9 +152,8 @@ class SpectrumTask(CertifiedTask):
         from ..solve.spectrum.two_meshes import solve_on_two_meshes
 
         options = self.config.spectrum
-        request = SpectrumRequest(
-            options.modes, self.config.accuracy, self.config.certifies, self._vector_nodes
-        )
+        accuracy, certifies = self.config.accuracy, self.config.certifies
+        request = SpectrumRequest(options.modes, accuracy, certifies, self._vector_nodes)
         groups = self.groups
         solve = solve_spectrum if options.method == "determinant" else solve_on_two_meshes
         return Solver(
@@ -175,8 +166,7 @@ class SpectrumTask(CertifiedTask):
 
     def _solve_group(self, indices: NDArray[np.int64], request: "SpectrumRequest") -> GroupResult:
         """Results for the points of a group to which eigenvalues are followed. indices: flat indices,
-        (n,).
-        """
+        (n,)."""
         from ..determinant.parameter_path import ParameterPath
         from ..solve.spectrum.path.neighbouring_rods import NeighbouringRods, follow_spectra
 
@@ -184,17 +174,13 @@ class SpectrumTask(CertifiedTask):
         assert groups is not None
         followed_parameter = self.points.varying_parameters[groups.axis]
         path = ParameterPath(self.points.rod(int(indices[0])), followed_parameter)
-        followed = follow_spectra(
-            NeighbouringRods(path, self.points.values_of(indices)[followed_parameter]), request
-        )
+        rods = NeighbouringRods(path, self.points.values_of(indices)[followed_parameter])
+        followed = follow_spectra(rods, request)
         return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 
 
 def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
-    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm.
-
-    values: parameters by name.
-    """
+    """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm."""
     try:
         rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
     except Crushed:

@@ -1,6 +1,5 @@
 """The task thresholds: forces at which the number of unstable modes or the kind of the leading mode
-changes.
-"""
+changes."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -89,14 +88,12 @@ def crossing_values(
     value at a crossing."""
     search_result = result.search_result
     variables = crossing_variables(line, position_name)
-    rows = [
-        outcome_values(variables, threshold, prefix="crossing_", names={position_name: "value"})
-        for threshold in search_result.thresholds
-    ]
+    thresholds = search_result.thresholds
+    names = {position_name: "value"}
+    rows = [outcome_values(variables, each, prefix="crossing_", names=names) for each in thresholds]
+    is_failed = result.status == type(result.status).failed
     return value_lists(variables, rows, max_crossings) | {
-        "crossing_count": -1
-        if result.status == type(result.status).failed
-        else len(search_result.thresholds),
+        "crossing_count": -1 if is_failed else len(thresholds),
         "open_from": search_result.open_range[0],
         "open_to": search_result.open_range[1],
         "certified": search_result.proved,

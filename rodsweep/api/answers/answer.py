@@ -134,20 +134,15 @@ class Answer:
         raise AttributeError(f"this answer has no {name!r}; it has {', '.join(self._attribute_names())}")
 
     def _list_values(self, table: str, name: str) -> np.ndarray:
-        """Values of a variable or a coordinate of a list, with one entry per item of the list.
-
-        table: name of the list. name: name of the variable or coordinate.
-        """
+        """Values of a variable or a coordinate of a list, with one entry per item of the list."""
         dimensions = self._tables.contents.dimensions(table)
         (column,) = (column for column in self._tables.list_columns(table) if column.name == name)
         if name in dimensions[1:]:
             return np.asarray(self.data[name].values)
-        is_missing_counts = (
-            column.values.dtype.kind in "iu" and column.absent.any() and not column.flag_meanings
-        )
-        values = np.asarray(
-            np.where(column.absent, np.nan, column.values) if is_missing_counts else series_of(column)
-        )
+        is_count = column.values.dtype.kind in "iu" and not column.flag_meanings
+        values = np.asarray(series_of(column))
+        if is_count and column.absent.any():
+            values = np.where(column.absent, np.nan, column.values)
         inner_sizes = [self.data.sizes[dimension] for dimension in dimensions[1:]]
         return values[:: prod(inner_sizes)] if name == dimensions[0] else values.reshape(-1, *inner_sizes)
 
@@ -178,43 +173,33 @@ class Answer:
     def _printed(self) -> PrintedAnswer:
         tables = self._tables
         rod = OneRod(tables.view)
-        answer_columns = [
-            column
-            for column in tables.table(POINTS).columns
-            if column.name not in UNPRINTED_VARIABLES and not column.is_input
-        ]
-        answer_columns.sort(key=_is_dimensionless)
+        is_special = int(self.data["status"]) != 0  # a special outcome, such as a rod at rest
+        columns = [c for c in tables.table(POINTS).columns if c.name not in UNPRINTED_VARIABLES]
+        columns = sorted((c for c in columns if not c.is_input), key=_is_dimensionless)
         lists = {}
         for name in self.lists:
             number, *others = tables.list_columns(name)
             lists[name] = (number, *sorted(others, key=_is_dimensionless))
-        if int(self.data["status"]) != 0:  # a special outcome, such as a rod at rest: hide empty lists
-            lists = {name: columns for name, columns in lists.items() if len(columns[0].values)}
-        totals = {
-            name: int(self.data[count]) for name, count in TOTAL_VARIABLES.items() if count in self.data
-        }
+        row_counts = {name: len(number.values) for name, (number, *_) in lists.items()}
+        unlisted = {name for name in lists if name not in LISTS_PRINTED_IN_FULL}
+        hidden = unlisted | {name for name, rows in row_counts.items() if is_special and not rows}
+        totals = {name: int(self.data[n]) for name, n in TOTAL_VARIABLES.items() if n in self.data}
         totals |= {"modes": self.data.sizes["mode"]} if "mode" in self.data.sizes else {}
         return PrintedAnswer(
             rod=rod,
             heading=heading_lines(rod, self.rod, self.status, self.sentence, self.message),
             headline=HEADLINES[str(self.data.attrs["task"])],
-            numbers=tuple(column for column in answer_columns if not column.absent[0]),
-            absent_names=tuple(column.name for column in answer_columns if column.absent[0])
-            if int(self.data["status"]) == 0
-            else (),
+            numbers=tuple(column for column in columns if not column.absent[0]),
+            absent_names=() if is_special else tuple(c.name for c in columns if c.absent[0]),
             totals=totals,
-            lists={name: columns for name, columns in lists.items() if name in LISTS_PRINTED_IN_FULL},
-            row_counts={
-                name: rows
-                for name, columns in lists.items()
-                if name not in LISTS_PRINTED_IN_FULL and (rows := len(columns[0].values))
-            },
+            lists={name: own_columns for name, own_columns in lists.items() if name not in hidden},
+            row_counts={n: rows for n, rows in row_counts.items() if n in unlisted and rows},
         )
 
 
 @cache
 def _statuses(task: str, names: tuple[str, ...]) -> type[StrEnum]:
-    """Enumeration of all statuses of a task. names: names of the statuses."""
+    """Enumeration of all statuses of a task."""
     new_enum: Any = StrEnum  # Any: mypy knows no StrEnum whose members come from data
     enum = new_enum("Status", {word: word for word in names})
     enum.__name__ = "".join(part.title() for part in task.split("_")) + "Status"
@@ -228,8 +213,7 @@ def _is_dimensionless(column: Column) -> bool:
 
 def _scalar(column: Column) -> float | int | bool | str | None:
     """The value of a column with one row. None stands for a missing text or count, NaN for a missing real
-    number.
-    """
+    number."""
     if column.absent[0] and column.values.dtype.kind != "f":
         return None
     value = series_of(column)[0]

@@ -1,6 +1,5 @@
 """Tables of a result as pandas DataFrames. Names replace stored codes, and missing values replace fill
-values.
-"""
+values."""
 
 from collections.abc import Iterable
 from typing import Any

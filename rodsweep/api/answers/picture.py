@@ -1,7 +1,7 @@
 """`rs.plot`: the figures of `rodsweep plot`, shown in a notebook or written into a file."""
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import wraps
 from pathlib import Path
@@ -52,16 +52,14 @@ def as_python_arguments(sentence: str) -> str:
 
 def _at_argument_text(match: re.Match[str]) -> str:
     """The argument `at` of `rs.plot` as Python code, from a match of AT_OPTION. Only values that are not
-    numbers are quoted.
-    """
+    numbers are quoted."""
     name, value = (match[1], match[2]) if match[1] else (match[3], match[4])
     return f'at={{"{name}": {value}}}' if NUMBER_TEXT.fullmatch(value) else f'at={{"{name}": "{value}"}}'
 
 
 def naming_python_arguments(function: Callable[P, R]) -> Callable[P, R]:
     """Decorator: an InputError of the function names the arguments of `rs.plot` instead of command-line
-    options.
-    """
+    options."""
 
     @wraps(function)
     def call(*values: P.args, **named: P.kwargs) -> R:
@@ -85,36 +83,21 @@ class FigureOptions(TypedDict, total=False):
     style: str | None
 
 
-def _require_allowed_choices(**choices: tuple[str | None, Iterable[str]]) -> None:
-    """Raises InputError for the first argument whose value is not allowed.
-
-    choices: (value, allowed values) by name of the argument; the value None is always allowed.
-    """
-    for name, (value, allowed) in choices.items():
-        if value is not None and value not in allowed:
-            raise InputError(f"{name} = {value!r} is not allowed; choose {', '.join(allowed)}")
-
-
 def _require_allowed_look(look: Mapping[str, object]) -> None:
-    """Raises InputError for an unknown option of the appearance, and for a title that is not a bool. look:
-    keyword arguments of a call of `plot`."""
+    """Raises InputError for an unknown option of the appearance, and for a title that is not a bool."""
     for name in look:
         if name not in FigureOptions.__annotations__:
-            raise unknown_argument_error(
-                name, ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
-            )
+            names = ["output", "roots", "what", "points", "at", *FigureOptions.__annotations__]
+            raise unknown_argument_error(name, names)
     if not isinstance(title := look.get("title", False), bool):
-        raise InputError(
-            f"title = {short_repr(title)} is not allowed; it should be True, to draw the title of the "
-            "config, or False"
-        )
+        allowed = "True, to draw the title of the config, or False"
+        raise InputError(f"title = {short_repr(title)} is not allowed; it should be {allowed}")
 
 
 @dataclass(frozen=True, slots=True)
 class CachedShapeSolver:
     """Function that adds the shapes of cycles to a view; each set of cycles is solved once and cached. solve:
-    function that computes the shapes.
-    """
+    function that computes the shapes."""
 
     solve: ShapeFunction = with_shapes
     solved: dict[tuple[int, ...], ResultView] = field(default_factory=dict)
@@ -155,8 +138,7 @@ class Picture:
     @refusing_wrong_arguments("picture.figure()")
     def figure(self) -> FigureClass:
         """A new `matplotlib.figure.Figure`, whose axes are ordered row by row; InputError for an
-        animation.
-        """
+        animation."""
         figures: list[FigureClass] = []
         name = Path("figure.gif" if self.is_film else "figure.png")
         draw(self.views, name, figure_callback=figures.append, **self.choices)
@@ -188,10 +170,11 @@ def plot(
     """Draws and returns the figure for the task of `data`: a Dataset, an Answer or a result file. Several
     results of limit_cycle, thresholds or spectrum are drawn into one figure. output: file to write. roots,
     what, points, at, look: the options of `rodsweep plot`; points are numbered from 1. Raises InputError for
-    invalid options and if there is nothing to draw.
-    """
+    invalid options and if there is nothing to draw."""
     _require_allowed_look(look)
-    _require_allowed_choices(roots=(roots, ROOT_CHOICES), what=(what, FIGURE_KINDS))
+    for name, choice, allowed in (("roots", roots, ROOT_CHOICES), ("what", what, FIGURE_KINDS)):
+        if choice is not None and choice not in allowed:
+            raise InputError(f"{name} = {choice!r} is not allowed; choose {', '.join(allowed)}")
     points = [points] if isinstance(points, int) else points
     if not isinstance(points, Sequence) or not all(isinstance(point, int) for point in points):
         raise InputError(f"points = {short_repr(points)} is not allowed; give whole numbers, from 1")

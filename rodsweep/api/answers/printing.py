@@ -61,9 +61,7 @@ class PrintedAnswer:
     def closing_lines(self) -> Iterator[str]:
         """Yields the lines below the tables: names of lists not printed, and of variables without a value."""
         if self.row_counts:
-            yield "; ".join(
-                f"{name}: {rows} row{'s' * (rows != 1)}" for name, rows in self.row_counts.items()
-            )
+            yield "; ".join(f"{name}: {counted(rows, 'row')}" for name, rows in self.row_counts.items())
         if self.absent_names:
             yield f"none: {', '.join(self.absent_names)}"
 
@@ -72,8 +70,7 @@ def heading_lines(rod: OneRod, name: str, status: str, sentence: str, message: s
     """Lines of the heading: the result in a sentence, the rod with its status, and the status's meaning. The
     first line says if the model does not apply to an arm, or is doubtful.
 
-    name: text of the rod. sentence: meaning of the status. message: message of the solve. If the result has
-    no sentence, the meaning of the status comes first.
+    name: text of the rod. If the result has no sentence, the meaning of the status comes first.
     """
     task = rod.view.task
     meaning = "; ".join(filter(None, (sentence, message)))
@@ -100,7 +97,7 @@ def brief_html(printed: PrintedAnswer) -> str:
     """Short HTML of an answer, with the content of `brief_text`."""
     blocks = [_html_heading(printed)]
     if pairs := _main_number_texts(printed):
-        blocks.append(_html_table([], [(name, value, error, unit) for name, value, error, unit in pairs]))
+        blocks.append(_html_table([], pairs))
     columns, _ = _brief_cells(printed, MAX_BRIEF_LINES)
     if columns:
         name, unit, *rows = zip(*columns, strict=True)
@@ -111,13 +108,8 @@ def brief_html(printed: PrintedAnswer) -> str:
 def whole_text(printed: PrintedAnswer) -> str:
     """Long text of an answer: the heading, every number with its unit and meaning, the lists that are printed
     in full, and the numbers of rows of all other lists."""
-    rows = [
-        (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
-    ]
-    blocks = [
-        "\n".join(_folded_heading(printed)),
-        "\n".join(["numbers", *rows_with_prose(rows)]) if rows else "",
-    ]
+    numbers = "\n".join(["numbers", *rows_with_prose(_number_rows(printed))]) if printed.numbers else ""
+    blocks = ["\n".join(_folded_heading(printed)), numbers]
     for name, columns in printed.lists.items():
         lines = [wrap_cell_text(_list_title(name, columns, printed.totals.get(name, 0)))]
         if len(columns[0].values):
@@ -132,20 +124,21 @@ def whole_text(printed: PrintedAnswer) -> str:
 
 def whole_html(printed: PrintedAnswer) -> str:
     """Long HTML of an answer, with the content of `whole_text`."""
-    rows = [
-        (c.name, printed.rod.point_texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers
-    ]
-    blocks = [_html_heading(printed), _html_table([("variable", "value", "unit", "meaning")], rows)]
+    headings: list[RowCells] = [("variable", "value", "unit", "meaning")]
+    blocks = [_html_heading(printed), _html_table(headings, _number_rows(printed))]
     for name, columns in printed.lists.items():
         blocks.append(f"<p>{escape(_list_title(name, columns, printed.totals.get(name, 0)))}</p>")
         digits = printed.rod.list_texts[name]
-        headings = [
-            tuple(column.name for column in columns),
-            tuple(column.printed_unit for column in columns),
-        ]
+        headings = [tuple(column.name for column in columns), tuple(c.printed_unit for c in columns)]
         rows_of = list(zip(*(digits.texts(column.name) for column in columns), strict=True))
         blocks.append(_html_table(headings, rows_of) if rows_of else "")
     return "".join([*blocks, *(f"<p>{escape(end)}</p>" for end in printed.closing_lines)])
+
+
+def _number_rows(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
+    """(name, value, unit, meaning) of every number."""
+    texts = printed.rod.point_texts
+    return [(c.name, texts.texts(c.name)[0], c.printed_unit, c.meaning) for c in printed.numbers]
 
 
 def _folded_heading(printed: PrintedAnswer) -> list[str]:
@@ -155,12 +148,10 @@ def _folded_heading(printed: PrintedAnswer) -> list[str]:
 
 def _list_title(name: str, columns: Sequence[Column], total: int) -> str:
     """Title of a list: name and number of rows. total: number of items found, printed if larger than the
-    number of rows. columns: columns of the list.
-    """
+    number of rows."""
     count = len(columns[0].values)
-    return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}" + (
-        f", {columns[0].meaning}" if count > 1 else ""
-    )
+    meaning = f", {columns[0].meaning}" if count > 1 else ""
+    return f"{name}: {count or 'none'}{f' of {total}' if total > count else ''}{meaning}"
 
 
 def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]]:
@@ -176,8 +167,7 @@ def _main_number_texts(printed: PrintedAnswer) -> list[tuple[str, str, str, str]
 
 def _number_lines(printed: PrintedAnswer) -> list[str]:
     """Aligned lines of the main numbers of the task, after an empty line; empty if no main number has a
-    value.
-    """
+    value."""
     max_lines = MAX_BRIEF_LINES - len(_folded_heading(printed)) - 2  # beside the empty line and the last line
     pairs = _main_number_texts(printed)[: max(max_lines, MIN_ROWS)]
     if not pairs:
@@ -188,12 +178,9 @@ def _number_lines(printed: PrintedAnswer) -> list[str]:
 
 
 def _brief_cells(printed: PrintedAnswer, max_rows: int) -> tuple[list[list[str]], int]:
-    """Returns (columns of the main list, number of rows of the complete list).
-
-    max_rows: maximum number of rows in a column. A column consists of the cells name, unit, and values;
-    errors form a separate column. The first column that would make a line longer than LINE_WIDTH, and all
-    later columns, are omitted. Returns ([], 0) for a task without a main list.
-    """
+    """Returns (columns of the main list, number of rows of the complete list). A column consists of the cells
+    name, unit, and values; errors form a separate column. The first column that would make a line longer than
+    LINE_WIDTH, and all later columns, are omitted. Returns ([], 0) for a task without a main list."""
     digits = printed.rod.list_texts.get(printed.headline.table)
     if digits is None:
         return [], 0

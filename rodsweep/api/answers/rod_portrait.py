@@ -44,8 +44,7 @@ class RodPortrait:
     @cached_property
     def paragraph(self) -> str:
         """Description of the rod: thresholds, criticality, branches, coexisting stable states, three
-        cycles.
-        """
+        cycles."""
         return paragraph(self.results)
 
     @property
@@ -103,9 +102,8 @@ class RodPortrait:
         return write_portrait(self.results, output)
 
     def __repr__(self) -> str:
-        return "\n".join(
-            wrap_cell_text(text, indent="") for text in (self.paragraph, f"{self.rod}, portrait")
-        )
+        texts = self.paragraph, f"{self.rod}, portrait"
+        return "\n".join(wrap_cell_text(text, indent="") for text in texts)
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
         image = BytesIO()
@@ -116,8 +114,7 @@ class RodPortrait:
 def solved_portrait(rod: str, request: PortraitRequest, progress: bool | None) -> RodPortrait:
     """Solves all results of a portrait in this process, and returns the portrait. rod: text of the rod.
     progress: whether to display progress; None: only in a terminal or a notebook. Raises InputError for an
-    invalid request.
-    """
+    invalid request."""
     answers: dict[str, Answer] = {}
     plain_values = {name: plain_keyword(name, getattr(request, name)) for name in ("F_max", "accuracy")}
 

@@ -38,16 +38,14 @@ def table(data: TableSource, name: str | None = None, *, columns: Sequence[str] 
         )
     names = [columns] if isinstance(columns, str) else columns
     if not isinstance(names, list | tuple) or not all(isinstance(each, str) for each in names):
-        raise InputError(
-            f"columns = {short_repr(columns)} is not a list of names, such as ['F', 'growth_rate']"
-        )
+        text = short_repr(columns)
+        raise InputError(f"columns = {text} is not a list of names, such as ['F', 'growth_rate']")
     return frame_of(Tables(view_of_result(data, TABLE_EXAMPLE)).table(name, tuple(names)).columns)
 
 
 def view_of_result(data: Any, example: str) -> ResultView:
     """View of a result, which figures and tables read. Raises InputError, with the example call `example`, if
-    `data` is not a result.
-    """
+    `data` is not a result."""
     if isinstance(data, str | os.PathLike):
         return read_view(named_file_path(data, example))
     if not isinstance(data, Answer | xr.Dataset):

@@ -68,8 +68,7 @@ class IntegratorWithTolerances:
 def petsc_trajectory(family: str, variant: str, tolerance: float, task: IntegrationTask) -> Trajectory:
     """Trajectory of `task`, integrated by a scheme of PETSc TS as in the task `limit_cycle`; raises
     ArithmeticError if the integration fails. family, variant: type of TS and name of the scheme, such as
-    "arkimex" and "5". tolerance: see the module.
-    """
+    "arkimex" and "5". tolerance: see the module."""
     newton = TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
     run = integrator(task.beam.mesh, scheme).run(task.beam, task.z, task.duration)

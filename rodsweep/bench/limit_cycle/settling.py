@@ -58,46 +58,39 @@ class SettlingMethod:
         return isfinite(self.return_count)
 
     def row(self, timed: TimedRuns) -> dict[str, str | float]:
-        """Values of a row of `settling_table`, by name. timed: times of `run`."""
+        """Values of a row of `settling_table`, by name."""
+        way = self.name + (f" (fails at {', '.join(self.failed)})" if self.failed else "")
+        row: dict[str, str | float] = {"force": self.force, "way": way, "tolerance": self.setting}
+        if not self.reaches_cycle:
+            not_reached = f"not reached in {WAITING_PERIODS} periods"
+            return row | {"returns": not_reached, "milliseconds": "", "error": nan}
         about_text = "about " if self.time_factor != 1 else ""
-        return {
-            "force": self.force,
-            "way": self.name + (f" (fails at {', '.join(self.failed)})" if self.failed else ""),
-            "tolerance": self.setting,
-            "returns": f"{about_text}{self.return_count:.0f}"
-            if self.reaches_cycle
-            else f"not reached in {WAITING_PERIODS} periods",
-            "milliseconds": f"{about_text}{1e3 * self.time_factor * timed.median:.0f}"
-            if self.reaches_cycle
-            else "",
-            "error": self.error if self.reaches_cycle else nan,
-        }
+        milliseconds = f"{about_text}{1e3 * self.time_factor * timed.median:.0f}"
+        returns = f"{about_text}{self.return_count:.0f}"
+        return row | {"returns": returns, "milliseconds": milliseconds, "error": self.error}
 
 
 def compare_settling(reference: ReferenceCycle, contenders: Sequence[TimedMethod], rounds: int) -> str:
     """Runs all methods that reach the cycle, at F = 50 and near the Hopf point, and returns the table of the
     methods with its explanation. reference: reference cycle at F = 50. contenders: contenders of the race
-    WAITING_RACE. rounds: number of timed rounds.
-    """
-    waiting = {
-        method: _integrate_until_periodic(reference, settings)
-        for method, settings in by_method(contenders).items()
-    }
+    WAITING_RACE."""
+    settings = by_method(contenders)
+    waiting = {method: _integrate_until_periodic(reference, own) for method, own in settings.items()}
     cycle = solve_cycle_at_force(CYCLE_FORCE)
     error = _cycle_error(reference, cycle.measures.period, cycle.measures.tip_y_max)
-    methods = [
-        SettlingMethod(
-            CYCLE_FORCE, SOLVE_NAME, "", cycle.periods, error, partial(solve_cycle_at_force, CYCLE_FORCE)
-        )
-    ]
-    methods += waiting.values()
+    methods = [_solve_method(CYCLE_FORCE, cycle.periods, error), *waiting.values()]
     methods += _methods_near_hopf([c for c in contenders if waiting[c.method].setting == c.setting])
     return settling_table(methods, time_runs([wait.run for wait in methods], [rounds] * len(methods)))
 
 
+def _solve_method(force: float, periods: float, error: float) -> SettlingMethod:
+    """The method `solve_cycle` at a force."""
+    return SettlingMethod(force, SOLVE_NAME, "", periods, error, partial(solve_cycle_at_force, force))
+
+
 def settling_table(methods: Sequence[SettlingMethod], times: Sequence[TimedRuns]) -> str:
     """Table in Markdown, after a paragraph that explains it: returns, time and error of each method in
-    `methods`. times: times of each method."""
+    `methods`."""
     return (
         f"From a start of {START_DEFLECTION:g} L to the limit cycle. Waiting ends when two successive "
         f"returns agree to {SETTLING_TOLERANCE:.0e}. The integrator has the loosest tolerance at which the "
@@ -122,11 +115,8 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Time
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. settings: contenders of one integrator, from the loosest tolerance."""
-    task = IntegrationTask(
-        reference.beam,
-        START_DEFLECTION * leading_mode(reference.beam).z.real,
-        WAITING_PERIODS * reference.period,
-    )
+    start = START_DEFLECTION * leading_mode(reference.beam).z.real
+    task = IntegrationTask(reference.beam, start, WAITING_PERIODS * reference.period)
     name = WAITING_PREFIX + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
@@ -139,35 +129,25 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Time
         distances = np.linalg.norm(np.diff(returns.states, axis=0), axis=1) / sizes
         steady = list(map(int, np.flatnonzero(distances <= SETTLING_TOLERANCE)))
         for k in steady[:1]:
-            error = _cycle_error(
-                reference, float(returns.times[k + 1] - returns.times[k]), float(returns.heights[k])
-            )
+            period = float(returns.times[k + 1] - returns.times[k])
+            error = _cycle_error(reference, period, float(returns.heights[k]))
             if error <= SETTLING_TOLERANCE:
-                integrate = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
-                return SettlingMethod(
-                    CYCLE_FORCE, name, contender.setting, k + 2, error, integrate, failed=failed
-                )
+                run = partial(contender.run, task._replace(duration=float(returns.times[k + 1])))
+                setting = contender.setting
+                return SettlingMethod(CYCLE_FORCE, name, setting, k + 2, error, run, failed=failed)
     return SettlingMethod(CYCLE_FORCE, name, "", nan, inf, lambda: None, failed=failed)
 
 
 def _methods_near_hopf(settled_contenders: Sequence[TimedMethod]) -> list[SettlingMethod]:
     """Methods that reach the cycle near the Hopf point. The number of periods until an integrated motion is
-    periodic is estimated from the largest Floquet multiplier. settled_contenders: contender of each
-    integrator."""
+    periodic is estimated from the largest Floquet multiplier."""
     cycle = solve_cycle_at_force(NEAR_HOPF_F)
     task = IntegrationTask(*state_on_cycle(orbit_of(cycle)), FOLLOWED_PERIODS * cycle.measures.period)
     count = log(SETTLING_TOLERANCE) / log(cycle.multiplier)
     error = max(cycle.errors.period_error, cycle.errors.amplitude_error)
-    methods = [
-        SettlingMethod(
-            NEAR_HOPF_F, SOLVE_NAME, "", cycle.periods, error, partial(solve_cycle_at_force, NEAR_HOPF_F)
-        )
-    ]
-    for contender in settled_contenders:
-        run = partial(contender.run, task)
-        times = count / FOLLOWED_PERIODS
-        method_name = WAITING_PREFIX + contender.method
-        methods.append(
-            SettlingMethod(NEAR_HOPF_F, method_name, contender.setting, count, SETTLING_TOLERANCE, run, times)
-        )
+    methods = [_solve_method(NEAR_HOPF_F, cycle.periods, error)]
+    for c in settled_contenders:
+        cost = partial(c.run, task), count / FOLLOWED_PERIODS
+        name = WAITING_PREFIX + c.method
+        methods.append(SettlingMethod(NEAR_HOPF_F, name, c.setting, count, SETTLING_TOLERANCE, *cost))
     return methods

@@ -1,7 +1,6 @@
 """The limit-cycle benchmark: a cycle followed in time, reached by integration, and solved by collocation. The
 contenders of FOLLOWING_RACE and WAITING_RACE integrate an `IntegrationTask` and return a `Trajectory`. The
-settings of each method are tolerances, from the loosest.
-"""
+settings of each method are tolerances, from the loosest."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -48,16 +47,11 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
     warm_up()
     rounds, stride = (QUICK_ROUND_COUNT, 2) if quick else (ROUND_COUNT, 1)
     reference = solve_reference()
-    following_contenders = every_nth_setting(
-        [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)], stride
-    )
-    measurements = measure_following(reference, following_contenders, rounds)
+    following = [*DEFAULT_INTEGRATOR.following_contenders(), *peers.of(FOLLOWING_RACE)]
+    measurements = measure_following(reference, every_nth_setting(following, stride), rounds)
     blocks = [introduction(rounds), *peers.notes, work_table(measurements), time_at_error_table(measurements)]
-    blocks.append(
-        compare_settling(
-            reference, [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)], rounds
-        )
-    )
+    settling = [*DEFAULT_INTEGRATOR.settling_contenders(), *peers.of(WAITING_RACE)]
+    blocks.append(compare_settling(reference, settling, rounds))
     sweep_measurements = measure_sweep_points(QUICK_RODS if quick else RODS, rounds)
     blocks += [sweep_introduction(), sweep_table(sweep_measurements)]
     for section in peers.sections:
@@ -69,18 +63,12 @@ def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
         for case, error in ERROR_NAMES_BY_PANEL.items()
         for m in measurements
     ]
-    return BenchmarkReport(
-        "limit_cycle",
-        "\n\n".join([*blocks, *peers.skipped]),
-        of_panels,
-        "period",
-        TARGET_ERROR,
-        sweep_measurements,
-    )
+    report = "\n\n".join([*blocks, *peers.skipped])
+    return BenchmarkReport("limit_cycle", report, of_panels, "period", TARGET_ERROR, sweep_measurements)
 
 
 def introduction(rounds: int) -> str:
-    """Description of the race FOLLOWING_RACE for the report. rounds: number of timed rounds."""
+    """Description of the race FOLLOWING_RACE for the report."""
     k1, k2, gamma3, gamma1 = (FIG5_ROD.values[name] for name in NONLINEAR_PARAMETERS[1:])
     return (
         f"The limit cycle of k1 = {k1:g}, k2 = {k2:g}, gamma3 = {gamma3:g}, gamma1 = {gamma1:g}, "
@@ -88,8 +76,7 @@ def introduction(rounds: int) -> str:
         f"{3 * CYCLE_ORDER} unknowns. All integrators call the same compiled functions for the rate and its "
         "Jacobian; the tolerance is the allowed error of each component of the state, divided by the largest "
         "value of this component. Errors of the period and of the largest tip y are relative and rms over 5 "
-        "returns. Times are medians of "
-        f"{counted(rounds, 'interleaved round')}."
+        f"returns. Times are medians of {counted(rounds, 'interleaved round')}."
     )
 
 
@@ -114,25 +101,16 @@ def time_at_error_table(measurements: Sequence[Measurement]) -> str:
     times = {}
     for (method,), runs in grouped_by_fields(measurements, "method").items():
         errors = [m.error for m in runs]
-        median = [m.seconds for m in runs]
-        least_seconds = [m.least_seconds for m in runs]
-        times[method] = tuple(
-            time_at_error(TARGET_ERROR, errors, seconds) for seconds in (median, least_seconds)
-        )
+        medians, least = ([getattr(m, name) for m in runs] for name in ("seconds", "least_seconds"))
+        times[method] = tuple(time_at_error(TARGET_ERROR, errors, seconds) for seconds in (medians, least))
     default, default_least = times[DEFAULT_INTEGRATOR.name]
     rows = [
-        {
-            "method": method,
-            "ms": 1e3 * median,
-            "ratio": median / default,
-            "by_least": least_seconds / default_least,
-        }
-        for method, (median, least_seconds) in times.items()
+        {"method": method, "ms": 1e3 * median, "ratio": median / default, "by_least": least / default_least}
+        for method, (median, least) in times.items()
     ]
     return (
         f"Time at which the larger of the two errors is {TARGET_ERROR:.0e}, interpolated. The last column "
-        "uses the "
-        "minimum times over all rounds, which depend less on the load of the machine:\n\n"
+        "uses the minimum times over all rounds, which depend less on the load of the machine:\n\n"
     ) + markdown_table(
         "method | ms a period | times the default's time | by minimum times",
         "{method} | {ms:.2f} | {ratio:.2f} | {by_least:.2f}",

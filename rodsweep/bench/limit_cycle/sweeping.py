@@ -105,9 +105,8 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
         neighbour: CycleStart | None = None
         for k in range(WARM_UP_POINT_COUNT, 0, -1):
             earlier = earlier_rod(point, axis, k + TIMED_POINT_COUNT - 1)
-            neighbour = require_cycle(
-                solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
-            ).neighbour
+            cycle = solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
+            neighbour = require_cycle(cycle).neighbour
         neighbours[axis] = neighbour
     solved = solve_cycle(point, cycle_request(accuracy), parameter=SWEPT_PARAMETERS[0])
     return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
@@ -151,13 +150,10 @@ def cycle_contenders(accuracy: float) -> list[TimedMethod]:
         TimedMethod(SWEEP_PREFIX + axis, setting, SWEEP_PREFIX, partial(solve_from_neighbour, axis, accuracy))
         for axis in SWEPT_PARAMETERS
     ]
-    without_neighbour = [
-        TimedMethod(
-            COLD_PREFIX + name, setting, COLD_PREFIX, partial(solve_without_neighbour, start, accuracy)
-        )
-        for name, start in COLD_STARTS.items()
+    cold = {name: partial(solve_without_neighbour, start, accuracy) for name, start in COLD_STARTS.items()}
+    return with_neighbour + [
+        TimedMethod(COLD_PREFIX + n, setting, COLD_PREFIX, run) for n, run in cold.items()
     ]
-    return with_neighbour + without_neighbour
 
 
 def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement]:
@@ -188,8 +184,7 @@ def sweep_introduction() -> str:
     return (
         f"Cycles solved as points of a sweep: all multipliers included, accuracy {ACCURACY:.0e}, steps of "
         f"{STEP_RATIO - 1:.0%} between neighbours. The time is the mean of {TIMED_POINT_COUNT} points up to "
-        "the "
-        "rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
+        "the rod, with the finer meshes that calibrate errors. It includes the straight rod's spectrum, the "
         "choice of the mesh, the verdict, and the error estimate, which is the larger of the estimates for "
         "the period and for the extrema. Errors of the period and of the largest tip y are relative to a "
         f"solution on meshes with errors of {REFERENCE_ACCURACY:.0e}. Multipliers above rounding error are "
@@ -212,16 +207,11 @@ def sweep_table(measurements: Sequence[Measurement]) -> str:
         | m.extra
         for m in measurements
     ]
-    medians = [
-        {
-            "rod": "median",
-            "way": method_name,
-            "ms": nan_median(map(milliseconds_per_point, measured)),
-            "failure": "",
-        }
-        | {name: nan_median(m.extra.get(name, nan) for m in measured) for name in FAILED_COLUMNS}
-        for (method_name,), measured in grouped_by_fields(measurements, "method").items()
-    ]
+    medians = []
+    for (method_name,), measured in grouped_by_fields(measurements, "method").items():
+        ms = nan_median(map(milliseconds_per_point, measured))
+        numbers = {name: nan_median(m.extra.get(name, nan) for m in measured) for name in FAILED_COLUMNS}
+        medians.append({"rod": "median", "way": method_name, "ms": ms, "failure": ""} | numbers)
     return markdown_table(
         "F, k1, k2, gamma3, gamma1 | start | ms | error of period | error of amplitude | estimate | "
         "multipliers | order | intervals | stages",

@@ -108,33 +108,29 @@ def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
 
 def solve_reference() -> ReferenceCycle:
     """The reference cycle at CYCLE_FORCE, on one element in space, by collocation on a fine mesh in time."""
-    start = orbit_of(solve_cycle_at_force(CYCLE_FORCE)).on_mesh(
-        uniform_mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES
-    )
+    solved = orbit_of(solve_cycle_at_force(CYCLE_FORCE))
+    start = solved.on_mesh(uniform_mesh(1, CYCLE_ORDER), REFERENCE_INTERVALS, REFERENCE_STAGES)
     orbit = newton(start, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
-    return ReferenceCycle(
-        *state_on_cycle(orbit), orbit.period, float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
-    )
+    height = float(abs(orbit.form.tip_coordinates(orbit.start_state)[1]))
+    return ReferenceCycle(*state_on_cycle(orbit), orbit.period, height)
 
 
 def measure_following(
     reference: ReferenceCycle, contenders: Iterable[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
-    divided by the number of periods. rounds: number of timed rounds.
-    """
+    divided by the number of periods."""
     task = IntegrationTask(reference.beam, reference.state, FOLLOWED_PERIODS * reference.period)
+    judge = partial(run_errors, reference)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
-        for m in measure_case(
-            f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, partial(run_errors, reference)
-        )
+        for m in measure_case(f"F = {CYCLE_FORCE:g}", task, list(contenders), rounds, judge)
     ]
 
 
 def run_errors(reference: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
-    the first return, and steps per period. reference: reference cycle."""
+    the first return, and steps per period."""
     returns = tip_returns(reference.beam, run)
     period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
     amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)
@@ -162,8 +158,7 @@ class TipReturns:
 
 def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
-    largest y from the run repeated with small steps.
-    """
+    largest y from the run repeated with small steps."""
     row = tip_angle_row(beam)
     y = beam.tip_coordinates(run.states)[1]
     angle = run.states @ row
@@ -172,9 +167,8 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     states = []
     heights = []
     for k in upward_steps:
-        fine_run = _integrate_in_small_steps(
-            beam, run.states[k], SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
-        )
+        step = SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
+        fine_run = _integrate_in_small_steps(beam, run.states[k], step)
         duration = float(_spline(fine_run.times, fine_run.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):
             state_at_return = _integrate_in_small_steps(beam, run.states[k], duration).states[-1]

@@ -7,6 +7,7 @@ leading eigenvalues, (modes,).
 from collections.abc import Callable, Sequence
 from functools import partial
 from math import inf, nextafter
+from typing import Any
 
 from ...arrays import Complex
 from ...determinant.arm.determinant import ArmDeterminant
@@ -39,12 +40,11 @@ FIVE_SEGMENT_PROFILE = Profile(
 )
 """Profile of an arm of five segments, with radii of 1, 0.6, 1.2, 0.5 and 0.8 times the radius at the
 clamp."""
+RUBBER = Build("neo_hookean", "swelling")
 ARM_RODS = {
     "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
     "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=FIVE_SEGMENT_PROFILE)),
-    "cone of rubber": Rod(
-        F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, build=Build("neo_hookean", "swelling")
-    ),
+    "cone of rubber": Rod(F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, build=RUBBER),
 }
 ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
@@ -85,8 +85,8 @@ def exact_arm_spectrum(rod: Rod) -> list[complex]:
 
 
 def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
-    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the eigenproblem.
-    peers: contenders of the peers. rounds: number of timed rounds."""
+    """Measurements of rodsweep, Krylov-Schur and the peers on all ARM_RODS, at all sizes of the
+    eigenproblem."""
     measurements = []
     for name, rod in ARM_RODS.items():
         judge = partial(relative_error_by_name, exact_arm_spectrum(rod))
@@ -96,19 +96,17 @@ def measure_arm_spectra(peers: Sequence[TimedMethod], rounds: int) -> list[Measu
 
 def arm_table(measurements: Sequence[Measurement], rounds: int) -> str:
     """Table of the time and error of every method on every arm, at the fastest size with an error of at most
-    TARGET_ERROR, after a paragraph that explains the table. rounds: number of timed rounds.
-    """
+    TARGET_ERROR, after a paragraph that explains the table."""
     return (
         f"Leading {MODE_COUNT} eigenvalues of arms to {TARGET_ERROR:.0e}: ms and error of the cheapest size "
-        "that "
-        f"reaches this error, {counted(rounds, 'round')}. Cones have half the radius at their tips, the "
+        f"that reaches this error, {counted(rounds, 'round')}. Cones have half the radius at their tips, the "
         "segments have radii of 1, 0.6, 1.2, 0.5 and 0.8, and rubber is neo-Hookean with a swelling section. "
         "Errors are relative distances from the roots of D, with elements that resolve 16 times the |w|:\n\n"
     ) + table_by_case(ARM_RODS, measurements, _cheapest_time_cell)
 
 
 def _cheapest_time_cell(measurements: Sequence[Measurement]) -> str:
-    """Cell of `arm_table` for one method on one arm. measurements: at all sizes."""
+    """Cell of `arm_table` for one method on one arm."""
     accurate = [m for m in measurements if m.error <= TARGET_ERROR]
     if not accurate:
         return f"no better than {min(m.error for m in measurements):.0e}"
@@ -122,33 +120,26 @@ def mesh_of_arm(rod: Rod, order: int) -> ArmMesh:
     return ArmMesh(arm_mesh(rod, MODE_COUNT, EDGE_ACCURACY).edges, order)
 
 
-def solve_next_arm(solve: Callable[[Rod, int], Complex], size: int, arms: UncachedArms) -> Complex:
+def solve_next_arm(solve: Callable[[Rod, Any], Complex], size: int, arms: UncachedArms) -> Complex:
     """Eigenvalues, (modes,), of the next arm of `arms` by the eigensolver `solve`. size: second argument of
-    `solve`, an order or a number of intervals."""
+    `solve`: an order, a number of intervals, or whether rodsweep certifies the eigenvalues."""
     return solve(arms.next_arm(), size)
 
 
 def _krylov_schur(rod: Rod, order: int) -> Complex:
     """Leading eigenvalues, (modes,), of an arm by SLEPc's Krylov-Schur on elements of the given order,
     without Newton's method for D."""
-    eigenvalues = arm_solver(mesh_of_arm(rod, order)).solve(
-        rod, ArmProblem(rod).shift, MODE_COUNT, to_rounding=True
-    )
+    solver = arm_solver(mesh_of_arm(rod, order))
+    eigenvalues = solver.solve(rod, ArmProblem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
-
-
-def _rodsweep_solver(certify: bool, arms: UncachedArms) -> Complex:
-    return rodsweep_spectrum(arms.next_arm(), certify)
 
 
 def contenders() -> list[TimedMethod]:
     """Contenders of ARM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
-    rodsweep_contenders = [
-        TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, False)),
-        TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(_rodsweep_solver, True)),
-    ]
+    names = {UNCERTIFIED_NAME: False, CERTIFIED_NAME: True}
+    own = {name: partial(solve_next_arm, rodsweep_spectrum, certify) for name, certify in names.items()}
     krylov = [
         TimedMethod(KRYLOV_SCHUR, str(order), PENCIL_GROUP, partial(solve_next_arm, _krylov_schur, order))
         for order in ELEMENT_ORDERS
     ]
-    return rodsweep_contenders + krylov
+    return [TimedMethod(name, "", RODSWEEP_GROUP, run) for name, run in own.items()] + krylov

@@ -79,6 +79,5 @@ def relative_error(w: Complex | Exception, exact: list[Any]) -> float:
 
 
 def relative_error_by_name(exact: list[Any], w: Complex) -> dict[str, float]:
-    """{"error": relative error of computed eigenvalues w, (modes,)}, a field of `Measurement`. exact: exact
-    eigenvalues."""
+    """{"error": relative error of computed eigenvalues w, (modes,)}, a field of `Measurement`."""
     return {"error": relative_error(w, exact)}

@@ -39,8 +39,7 @@ def table_by_case(
     cases: Iterable[str], measurements: Iterable[Measurement], cell: Callable[[list[Measurement]], str]
 ) -> str:
     """Table in Markdown with a row for each method and a column for each of the `cases`. cell: function from
-    the measurements of a method on a case, at all settings, to the text of a cell.
-    """
+    the measurements of a method on a case, at all settings, to the text of a cell."""
     rows = [
         {"method": method, "cells": " | ".join(map(cell, grouped_by_fields(measured, "case").values()))}
         for (method,), measured in grouped_by_fields(measurements, "method").items()

@@ -91,9 +91,7 @@ def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
     measurements = measure_hard_rods(every_nth_setting(methods, stride), rounds)
     arms = measure_arm_spectra(every_nth_setting(peers.of(ARM_RACE), stride), rounds)
     blocks += [*peers.notes, hard_rod_table(measurements), arm_table(arms, rounds), *peers.skipped]
-    return BenchmarkReport(
-        "spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], undrawn=arms
-    )
+    return BenchmarkReport("spectrum", "\n\n".join(blocks), measurements, "point", TARGET_ERRORS[0], arms)
 
 
 def cheapest_contenders(
@@ -102,7 +100,7 @@ def cheapest_contenders(
     """For every method that reaches the error `target` on a rod: the contender with the smallest size that
     reaches this error, by name of the method.
 
-    methods: contenders of all methods, by ascending size. exact: exact eigenvalues of the rod.
+    methods: contenders of all methods, by ascending size.
     """
     cheapest: dict[str, TimedMethod] = {}
     for contender in methods:
@@ -120,9 +118,7 @@ def equal_error_table(
     rounds: int,
 ) -> str:
     """Times all methods on all rods, in `rounds` rounds, each at the smallest size that reaches the error
-    `target`, and returns the table of the methods. methods: contenders of all methods, by ascending size.
-    exact: exact eigenvalues of each rod.
-    """
+    `target`, and returns the table of the methods."""
     fit = [cheapest_contenders(methods, rod, roots, target) for rod, roots in zip(rods, exact, strict=True)]
     names = list(dict.fromkeys(contender.method for contender in methods))
     runs = {
@@ -155,7 +151,7 @@ def equal_error_table(
 
 
 def measure_hard_rods(methods: Sequence[TimedMethod], rounds: int) -> list[Measurement]:
-    """Measurements of the contenders `methods` on all HARD_RODS. rounds: number of timed rounds."""
+    """Measurements of the contenders `methods` on all HARD_RODS."""
     measurements = []
     for case, rod in HARD_RODS.items():
         judge = partial(relative_error_by_name, exact_spectrum(rod, MODE_COUNT))
@@ -175,8 +171,7 @@ def hard_rod_table(measurements: Sequence[Measurement]) -> str:
 
 def hard_rod_cell(measurements: Sequence[Measurement]) -> str:
     """Cell of `hard_rod_table` for one method on one rod: the smallest error at any size, and the shortest
-    time of a size with at most ten times this error; "failed" if all sizes failed. measurements: at all
-    sizes."""
+    time of a size with at most ten times this error; "failed" if all sizes failed."""
     min_error = min(m.error for m in measurements)
     fastest = min((m for m in measurements if m.error <= 10 * min_error), key=lambda m: m.seconds)
     return "failed" if isinf(min_error) else f"{min_error:.0e}, {1e3 * fastest.seconds:.2f} ms"
@@ -192,19 +187,16 @@ def pencil_mesh(order: int) -> Resolution:
 def krylov_schur(rod: Rod, size: int) -> Complex:
     """Leading eigenvalues, (modes,), of a rod by SLEPc's Krylov-Schur, without Newton's method for D. size:
     order of the pencil."""
-    eigenvalues = uniform_solver(pencil_mesh(size)).solve(
-        rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True
-    )
+    solver = uniform_solver(pencil_mesh(size))
+    eigenvalues = solver.solve(rod, transverse_problem(rod).shift, MODE_COUNT, to_rounding=True)
     return leading_eigenvalues(eigenvalues, MODE_COUNT + 1)
 
 
 def contenders() -> list[TimedMethod]:
     """Contenders of SPECTRUM_RACE: rodsweep without and with certificate, and Krylov-Schur at all orders."""
+    krylov = {str(size): partial(krylov_schur, size=size) for size in ELEMENT_ORDERS}
     return [
         TimedMethod(UNCERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=False)),
         TimedMethod(CERTIFIED_NAME, "", RODSWEEP_GROUP, partial(rodsweep_spectrum, certify=True)),
-        *(
-            TimedMethod(KRYLOV_SCHUR, str(size), PENCIL_GROUP, partial(krylov_schur, size=size))
-            for size in ELEMENT_ORDERS
-        ),
+        *(TimedMethod(KRYLOV_SCHUR, size, PENCIL_GROUP, run) for size, run in krylov.items()),
     ]

@@ -66,8 +66,7 @@ def measure_followed_sweeps(
     """Measurements of sweeps of certified spectra on one rank: for each pair of grids first FOLLOWED_METHOD,
     then ALONE_METHOD.
 
-    folder: directory of the sweeps. run: see `RunCase` of `rodsweep.bench.sweep.study`. quick: whether to use
-    small grids.
+    run: see `RunCase` of `rodsweep.bench.sweep.study`.
     """
     measurements = []
     for axis in QUICK_GRID_PAIRS if quick else GRID_PAIRS:
@@ -95,21 +94,18 @@ def followed_measurement(case: SweepCase, method: str, run: CommandRunCost) -> M
         "uncertified": float((variables["certified"] == 0).sum()),
         "rss_megabytes": max(run.peak_memory) / 1e6,
     }
-    return Measurement(
-        f"axis, {case.name}", method, f"{case.points} points", run.stated_seconds, nan, extra=values
-    )
+    points = f"{case.points} points"
+    return Measurement(f"axis, {case.name}", method, points, run.stated_seconds, nan, extra=values)
 
 
 def followed_table(measurements: Sequence[Measurement]) -> str:
-    """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it. measurements:
-    as returned by `measure_followed_sweeps`."""
+    """Table of the sweeps, with one line per pair of grids, after a paragraph that explains it."""
     rows = []
     for followed, unfollowed in zip(measurements[::2], measurements[1::2], strict=True):
         speedup = unfollowed.extra["microseconds_solving"] / followed.extra["microseconds_solving"]
         row = {"axis": followed.case.removeprefix("axis, "), "seconds": followed.seconds, "gain": speedup}
-        rows.append(
-            row | followed.extra | {f"{name}_alone": value for name, value in unfollowed.extra.items()}
-        )
+        alone = {f"{name}_alone": value for name, value in unfollowed.extra.items()}
+        rows.append(row | followed.extra | alone)
     return (
         "Certified spectra, `modes: 4`, along the longest axis of grids of F, k1, k2, gamma3, on one rank; "
         '"alone" is `follow: false` on a part of the same grid. Seconds are printed by the run and include '

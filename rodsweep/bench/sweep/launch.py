@@ -69,8 +69,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
     """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
     new directory `directory`.
 
-    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4. kind:
-    kind of solver.
+    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4.
     """
     forces = 50 if points >= 200 else 2
     softnesses = points // (2 * forces)
@@ -81,8 +80,7 @@ def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCa
 
 def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
-    directory `directory`. points: number of points. kind: kind of solver.
-    """
+    directory `directory`."""
     directory.mkdir()
     rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(points).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
@@ -141,32 +139,27 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run that
     is not to be killed fails.
 
-    command: first arguments of the measured command. fresh: whether to replace an existing result file.
+    command: first arguments of the measured command.
     """
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
     full_command = [*launcher_words(ranks), *command]
-    processes = [
-        _start_command(full_command, case.solver_kind, directory, fresh) for directory in case.directories
-    ]
-    stated_seconds = [_printed_seconds(process, case.solver_kind) for process in processes]
+    kind = case.solver_kind
+    processes = [_start_command(full_command, kind, directory, fresh) for directory in case.directories]
+    stated_seconds = [_printed_seconds(process, kind) for process in processes]
     seconds = time.monotonic() - start
     other_load = np.maximum(0.0, (_other_process_seconds() - seconds_of_others) / seconds)
     files = [directory / RESULT for directory in case.directories]
-    solve_times = [
-        _solver_time_and_share(file) if case.solver_kind == SOLVED else (0.0, nan) for file in files
-    ]
+    solve_times = [_solver_time_and_share(file) if kind == SOLVED else (0.0, nan) for file in files]
+    journals = [page for file in files for page in journal_directory(file).glob("rank-*")]
+    prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
     return CommandRunCost(
         seconds=seconds,
         stated_seconds=max(stated_seconds),
         solver_seconds=sum(solve_seconds for solve_seconds, _ in solve_times),
-        peak_memory=tuple(
-            _peak_memory(case, rank) for rank in (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
-        ),
+        peak_memory=tuple(_peak_memory(case, prefix) for prefix in prefixes),
         file_bytes=sum(file.stat().st_size for file in files),
-        journal_bytes=sum(
-            page.stat().st_size for file in files for page in journal_directory(file).glob("rank-*")
-        ),
+        journal_bytes=sum(page.stat().st_size for page in journals),
         processors_busy_elsewhere=float(other_load),
         busy_fraction=min(busy_fractions for _, busy_fractions in solve_times),
     )
@@ -189,8 +182,7 @@ def _start_command(command: Sequence[str], kind: str, directory: Path, fresh: bo
 
 def _printed_seconds(process: subprocess.Popen[str], kind: str) -> float:
     """Waits for the command to finish, and returns the time in s that the command printed; nan if the command
-    was killed on purpose. kind: kind of solver. Raises EnvironmentIncomplete if the command failed.
-    """
+    was killed on purpose. Raises EnvironmentIncomplete if the command failed."""
     output, errors = process.communicate()
     match = re.search(r"points? in ([\d.]+) s on", output)
     stopped = match is None or "stopped by" in output
@@ -210,9 +202,8 @@ def _solver_time_and_share(file: Path) -> tuple[float, float]:
     """(time in the solver in s, fraction of the time of all ranks that was spent on points), from a result
     file."""
     view = read_view(file)
-    busy_seconds, idle_seconds = (
-        float(view.attributes[f"rank_{name}_seconds"].sum()) for name in ("busy", "idle")
-    )
+    names = ("rank_busy_seconds", "rank_idle_seconds")
+    busy_seconds, idle_seconds = (float(view.attributes[name].sum()) for name in names)
     return float(view.variables["seconds"].sum(dtype=float)), busy_seconds / (busy_seconds + idle_seconds)
 
 

@@ -77,12 +77,8 @@ def sweep_study(quick: bool, command: Sequence[str]) -> BenchmarkReport:
 
 
 def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]) -> list[Measurement]:
-    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn. folder:
-    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks.
-    """
-    rounds, cycle_rounds = (
-        (QUICK_ROUND_COUNT, QUICK_ROUND_COUNT) if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
-    )
+    """Measurements of sweeps of spectra and of limit cycles with the real solver, run in turn."""
+    rounds, cycle_rounds = (QUICK_ROUND_COUNT,) * 2 if quick else (ROUND_COUNT, CYCLE_ROUND_COUNT)
     count = QUICK_SPECTRUM_COUNT if quick else SPECTRUM_COUNT
     spectra = spectrum_case(folder / "spectra", "spectra", count, SOLVED)
     cycles = cycle_case(folder / "cycles", QUICK_CYCLE_COUNT if quick else CYCLE_COUNT, SOLVED)
@@ -100,9 +96,8 @@ def measure_solved_sweeps(folder: Path, run: RunCase, quick: bool, ranks: Sequen
 def measure_instant_sweeps(
     folder: Path, run: RunCase, quick: bool, ranks: Sequence[int]
 ) -> list[Measurement]:
-    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. folder:
-    directory of the sweeps. quick: whether to use fewer points and rounds. ranks: numbers of ranks; killed
-    and resumed sweeps have one rank."""
+    """Measurements of sweeps of all sizes with the instant solver: complete, killed and resumed. ranks:
+    numbers of ranks; killed and resumed sweeps have one rank."""
     sizes, rounds = (QUICK_SIZES, QUICK_ROUND_COUNT) if quick else (SWEEP_SIZES, ROUND_COUNT)
     entries = []
     for size in sizes:
@@ -123,25 +118,23 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
     for i in timing_order([rounds for _, _, rounds in entries]):
         case, ranks, _ = entries[i]
         runs[i].append(run(case, ranks))
-    return [
-        sweep_measurement(case, ranks, times) for (case, ranks, _), times in zip(entries, runs, strict=True)
-    ]
+    measured = zip(entries, runs, strict=True)
+    return [sweep_measurement(case, ranks, own_runs) for (case, ranks, _), own_runs in measured]
 
 
 def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost]) -> Measurement:
-    """Measurement of a sweep from its runs; times are medians, the error is nan. ranks: number of ranks."""
+    """Measurement of a sweep from its runs; times are medians, the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
     processes = ranks * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
     journal_bytes, is_killed = runs[0].journal_bytes, case.solver_kind == KILLED
+    overheads = (processes * run.stated_seconds - run.solver_seconds for run in runs)
     extra = {
         "ranks": float(ranks),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
         "inside_seconds": nan_median(run.stated_seconds for run in runs),
-        "microseconds_overhead": nan_median(
-            1e6 * (processes * r.stated_seconds - r.solver_seconds) / case.points for r in runs
-        ),
+        "microseconds_overhead": nan_median(1e6 * overhead / case.points for overhead in overheads),
         "rss_megabytes": max(memory),
         "rss_megabytes_first": memory[0],
         "rss_megabytes_other": memory[1] if len(memory) > 1 else nan,

@@ -98,16 +98,11 @@ of a coarse grid. In "soft", further pairs soon become unstable, so that a searc
 first pair."""
 QUICK_CASES = tuple(case for case in UNIFORM_CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))
 """Uniform rods in a quick run."""
+FIVE_SEGMENTS = Build(profile=FIVE_SEGMENT_PROFILE)
 ARM_CASES = (
     ThresholdCase("cone", 1e4, 1e2, 1e-2, 4.57243445318968512, 11.0801159252882371, taper=0.5),
     ThresholdCase(
-        "five segments",
-        1e4,
-        1e4,
-        1e-4,
-        2.98373047605650440,
-        5.68247274040263724,
-        build=Build(profile=FIVE_SEGMENT_PROFILE),
+        "five segments", 1e4, 1e4, 1e-4, 2.98373047605650440, 5.68247274040263724, build=FIVE_SEGMENTS
     ),
 )
 """Arms that vary along their length."""
@@ -122,12 +117,16 @@ ROUND_COUNT = 5
 """Number of timed rounds."""
 QUICK_ROUND_COUNT = 1
 """Number of timed rounds of a quick run."""
+WORK_FIELDS = {"eigenproblems": "solves", "determinants": "determinants", "products": "products"}
+"""Field of `FirstThreshold` by name of the number of operations in a measurement."""
 MAX_DIGITS = 16
 """Upper limit of the counted number of correct digits of a threshold."""
 F_MAX = 200.0
 """Largest F of rodsweep's search on uniform rods."""
 ARM_F_MAX = 60.0
 """Largest F of rodsweep's search on arms, several times F of their Hopf points."""
+PROOF_SETTINGS = {"with proof": True, "without proof": False}
+"""Whether rodsweep proves its list of thresholds complete, by name of the setting."""
 RODSWEEP_GROUP = "rodsweep"
 """Group of rodsweep in the figure."""
 
@@ -151,14 +150,8 @@ def thresholds_study(quick: bool, peers: Peers) -> BenchmarkReport:
 def contenders(kind: str) -> list[TimedMethod]:
     """Contenders of the race for the threshold `kind`: rodsweep with and without its proof of
     completeness."""
-    return [
-        TimedMethod(
-            "rodsweep, all changes", "with proof", RODSWEEP_GROUP, partial(rodsweep_threshold, kind, True)
-        ),
-        TimedMethod(
-            "rodsweep, all changes", "without proof", RODSWEEP_GROUP, partial(rodsweep_threshold, kind, False)
-        ),
-    ]
+    runs = {setting: partial(rodsweep_threshold, kind, proves) for setting, proves in PROOF_SETTINGS.items()}
+    return [TimedMethod("rodsweep, all changes", name, RODSWEEP_GROUP, run) for name, run in runs.items()]
 
 
 def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstThreshold:
@@ -170,17 +163,15 @@ def rodsweep_threshold(kind: str, certify: bool, case: ThresholdCase) -> FirstTh
     threshold = next((change.value for change in result.thresholds if change.kind.name == kind), nan)
     if not rod.is_uniform_and_linear:
         return FirstThreshold(threshold)
-    return FirstThreshold(
-        threshold, result.search_result.solve_count, determinants=result.search_result.evaluation_count
-    )
+    search = result.search_result
+    return FirstThreshold(threshold, search.solve_count, search.evaluation_count)
 
 
 def measure_rods(
     kind: str, cases: Iterable[ThresholdCase], contenders: Sequence[TimedMethod], rounds: int
 ) -> list[Measurement]:
     """Measurements of the contenders `contenders`, which find the threshold `kind`, on each rod. kind: ONSET
-    or HOPF. rounds: number of timed rounds.
-    """
+    or HOPF."""
     measurements = []
     for case in cases:
         name = f"{case.name}, {KIND_TITLES[kind]}"
@@ -190,17 +181,12 @@ def measure_rods(
 
 def threshold_error(case: ThresholdCase, kind: str, computed_threshold: FirstThreshold) -> dict[str, Any]:
     """Fields of `Measurement` for the computed threshold `computed_threshold` of the kind `kind`: error,
-    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed).
-    """
+    failure, cost, and correct decimal digits per eigenproblem (0 if the threshold was missed)."""
     error = case.error_of(kind, computed_threshold.force)
     outcome = "missed" if isnan(computed_threshold.force) else f"wrong ({computed_threshold.force:.2f})"
     digits = -log10(min(max(error, 10**-MAX_DIGITS), 1.0))
-    work = {
-        "eigenproblems": computed_threshold.solves,
-        "determinants": computed_threshold.determinants,
-        "products": computed_threshold.products,
-    }
-    values = work | {"digits": nan if isnan(getattr(case, kind)) else digits / computed_threshold.solves}
+    values = {name: getattr(computed_threshold, field) for name, field in WORK_FIELDS.items()}
+    values["digits"] = nan if isnan(getattr(case, kind)) else digits / computed_threshold.solves
     return {"error": error, "failure": outcome if isinf(error) else "", "extra": values}
 
 
@@ -210,10 +196,9 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
     rods = list(dict.fromkeys(m.case.split(",")[0] for m in measurements))
     rows = []
     for (method, setting), measured in grouped_by_fields(measurements, "method", "setting").items():
-        solve_counts, determinants, products, digits = (
-            nan_median(m.extra.get(name, nan) for m in measured)
-            for name in ("eigenproblems", "determinants", "products", "digits")
-        )
+        names = (*WORK_FIELDS, "digits")
+        medians = (nan_median(m.extra.get(name, nan) for m in measured) for name in names)
+        solve_counts, determinants, products, digits = medians
         work = "" if isnan(solve_counts) else f"{solve_counts:.0f}"
         for count, unit_text in ((determinants, "D"), (products, "M u")):
             work += "" if isnan(count) else f"{', ' * bool(work)}{count:.0f} {unit_text}"
@@ -228,11 +213,11 @@ def threshold_table(kind: str, measurements: Sequence[Measurement]) -> str:
 
 
 def introduction(rounds: int) -> str:
-    """Description of the tables of uniform rods for the report. rounds: number of timed rounds."""
+    """Description of the tables of uniform rods for the report."""
     return (
         f"Relative error of the first onset and of the first Hopf point; medians over the rods and "
         f"{counted(rounds, 'round')}. rodsweep finds all thresholds in 0 < F < {F_MAX:g} (or below k1) in "
-        "one search. "
-        "In addition to eigenproblems it evaluates the determinant D; each change is located to rounding "
-        "error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was missed."
+        "one search. In addition to eigenproblems it evaluates the determinant D; each change is located to "
+        "rounding error, whatever accuracy is requested. Digits = -log10(error), 0 where the threshold was "
+        "missed."
     )

@@ -37,15 +37,14 @@ def last_run_attributes(plan: FilePlan) -> dict[str, Any]:
 
 def run_history(contributions: Sequence[RunContribution], mpi_library: str) -> dict[str, Any]:
     """Attributes of a file on a run: number of ranks, hosts, MPI library, Slurm job; points and times of each
-    rank. contributions: reports of all ranks. mpi_library: name and version of the MPI library.
-    """
+    rank."""
     hosts = {contribution.host for contribution in contributions}
     ranks = [contribution.statistics for contribution in contributions[: provenance.MAX_RANK_STATISTICS]]
-    points, busy_seconds, idle_seconds = zip(
-        *((of_rank.solved_points, of_rank.busy_seconds, of_rank.idle_seconds) for of_rank in ranks),
-        strict=True,
+    numbers = (
+        np.array([of_rank.solved_points for of_rank in ranks], "i4"),
+        np.array([of_rank.busy_seconds for of_rank in ranks], "f4"),
+        np.array([of_rank.idle_seconds for of_rank in ranks], "f4"),
     )
-    numbers = (np.array(points, "i4"), np.array(busy_seconds, "f4"), np.array(idle_seconds, "f4"))
     return {
         "ranks": len(contributions),
         "hosts": " ".join(sorted(hosts))[: provenance.MAX_ATTRIBUTE_LENGTH],

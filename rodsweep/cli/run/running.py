@@ -68,16 +68,9 @@ class _RankRun:
         self.plan = plan_of(job, self.solver, self.shard, self.kernels)
         self.prepare = cache(self.solver.warm_up)
         self.shard_solver = ShardSolver(
-            ranks=ranks,
-            job=job,
-            solver=self.solver,
-            plan=self.plan,
-            shard=self.shard,
-            output=output,
-            stop=stop,
-            quiet=request.quiet,
-            point_text=self._point_text,
-        )
+            ranks=ranks, job=job, solver=self.solver, plan=self.plan, shard=self.shard, output=output,
+            stop=stop, quiet=request.quiet, point_text=self._point_text,
+        )  # fmt: skip
         sweep_wide = self.solver.sweep_wide_solver
         self.sweep_wide = sweep_wide and SweepWideComputation(
             ranks, sweep_wide, output, self.plan.fingerprint, self.log.append_exception, stop
@@ -104,9 +97,8 @@ class _RankRun:
         contributions: list[RunContribution] = []
         if count:
             self.ranks.call_on_first_rank(self._record_blas_kernels)
-            contributions = (
-                self.ranks.gather(self.shard_solver.solve(items, missing, count, self.prepare)) or []
-            )
+            contribution = self.shard_solver.solve(items, missing, count, self.prepare)
+            contributions = self.ranks.gather(contribution) or []
         pending = self.ranks.call_on_first_rank(lambda: self._add_journals(count, contributions))
         solved: dict[str, int] = {}
         if self.sweep_wide:
@@ -118,17 +110,12 @@ class _RankRun:
         )
 
     def _lacks_sweep_wide_variables(self, missing: int) -> bool:
-        """Whether the file lacks only the variables that depend on all points; called on the first rank.
-
-        missing: number of missing points.
-        """
+        """Whether the file lacks only the variables that depend on all points; called on the first rank."""
         return not missing and "finished" not in self.store.attributes()
 
     def _add_journals(self, count: int, contributions: list[RunContribution]) -> PendingSweepWideVariables:
         """Writes the points of all journals into the file; returns whether variables that depend on all
-        points are still missing, with their work items. count: number of points to be solved in this run.
-        contributions: reports of all ranks.
-        """
+        points are still missing, with their work items. count: number of points to be solved in this run."""
         self.seconds = time.monotonic() - self.clock_at_start
         if count:
             history = run_history(contributions, self.ranks.MPI.Get_library_version())
@@ -164,9 +151,8 @@ class _RankRun:
     def _record_blas_kernels(self) -> None:
         """Stores the names of the BLAS kernels of all ranks, and prints a warning if the kernels differ."""
         attributes = self.store.attributes()
-        kernels = provenance.merged_blas_kernels(
-            provenance.blas_kernels_in(attributes), self.kernels.splitlines()
-        )
+        stored = provenance.blas_kernels_in(attributes)
+        kernels = provenance.merged_blas_kernels(stored, self.kernels.splitlines())
         if kernels != attributes.get(provenance.KERNELS_ATTRIBUTE):
             self.store.add_journals({provenance.KERNELS_ATTRIBUTE: kernels})
         if sentence := provenance.kernels_sentence(kernels):
@@ -213,9 +199,8 @@ class _RankRun:
         solved: dict[str, int],
         exceptions: int,
     ) -> int:
-        """Completes the result file, prints how the run ended, and returns the exit status. count: number of
-        points to be solved. contributions: work of each rank on points. pending, solved: as from `solve_all`.
-        exceptions: number of unforeseen exceptions on all ranks."""
+        """Completes the result file, prints how the run ended, and returns the exit status. pending, solved:
+        as from `solve_all`. exceptions: number of unforeseen exceptions on all ranks."""
         lacks_sweep_wide_variables = self._finish_file(pending)
         sweep_wide = self.sweep_wide
         missing_points = self.store.missing()

@@ -73,9 +73,8 @@ class ShardSolver:
     ) -> RunContribution:
         """Solves work items together with all other ranks; writes this rank's results into its journal.
 
-        items, count: returned by `items_to_solve`. missing: ranges of the flat indices of all missing points.
-        prepare: function called before the first solve. Raises EnvironmentIncomplete if a journal cannot be
-        written.
+        items, count: returned by `items_to_solve`. prepare: function called before the first solve. Raises
+        EnvironmentIncomplete if a journal cannot be written.
         """
         reasons = FailureReasons(self.point_text)
         solver = self.solver
@@ -95,9 +94,8 @@ class ShardSolver:
             with closing(Journal(directory, self.ranks.rank, plan.layout, plan.fingerprint)) as journal:
                 solve = self._solve_item(IndexSet(missing), directory)
                 loop = SweepCallbacks(solve=solve, store=keep, prepare=prepare, item_label=self._item_name)
-                contribution = sweep(
-                    self.ranks, ChunkQueue(items, self.ranks.size), loop, reporter, self.stop
-                )
+                queue = ChunkQueue(items, self.ranks.size)
+                contribution = sweep(self.ranks, queue, loop, reporter, self.stop)
         except OSError as error:
             raise EnvironmentIncomplete(
                 f"cannot write into the folder of {self.output}: {error.strerror or error}"
@@ -105,16 +103,13 @@ class ShardSolver:
             ) from error
         finally:
             reporter.close()
-        return RunContribution(
-            host=socket.gethostname(), failures=list(reasons.examples.values()), statistics=contribution
-        )
+        failures = list(reasons.examples.values())
+        return RunContribution(host=socket.gethostname(), failures=failures, statistics=contribution)
 
     def _solve_item(
         self, missing: IndexSet, directory: Path
     ) -> Callable[[int], Iterable[tuple[Indices, Any]]]:
-        """Function from the number of a work item (a point, a chain or a group) to its results. missing:
-        flat indices of all missing points. directory: journal directory.
-        """
+        """Function from the number of a work item (a point, a chain or a group) to its results."""
         solver = self.solver
         if solver.grouped:
             return GroupSolver(*solver.grouped, solver.solve, missing)

@@ -24,8 +24,7 @@ from ...tasks.running.unforeseen_exceptions import RUN_ENDING_EXCEPTIONS, ItemEx
 class PendingSweepWideVariables:
     """Variables that depend on all points. is_missing: whether the file lacks these variables. work_items:
     the half curves to be followed, each from a special point in one direction; None if nothing is divided
-    among the ranks.
-    """
+    among the ranks."""
 
     is_missing: bool
     work_items: WorkItems | None = None
@@ -33,8 +32,7 @@ class PendingSweepWideVariables:
 
 class SweepWideComputation:
     """Computes the variables of a run that depend on all points, in work items (half curves) shared among the
-    ranks.
-    """
+    ranks."""
 
     def __init__(
         self,
@@ -45,9 +43,8 @@ class SweepWideComputation:
         note: ItemExceptionNote,
         stop: StopRequest,
     ):
-        """solver: computes the variables. output: the result file. fingerprint: digest of config and points.
-        note: function called with every unforeseen exception; the result of the work item is then empty.
-        """
+        """solver: computes the variables. note: function called with every unforeseen exception; the result
+        of the work item is then empty."""
         self.ranks = ranks
         self.solver = solver
         self.output = output
@@ -76,8 +73,7 @@ class SweepWideComputation:
 
     def solve(self, items: WorkItems, prepare: Callable[[], object], title: str | None) -> RankStatistics:
         """Solves all work items of `items` that are still missing, on all ranks; returns the work of this
-        rank. prepare: function called before the first solve. title: text of the progress display; None for
-        no display."""
+        rank. title: text of the progress display; None for no display."""
         results: dict[int, NamedArrays] = {}
 
         def keep(item: Indices, result: NamedArrays) -> None:
@@ -94,18 +90,13 @@ class SweepWideComputation:
             self.results = self.item_results.read()
             queue = DependentItemQueue(items, self.results, self.ranks.size)
         self._exchange_starts(items)
-        reporter = (
-            ProgressReporter(None, f"{title}, curves", items.progress_noun)
-            if self.ranks.is_first and title
-            else SilentProgress()
-        )
+        reporter: ProgressReporter | SilentProgress = SilentProgress()
+        if self.ranks.is_first and title:
+            reporter = ProgressReporter(None, f"{title}, curves", items.progress_noun)
         loop = SweepCallbacks(
-            solve=lambda item: self._solve_item(items, item),
-            store=keep,
-            prepare=prepare,
-            new_results=take_results,
+            solve=partial(self._solve_item, items), store=keep, prepare=prepare, new_results=take_results,
             item_label=items.item_label,
-        )
+        )  # fmt: skip
         try:
             return sweep(self.ranks, queue, loop, reporter, self.stop)
         finally:
@@ -113,8 +104,7 @@ class SweepWideComputation:
 
     def _exchange_starts(self, items: WorkItems) -> None:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
-        these points again. items: the current work items.
-        """
+        these points again."""
         item_numbers = self.ranks.call_on_first_rank(lambda: items.items_to_solve(self.results))
         for starts in self.ranks.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
             self.solver.add_initial_data(starts)
@@ -139,8 +129,7 @@ class SweepWideComputation:
 
     def result(self, items: WorkItems | None) -> SweepWideResult | None:
         """The variables that depend on all points, and the points that change; called on the first rank. None
-        if the run was stopped before these variables were complete. items: the last work items.
-        """
+        if the run was stopped before these variables were complete."""
         if items is not None and items.items_to_solve(self.results):
             return None
         with suppress(SolveStopped), reporting_to(RankListener(SingleRankCommunication(), self.stop)):

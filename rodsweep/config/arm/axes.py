@@ -8,8 +8,9 @@ estimates are the values of an axis of gamma3.
 """
 
 from collections.abc import Mapping
+from itertools import chain
 
-from ...model.arm.quantities import LOAD_OF_RATIO, LOADS
+from ...model.arm.quantities import LOAD_OF_RATIO, LOADS, SECTION_SIZE_NAMES
 from ...model.parameters import PARAMETERS
 
 LOAD_KEYS = (*LOADS, *LOAD_OF_RATIO)
@@ -26,18 +27,7 @@ arm, by name of this quantity or unit."""
 FLUID_QUANTITIES = ("viscosity", "fluid_density", "density_difference")
 """Names of the quantities of the fluid, which change no parameter of the rod: times are proportional to the
 viscosity, and the densities are used only to test whether the model applies."""
-NON_LOAD_KEYS = (
-    "length",
-    "young",
-    "radius",
-    "inner_radius",
-    "tip_radius",
-    "width",
-    "height",
-    "poisson",
-    *FLUID_QUANTITIES,
-    "drag",
-)
+NON_LOAD_KEYS = ("length", "young", *chain(*SECTION_SIZE_NAMES), "poisson", *FLUID_QUANTITIES, "drag")
 """Names of all quantities of an arm except the load."""
 MAX_ARM_GRID_POINTS = 1_000_000
 """Maximum number of points of a grid over an arm's quantities; larger grids are refused, because the
@@ -48,7 +38,6 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
     """Names of the axes of a grid over an arm's quantities; empty if the points form a grid of parameters.
 
     sizes: number of values of each given quantity, and of each parameter that replaces the arm's value.
-    in_diagram: whether the points are the rows of a phase diagram.
     """
     names = (name for name in (*NON_LOAD_KEYS, *LOAD_KEYS) if name in sizes)
     quantities = [name for name in names if sizes[name] > 1 or name in LOAD_OF_RATIO]
@@ -59,6 +48,5 @@ def grid_axis_names(sizes: Mapping[str, int], in_diagram: bool) -> tuple[str, ..
 
 def parameter_of_axis(axis: str) -> str:
     """Name of the only parameter that changes along an axis of an arm's grid; "" if several parameters or no
-    parameter change.
-    """
+    parameter change."""
     return axis if axis in PARAMETERS else CHANGED_PARAMETER.get(axis, "")

@@ -13,8 +13,7 @@ def refuse_conflicting_keys(arm: "ArmConfig", needs_force: bool, given_parameter
     """Raises ValueError if the load does not suit the task, or if k2 is given in addition to an axis of
     Poisson's ratio.
 
-    arm: section of the config. needs_force: whether F is a parameter of the task. given_parameters: names of
-    the parameters that replace the arm's values.
+    given_parameters: names of the parameters that replace the arm's values.
     """
     loads = ["parameters.F"] if "F" in given_parameters else []
     loads += [f"parameters.arm.{name}" for name in LOAD_KEYS if getattr(arm, name) is not None]

@@ -15,8 +15,7 @@ from ..values import as_float, short_repr
 
 def quantity_axis(value: Any, validation: ValidationInfo) -> Axis:
     """The `Axis`, in SI units, from a quantity, or a list or range of quantities, as the user wrote it;
-    ValueError otherwise.
-    """
+    ValueError otherwise."""
     name = str(validation.field_name)
     if isinstance(value, Axis):
         return value
@@ -37,21 +36,16 @@ def _axis_in_si(name: str, value: Any) -> Axis:
 
 
 def _missing_unit_remark(name: str, span: dict[str, Any]) -> str:
-    """Remark for error messages if only start or only stop of a range has a unit, else "". name: name of the
-    quantity. span: the range as a mapping.
-    """
-    ends = [end for end in RANGE_ENDS if end in span]
-    unitless = [end for end in ends if not isinstance(span[end], str)]
+    """Remark for error messages if only start or only stop of a range has a unit, else ""."""
+    unitless = [end for end in RANGE_ENDS if end in span and not isinstance(span[end], str)]
+    if len(unitless) != 1 or not all(end in span for end in RANGE_ENDS):
+        return ""
     unit = UNITS[name][0]
-    return (
-        f" in {unit}; {unitless[0]} has no unit, so it is in {unit}" if len(unitless) == 1 < len(ends) else ""
-    )
+    return f" in {unit}; {unitless[0]} has no unit, so it is in {unit}"
 
 
 def _si_number(name: str, value: Any) -> float:
-    """Number in SI units from `value`, a number or a text with a unit; ValueError for other values. name:
-    name of the quantity.
-    """
+    """Number in SI units from `value`, a number or a text with a unit; ValueError for other values."""
     if not isinstance(value, str):
         return as_float(value)
     try:
@@ -78,9 +72,8 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
                 "write all values like '1.2 of flutter', or all as absolute loads"
             )
         if section.get(name) is not None:
-            raise ValueError(
-                f"parameters.arm.{load} and parameters.arm.{name} are both given; give one of them"
-            )
+            keys = f"parameters.arm.{load} and parameters.arm.{name}"
+            raise ValueError(f"{keys} are both given; give one of them")
         is_range = isinstance(section[load], Mapping)
         result[name] = {**section[load], **dict(zip(RANGE_ENDS, ratios, strict=True))} if is_range else ratios
         del result[load]
@@ -89,8 +82,7 @@ def with_load_over_flutter(section: Mapping[str, Any]) -> dict[str, Any]:
 
 def _loads_over_flutter_load(value: Any) -> tuple[list[float | None], bool]:
     """Returns (ratios, is_relative). ratios: each value of a load divided by the flutter load, None for an
-    absolute value. is_relative: whether any value is relative to flutter.
-    """
+    absolute value. is_relative: whether any value is relative to flutter."""
     ratios = [None if written is None else load_over_flutter(written) for written in _written_values(value)]
     return ratios, any(ratio is not None for ratio in ratios)
 
@@ -120,8 +112,7 @@ def drag_names(values: list[float]) -> list[str]:
 
 def typed_unit(name: str, axis: Axis) -> str:
     """First unit that the user typed for the values of an axis of the quantity `name`; the SI unit if no unit
-    was typed.
-    """
+    was typed."""
     units = [split_quantity(value)[1] for value in _written_values(axis.written) if isinstance(value, str)]
     return next(filter(None, units), UNITS[name][0])
 
@@ -160,24 +151,14 @@ def _quantity_schema() -> dict[str, Any]:
     """JSON schema of the values that `quantity_axis` accepts: axes of numbers or of texts with a unit."""
     item: dict[str, Any] = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     *_, values, span = AXIS_SCHEMA["anyOf"]
-    ends = {end: {"description": span["properties"][end]["description"], **item} for end in ("start", "stop")}
-    return {
-        "anyOf": [*item["anyOf"], values | {"items": item}, span | {"properties": span["properties"] | ends}]
-    }
+    properties = span["properties"]
+    ends = {end: {"description": properties[end]["description"], **item} for end in RANGE_ENDS}
+    quantity_range = span | {"properties": properties | ends}
+    return {"anyOf": [*item["anyOf"], values | {"items": item}, quantity_range]}
 
 
-DRAG_NAME_SCHEMA = {"enum": list(DRAG_NAMES)}
-"""JSON schema of the name of a drag estimate."""
+DRAG_LIST_SCHEMA = {"type": "array", "items": {"enum": list(DRAG_NAMES)}, "minItems": 1}
+"""JSON schema of a list of names of drag estimates."""
+DRAG_SCHEMA = {"anyOf": [{"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]}, DRAG_LIST_SCHEMA]}
 QuantityAxis = Annotated[Axis, BeforeValidator(quantity_axis), WithJsonSchema(_quantity_schema())]
-DragAxis = Annotated[
-    Axis,
-    BeforeValidator(drag_axis),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"enum": [DRAG_RANGE_NAME, *DRAG_NAMES]},
-                {"type": "array", "items": DRAG_NAME_SCHEMA, "minItems": 1},
-            ]
-        }
-    ),
-]
+DragAxis = Annotated[Axis, BeforeValidator(drag_axis), WithJsonSchema(DRAG_SCHEMA)]

@@ -198,10 +198,6 @@ class ArmConfig(StrictConfigSection):
         """Names of parameters that only cones have: ("taper",) for cones, else ()."""
         return () if self.tip_radius is None else ("taper",)
 
-    def grid_point_count(self, given_combinations: int) -> int:
-        """Number of points of a grid. given_combinations: number of combinations of the given parameters."""
-        return int(np.prod([float(axis.size) for axis in self.quantity_axes.values()])) * given_combinations
-
     @property
     def first_values(self) -> dict[str, float]:
         """First value of every given quantity, in SI units, by name."""

@@ -26,8 +26,7 @@ RUBBER_POISSON = 0.5
 
 def as_segments(value: Any) -> tuple[str, ...] | None:
     """Segments of a config value as texts; None if the value is None. Raises ValueError for an invalid list
-    of segments.
-    """
+    of segments."""
     if value is None:
         return None
     try:
@@ -38,8 +37,7 @@ def as_segments(value: Any) -> tuple[str, ...] | None:
 
 def with_length(section: dict[str, Any]) -> dict[str, Any]:
     """The keys and values `section` of an arm; if segments are given without `length`, their total length is
-    added.
-    """
+    added."""
     if section.get("segments") is None or section.get("length") is not None:
         return section
     texts = as_segments(section["segments"]) or ()
@@ -70,9 +68,7 @@ def build_of(arm: "ArmConfig") -> Build:
 
 
 def builds_of(arm: "ArmConfig") -> Iterator[Build]:
-    """Yields the constitutive law and profile of every arm to which the rod model applies. arm: config
-    section.
-    """
+    """Yields the constitutive law and profile of every arm to which the rod model applies."""
     for values in arm.values_of_arms():
         with suppress(ArmOutsideModel):
             yield arm.arm_of(values).build
@@ -80,8 +76,7 @@ def builds_of(arm: "ArmConfig") -> Iterator[Build]:
 
 def tapers_of(arm: "ArmConfig") -> set[float]:
     """All ratios of tip radius to base radius of the arms of a config section; {1.0} if no tip radius or no
-    base radius is given.
-    """
+    base radius is given."""
     if arm.tip_radius is None or arm.radius is None:
         return {1.0}
     pairs = product(arm.tip_radius.array().tolist(), arm.radius.array().tolist())
@@ -90,14 +85,10 @@ def tapers_of(arm: "ArmConfig") -> set[float]:
 
 def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> None:
     """Raises ValueError if an arm with segments has several lengths, or if `taper` is given for a cone or for
-    segments.
-
-    given_parameters: parameters given in addition to the arm, by name.
-    """
+    segments."""
     if arm.segments is not None and "length" in arm.varying_quantities:
-        raise ValueError(
-            "parameters.arm.length has several values, but the segments fix the length; leave it out"
-        )
+        problem = "parameters.arm.length has several values, but the segments fix the length"
+        raise ValueError(f"{problem}; leave it out")
     for name in SHAPE_KEYS:
         if getattr(arm, name) is not None and "taper" in given_parameters:
             raise ValueError(f"parameters.arm.{name} and parameters.taper are both given; give one of them")
@@ -105,8 +96,7 @@ def refuse_misused_shape(arm: "ArmConfig", given_parameters: dict[str, Any]) -> 
 
 def refuse_compressible(arm: "ArmConfig", section: str) -> None:
     """Raises ValueError if the cross-section `section` is "swelling" but a Poisson's ratio of the arm is not
-    0.5.
-    """
+    0.5."""
     ratios = [] if arm.poisson is None else arm.poisson.array().tolist()
     wrong = next((ratio for ratio in ratios if ratio != RUBBER_POISSON), None)
     if section == "swelling" and wrong is not None:
@@ -116,31 +106,20 @@ def refuse_compressible(arm: "ArmConfig", section: str) -> None:
         )
 
 
-_SEGMENT_SCHEMA = {
-    "anyOf": [
-        {"type": "string", "pattern": r"^[^:]+:.*radius"},
-        {
-            "type": "object",
-            "properties": {
-                name: {"anyOf": [{"type": "number"}, {"type": "string"}]} for name in SEGMENT_KEYS
-            },
-            "required": ["length", "radius"],
-            "additionalProperties": False,
-        },
-    ]
-}
+_QUANTITY_SCHEMA = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+_SEGMENT_SCHEMAS: list[dict[str, Any]] = [
+    {"type": "string", "pattern": r"^[^:]+:.*radius"},
+    {
+        "type": "object",
+        "properties": dict.fromkeys(SEGMENT_KEYS, _QUANTITY_SCHEMA),
+        "required": ["length", "radius"],
+        "additionalProperties": False,
+    },
+]
+_SEGMENT_LIST_SCHEMA = {"type": "array", "items": {"anyOf": _SEGMENT_SCHEMAS}, "minItems": 1}
+_SEGMENTS_SCHEMA = [_SEGMENT_LIST_SCHEMA | {"maxItems": MAX_SEGMENTS}, *_SEGMENT_SCHEMAS, {"type": "null"}]
 Segments = Annotated[
-    tuple[str, ...] | None,
-    BeforeValidator(as_segments),
-    WithJsonSchema(
-        {
-            "anyOf": [
-                {"type": "array", "items": _SEGMENT_SCHEMA, "minItems": 1, "maxItems": MAX_SEGMENTS},
-                *_SEGMENT_SCHEMA["anyOf"],
-                {"type": "null"},
-            ]
-        }
-    ),
+    tuple[str, ...] | None, BeforeValidator(as_segments), WithJsonSchema({"anyOf": _SEGMENTS_SCHEMA})
 ]
 SEGMENTS_ALLOWED = (
     f"a list of segments, each as '{EXAMPLE_SEGMENT}' or a mapping of {', '.join(SEGMENT_KEYS)}"

@@ -49,8 +49,7 @@ def require_arguments_of_signature(
 ) -> None:
     """Raises InputError for the first surplus, repeated, unknown or missing argument of a call.
 
-    allowed: signature of the function. example: correct call, for the message. values, named: positional and
-    keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
+    values, named: positional and keyword arguments of the call. hint: as in `refusing_wrong_arguments`.
     """
     parameters = list(allowed.parameters.values())
     positional = [p.name for p in parameters if p.kind is Parameter.POSITIONAL_OR_KEYWORD]
@@ -67,13 +66,9 @@ def require_arguments_of_signature(
                 raise InputError(f"unknown key {name}; {hint(name)}")
             raise unknown_argument_error(name, [word for word in names if word != "self"])
     given_names = {*positional[: len(values)], *named}
-    for parameter in parameters:
-        if (
-            parameter.name in names
-            and parameter.default is Parameter.empty
-            and parameter.name not in given_names
-        ):
-            raise InputError(f"{parameter.name} is missing; write it as in {example}")
+    for p in parameters:
+        if p.default is Parameter.empty and p.name in names and p.name not in given_names:
+            raise InputError(f"{p.name} is missing; write it as in {example}")
 
 
 def unknown_argument_error(name: str, names: list[str]) -> InputError:

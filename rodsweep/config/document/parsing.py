@@ -68,8 +68,7 @@ def read_config_text(path: Path) -> str:
 
 def parsed_yaml(text: str, source: str) -> Any:
     """Value of a YAML text, as nested dicts and lists; InputError if the text is not valid or not allowed.
-    source: name of the text, with which the message begins.
-    """
+    source: name of the text, with which the message begins."""
     if any(line.startswith("%") for line in text.splitlines()):
         raise InputError(f"{source}: directives (%...) are not allowed in a config")
     yaml = YAML(typ="safe", pure=True)
@@ -96,10 +95,8 @@ class _PlainDataParser(Parser):
     def get_event(self) -> Event:
         event = super().get_event()
         if getattr(event, "anchor", None):
-            symbol = "*" if isinstance(event, AliasEvent) else "&"
-            raise InputError(
-                f"anchors and aliases ({printable_name(symbol + event.anchor)}) are not allowed in a config"
-            )
+            text = printable_name(("*" if isinstance(event, AliasEvent) else "&") + event.anchor)
+            raise InputError(f"anchors and aliases ({text}) are not allowed in a config")
         if getattr(event, "tag", None):
             raise InputError(f"tags ({printable_name(event.tag)}) are not allowed in a config")
         if isinstance(event, ScalarEvent):
@@ -116,10 +113,8 @@ def _refuse_scalar(event: ScalarEvent) -> None:
     merge key (<<), and for a number too large for a float."""
     text = event.value
     if len(text) > MAX_TEXT_LENGTH:
-        raise InputError(
-            f"{short_repr(text)} has {len(text)} characters; a value of a config has at most "
-            f"{MAX_TEXT_LENGTH}"
-        )
+        limit = f"a value of a config has at most {MAX_TEXT_LENGTH}"
+        raise InputError(f"{short_repr(text)} has {len(text)} characters; {limit}")
     if not text.isprintable():
         raise InputError(f"{short_repr(text)} has characters that cannot be printed")
     if event.style is None and text == "<<":

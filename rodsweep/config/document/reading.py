@@ -8,6 +8,7 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 from ruamel.yaml import YAML
 
@@ -24,6 +25,8 @@ from ..values import printable_name, short_repr
 from .parsing import MAX_DEPTH, parsed_yaml, read_config_text
 from .refusals import MAX_KEY_LENGTH, dotted_key, message_of_problem, similar_keys
 
+ROUNDING_TOLERANCE = 1e-12
+"""Two values of an axis with at most this relative difference are equal within rounding."""
 MAX_HEADER_LENGTH = 10_000
 """Maximum number of characters of a CSV file's header. `read_points` refuses a file with a longer first
 line."""
@@ -52,8 +55,7 @@ def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, st
 
 def validated_config(tree: dict[str, Any]) -> Config:
     """Config from `tree`, nested dicts of keys and values; InputError, which states the first error, if
-    invalid.
-    """
+    invalid."""
     config = CONFIGS[_task_name(tree)]
     try:
         return config.model_validate(tree)
@@ -65,8 +67,7 @@ def validated_config(tree: dict[str, Any]) -> Config:
 
 def resolved_config(config: Config) -> dict[str, Any]:
     """The resolved config, as JSON values: with all defaults and with the axes computed from an arm; inf
-    becomes "inf".
-    """
+    becomes "inf"."""
     tree = config.model_dump(mode="json", exclude_none=True)
     if config.parameters.arm is not None:
         tree["parameters"] |= {name: axis.json_value for name, axis in config.parameters.axes.items()}
@@ -85,11 +86,8 @@ def config_from_resolved(config_dict: dict[str, Any]) -> Config:
             values = parameters | {"arm": _with_axes(parameters["arm"])}
             parameters = _without_arm_axes(values, makes_diagram(task))
         # An option that is not used must not be given, but every resolved config has its default.
-        options = {
-            name: _with_axes(value) if isinstance(value, dict) else value
-            for name, value in config_dict[task].items()
-            if name not in fields or value != fields[name].default
-        }
+        given = {n: v for n, v in config_dict[task].items() if n not in fields or v != fields[n].default}
+        options = {name: _with_axes(v) if isinstance(v, dict) else v for name, v in given.items()}
         return validated_config(config_dict | {"parameters": parameters, task: options})
     except (InputError, LookupError, TypeError, AttributeError) as error:
         raise ValueError(f"its config is not valid in this version of rodsweep: {error}") from None
@@ -104,21 +102,17 @@ def _with_axes(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _without_arm_axes(parameters: dict[str, Any], in_diagram: bool) -> dict[str, Any]:
-    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm.
-
-    in_diagram: whether the task is phase_diagram.
-    """
+    """Keys and values of `parameters` without the axes that `resolved_config` added from the arm."""
     arm = ArmConfig.model_validate(parameters["arm"])
     dimensionless = arm.dimensionless_axes() if in_diagram or arm.is_parameter_grid else {}
-    return {
-        name: value
-        for name, value in parameters.items()
-        if not (
-            name in dimensionless
-            and isinstance(value, Axis)
-            and value.equals_within_rounding(dimensionless[name])
-        )
-    }
+
+    def follows_from_arm(name: str, value: Any) -> bool:
+        axis = dimensionless.get(name)
+        if axis is None or not isinstance(value, Axis) or axis.size != value.size:
+            return False
+        return np.allclose(value.array(), axis.array(), rtol=ROUNDING_TOLERANCE, atol=0)
+
+    return {name: value for name, value in parameters.items() if not follows_from_arm(name, value)}
 
 
 def tree_yaml(tree: dict[str, Any]) -> str:
@@ -134,20 +128,17 @@ def config_yaml(config: Config) -> str:
     """YAML text of a config, with only the keys that differ from their defaults."""
     values = config.model_dump(mode="json", exclude_defaults=True, exclude_none=True)
     axes = {name: _config_notation(value) for name, value in values["parameters"].items()}
-    options = {
-        name: {key: _config_notation(axis) for key, axis in value.items()}
-        if isinstance(value, dict)
-        else value
-        for name, value in values.get(config.task, {}).items()
-    }
+    options = values.get(config.task, {})
+    for name, axes_of_option in options.items():
+        if isinstance(axes_of_option, dict):
+            options[name] = {key: _config_notation(axis) for key, axis in axes_of_option.items()}
     task_section = {config.task: options} if options else {}
     return tree_yaml({"task": config.task} | values | {"parameters": axes} | task_section)
 
 
 def _config_notation(axis: Any) -> Any:
     """An axis in the notation of a config file (a number, a list or a range); for an arm, a mapping of the
-    quantities to this notation. Other values are returned unchanged. axis: resolved.
-    """
+    quantities to this notation. Other values are returned unchanged. axis: resolved."""
     if not isinstance(axis, dict):
         return axis
     if "length" in axis:
@@ -159,8 +150,7 @@ def _config_notation(axis: Any) -> Any:
 
 def _apply_override(tree: dict, override: str) -> None:
     """Sets a key of the parsed config `tree`, in place. override: text "a.b=value" of one --set, with a YAML
-    value. Raises InputError if the override is invalid.
-    """
+    value. Raises InputError if the override is invalid."""
     where = printable_name(f"--set {override}", MAX_KEY_LENGTH)
     if not override.isprintable():
         raise InputError(f"{where} has characters that cannot be printed")
@@ -187,11 +177,9 @@ def _task_name(tree: dict) -> str:
     tasks_text = enumeration(tuple(CONFIGS), "or")
     if "task" not in tree:
         others = [name for name in tree if isinstance(name, str) and name not in Config.model_fields]
-        similar = similar_keys("task", others)
-        if similar:
-            raise InputError(
-                f"unknown key {dotted_key(similar)}; did you mean task? Its value should be {tasks_text}"
-            )
+        if similar := similar_keys("task", others):
+            key = dotted_key(similar)
+            raise InputError(f"unknown key {key}; did you mean task? Its value should be {tasks_text}")
         raise InputError(f"task is missing; it should be {tasks_text}")
     task = tree["task"]
     if not isinstance(task, str) or task not in CONFIGS:
@@ -217,8 +205,7 @@ def with_file_contents(tree: Any, directory: Path) -> Any:
 
 def _with_optional_columns(tree: Any, directory: Path) -> Any:
     """The parsed config `tree`, with `parameters.columns` added if the file of points has optional
-    parameters.
-    """
+    parameters."""
     parameters = tree.get("parameters") if isinstance(tree, dict) else None
     if not isinstance(parameters, dict) or not isinstance(parameters.get("points"), str):
         return tree

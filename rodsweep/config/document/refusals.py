@@ -28,8 +28,7 @@ MIN_SUBSTRING_LENGTH = 4
 
 def message_of_problem(config: type[Config], problem: Any) -> str:
     """Message for an error of pydantic: a sentence with key, value and allowed values. problem: one item of
-    `ValidationError.errors()`.
-    """
+    `ValidationError.errors()`."""
     location = tuple(part for part in problem["loc"] if isinstance(part, str))
     numbers = [f", number {part + 1}" for part in problem["loc"] if isinstance(part, int)]
     key = dotted_key(location) + "".join(numbers)
@@ -56,14 +55,12 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
 
 def unknown_key_hint(key: str, allowed: Sequence[str], start: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
-    start: beginning of the list. For a diameter, the hint is to give the radius.
-    """
+    start: beginning of the list. For a diameter, the hint is to give the radius."""
     if radius := radius_of_diameter(key, allowed):
         return f"give {radius}, half of it"
-    similar = similar_keys(key, allowed)
-    return (
-        f"did you mean {enumeration(tuple(similar), 'or')}?" if similar else f"{start} {', '.join(allowed)}"
-    )
+    if similar := similar_keys(key, allowed):
+        return f"did you mean {enumeration(tuple(similar), 'or')}?"
+    return f"{start} {', '.join(allowed)}"
 
 
 def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
@@ -74,18 +71,10 @@ def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:
     substring of MIN_SUBSTRING_LENGTH or more letters of the known key, or has at most one typing error in
     LETTERS_PER_TYPING_ERROR letters.
     """
-    candidates = [
-        (errors, name)
-        for name in allowed
-        if (
-            errors := _typing_error_count(
-                _without_case_and_underscores(key), _without_case_and_underscores(name)
-            )
-        )
-        is not None
-    ]
-    fewest = min((errors for errors, _ in candidates), default=0)
-    nearest_ones = [name for errors, name in candidates if errors == fewest]
+    plain_key = _without_case_and_underscores(key)
+    counts = {name: _typing_error_count(plain_key, _without_case_and_underscores(name)) for name in allowed}
+    fewest = min((count for count in counts.values() if count is not None), default=0)
+    nearest_ones = [name for name in allowed if counts[name] == fewest]
     return nearest_ones if key and len(nearest_ones) <= MAX_SUGGESTIONS else []
 
 
@@ -95,8 +84,7 @@ def _without_case_and_underscores(key: str) -> str:
 
 def _typing_error_count(key: str, name: str) -> float | None:
     """Number of typing errors in `key` if `name` was meant, 0.5 for a substring; None if the two are not
-    similar.
-    """
+    similar."""
     if key == name:
         return 0
     if name.startswith(key) or (len(key) >= MIN_SUBSTRING_LENGTH and key in name):
@@ -110,8 +98,7 @@ def _typing_error_count(key: str, name: str) -> float | None:
 
 def _edit_distance(first: str, second: str) -> int:
     """Edit distance of the words `first` and `second`: number of inserted, deleted, changed and exchanged
-    neighbouring letters.
-    """
+    neighbouring letters."""
     rows = [list(range(len(second) + 1))]
     for i, letter in enumerate(first, 1):
         row = [i]
@@ -126,8 +113,7 @@ def _edit_distance(first: str, second: str) -> int:
 
 def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> list[str]:
     """Full names, like "parameters.F", of the known keys in other sections whose name is the last name of
-    `location`.
-    """
+    `location`."""
     task = str(get_args(config.model_fields["task"].annotation)[0])
     keys = []
     for section in ((), ("parameters",), (task,), ("material",), ("parameters", "arm")):
@@ -138,15 +124,13 @@ def keys_in_other_sections(config: type[Config], location: Sequence[str]) -> lis
 
 def dotted_key(location: Sequence[str]) -> str:
     """Full name of a key, like "parameters.F.num", from the names of its sections and its own name; shortened
-    to MAX_KEY_LENGTH characters. location: these names.
-    """
+    to MAX_KEY_LENGTH characters. location: these names."""
     return printable_name(".".join(location), MAX_KEY_LENGTH)
 
 
 def _section_class(config: type[Config], location: tuple[str, ...]) -> type[BaseModel]:
     """Class of the config's section that is reached through the keys in `location`; the last section on the
-    way if a key is not a section.
-    """
+    way if a key is not a section."""
     section: type[BaseModel] = config
     for name in location:
         kind = value_type_of_key(section.model_fields[name])
@@ -164,8 +148,7 @@ def value_type_of_key(field: FieldInfo) -> Any:
 
 def allowed_values_text(field: FieldInfo) -> str:
     """Phrase that describes the allowed values of a config key: its description, otherwise made from its type
-    and bounds.
-    """
+    and bounds."""
     kind = field.annotation
     bounds = ("ge", "gt", "le", "lt", "max_length")
     bound = {name: getattr(rule, name) for rule in field.metadata for name in bounds if hasattr(rule, name)}

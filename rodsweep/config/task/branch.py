@@ -86,8 +86,7 @@ class BranchConfig(Config):
     @classmethod
     def _without_default_of_followed(cls, section: Any) -> Any:
         """Returns the config without the default of the followed parameter, so that only a value given by the
-        user is refused.
-        """
+        user is refused."""
         sections = section if isinstance(section, dict) else {}
         options = sections.get("branch")
         parameters = sections.get("parameters")

@@ -20,8 +20,7 @@ from ..values import Number, StrictConfigSection
 
 class BautinAlong(LinearAxes):
     """The option bautin_along: a third parameter and its values, along which generalised Hopf points are
-    followed.
-    """
+    followed."""
 
 
 class PhaseDiagramOptions(StrictConfigSection):
@@ -52,8 +51,7 @@ class PhaseDiagramOptions(StrictConfigSection):
     @property
     def bautin_parameter(self) -> tuple[str, Axis] | None:
         """Returns (name, values) of the third parameter, in `bautin_along`; None if `bautin_along` is not
-        given.
-        """
+        given."""
         axes = [(name, getattr(self.bautin_along, name, None)) for name in TRANSVERSE_PARAMETERS]
         return next(((name, axis) for name, axis in axes if axis is not None), None)
 
@@ -76,8 +74,7 @@ class PhaseDiagramOptions(StrictConfigSection):
 
 class PhaseDiagramConfig(LinearConfig):
     """The task phase_diagram finds the states of the rod over two parameters, row by row; the first parameter
-    varies along a row.
-    """
+    varies along a row."""
 
     task: Literal["phase_diagram"]
     parameters: DiagramParametersSection
@@ -102,8 +99,7 @@ class PhaseDiagramConfig(LinearConfig):
     @property
     def gamma1(self) -> float:
         """Axial drag for criticality and cycles: the given value, else the value of the arm, else the
-        default.
-        """
+        default."""
         if "gamma1" in self.parameters.constant_parameters:
             return self.parameters.constant_parameters["gamma1"]
         if self.parameters.arm is not None:
@@ -117,8 +113,7 @@ class PhaseDiagramConfig(LinearConfig):
     @property
     def settings_of_results(self) -> dict[str, Any]:
         """`Config.settings_of_results`, with the parameter values along a row and, for boundary curves, the
-        names of the logarithmic axes.
-        """
+        names of the logarithmic axes."""
         settings = super().settings_of_results
         axes = self.parameters.axes
         line = self.plane_parameters[0]

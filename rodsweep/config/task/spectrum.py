@@ -61,8 +61,7 @@ class SpectrumConfig(LinearConfig):
     @property
     def follows_eigenvalues(self) -> bool:
         """Whether eigenvalues are followed along an axis: only on grids, with certified spectra and without
-        eigenvectors.
-        """
+        eigenvectors."""
         return self.spectrum.follow and self._could_follow
 
     @property

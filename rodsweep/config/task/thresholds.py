@@ -26,8 +26,7 @@ class ThresholdsOptions(StrictConfigSection):
 
 class ThresholdsConfig(LinearConfig):
     """The task thresholds finds the forces at which the number of unstable eigenvalues of a rod, or the kind
-    of its leading eigenvalue, changes.
-    """
+    of its leading eigenvalue, changes."""
 
     task: Literal["thresholds"]
     thresholds: ThresholdsOptions = ThresholdsOptions()

@@ -23,44 +23,26 @@ STABILITY_DASHES = {1: "solid", 0: "dashed", -1: "dotted"}
 
 class BranchPicture:
     """Branches of cycles and of the straight rod against the load. Filled marks are Hopf points, folds and
-    torus points.
-    """
+    torus points."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "force F (k3/L^2)", "largest tip deflection (L)", x_range=Range1d(0, 1), y_range=Range1d(-0.05, 1)
-        )
+        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-0.05, 1)}
+        figure = card.new_figure("force F (k3/L^2)", "largest tip deflection (L)", **ranges)
         self.branch_source = card.empty_source(("F", "y", "colour", "dash"), "branch_source")
         self.cycle_source = card.empty_source(("F", "y", "colour"), "stored_cycle_source")
         self.special_point_source = card.empty_source(("F", "y", "kind", "period"), "special_source")
         figure.multi_line(
-            "F", "y", line_width=2.5, color="colour", line_dash="dash", source=self.branch_source
-        )  # fmt: skip
+            "F", "y", color="colour", line_dash="dash", line_width=2.5, source=self.branch_source
+        )
         figure.scatter("F", "y", size=5, color="colour", source=self.cycle_source)
-        special_glyphs = figure.scatter(
-            "F",
-            "y",
-            size=9,
-            color=card.NEUTRAL_COLOUR,
-            line_color=card.POINT_COLOUR,
-            source=self.special_point_source,
-        )
-        figure.add_tools(
-            HoverTool(
-                renderers=[special_glyphs],
-                tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")],
-            )
-        )
-        keys = [
-            figure.line(
-                [nan], [nan], color=STABILITY_COLOURS[k], line_dash=STABILITY_DASHES[k], line_width=2.5
-            )
-            for k in (1, 0)
-        ]
-        legend_items = [
-            LegendItem(label=text, renderers=[key])
-            for text, key in zip(("stable", "unstable"), keys, strict=True)
-        ]
+        colours = {"color": card.NEUTRAL_COLOUR, "line_color": card.POINT_COLOUR}
+        special_glyphs = figure.scatter("F", "y", size=9, **colours, source=self.special_point_source)
+        tooltips = [("", "@kind"), ("load", "@F{0.0000000}"), ("period", "@period{0.00000000}")]
+        figure.add_tools(HoverTool(renderers=[special_glyphs], tooltips=tooltips))
+        legend_items = []
+        for text, k in (("stable", 1), ("unstable", 0)):
+            look = {"color": STABILITY_COLOURS[k], "line_dash": STABILITY_DASHES[k], "line_width": 2.5}
+            legend_items.append(LegendItem(label=text, renderers=[figure.line([nan], [nan], **look)]))
         figure.add_layout(Legend(items=legend_items, location="top_left"))
         self.load_line = card.vertical_line(0, card.POINT_COLOUR)
         figure.add_layout(self.load_line)
@@ -69,9 +51,7 @@ class BranchPicture:
 
     def show(self, answer: dict[str, Any], load: PictureAxis, length: PictureAxis) -> None:
         """Draws the branches of the answer `answer`, with separately solved cycles as dots; the title is the
-        meaning of the status if the task did not succeed, else the source of the answer. load: horizontal
-        axis. length: vertical axis.
-        """
+        meaning of the status if the task did not succeed, else the source of the answer."""
         pieces = answer["pieces"]
         self.branch_source.data = {
             "F": [forces * load.factor for forces, _, _ in pieces],
@@ -94,12 +74,9 @@ class BranchPicture:
             self.card.figure.xaxis.axis_label = load.label
             self.card.figure.yaxis.axis_label = f"largest tip deflection ({length.label})"
         special_points = [(F * load.factor, y * length.factor, *texts) for F, y, *texts in answer["special"]]
-        names = ("F", "y", "kind", "period")
-        self.special_point_source.data = {
-            name: [row[i] for row in special_points] for i, name in enumerate(names)
-        }
-        title = answer["sentence"] if answer["status"] != "ok" else answer.get("source", "")
-        self.card.set_title(title)
+        names = enumerate(("F", "y", "kind", "period"))
+        self.special_point_source.data = {name: [row[i] for row in special_points] for i, name in names}
+        self.card.set_title(answer["sentence"] if answer["status"] != "ok" else answer.get("source", ""))
         self.card.show_figure()
 
     def move_load_line(self, F: float) -> None:

@@ -37,8 +37,7 @@ FIGURE_HEIGHT = 300
 
 def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any) -> figure:
     """Empty Bokeh figure with the page's style, as wide as a column of the page. x_label, y_label: labels of
-    the axes. tooltips, options: keywords of Bokeh's `figure`.
-    """
+    the axes. tooltips, options: keywords of Bokeh's `figure`."""
     plot = figure(
         height=FIGURE_HEIGHT, sizing_mode="stretch_width", tools="pan,wheel_zoom,box_zoom,reset,save",
         x_axis_label=x_label, y_axis_label=y_label, tooltips=tooltips, **options,
@@ -57,28 +56,25 @@ def new_figure(x_label: str, y_label: str, tooltips: Any = None, **options: Any)
 
 def vertical_line(position: float, colour: str, dash: str = "solid") -> Span:
     """Vertical line at x = `position` over the whole height of a figure. When the line moves, Bokeh redraws
-    only the top canvas. dash: line style.
-    """
+    only the top canvas."""
     look: dict[str, Any] = {"line_color": colour, "line_dash": dash, "line_width": 1.5}
     return Span(location=position, dimension="height", level="overlay", **look)
 
 
 def empty_source(names: Sequence[str], name: str | None = None) -> ColumnDataSource:
-    """Bokeh data source with the empty columns `names`. name: name of the source."""
+    """Bokeh data source with the empty columns `names`."""
     return ColumnDataSource({column: [] for column in names}, name=name)
 
 
 def source_columns(**arrays: Array) -> dict[str, list[Any]]:
     """Columns of a Bokeh data source, as lists by name. Bokeh would send each array in two separate
-    messages.
-    """
+    messages."""
     return {name: array.tolist() for name, array in arrays.items()}
 
 
 def axis_limits(values: Array, margin: float = 0.08) -> tuple[float, float]:
     """(lower, upper) limit of an axis for `values`, (n,): their range, widened at both ends by the fraction
-    `margin`; (-1, 1) for an empty array.
-    """
+    `margin`; (-1, 1) for an empty array."""
     if len(values) == 0:
         return -1.0, 1.0
     low = float(values.min())
@@ -103,8 +99,7 @@ class Card:
 
     def __init__(self, name: str, figure: figure, title_lines: int = 1):
         """name: prefix of the names of the Bokeh models. title_lines: number of lines reserved for the title;
-        further lines are cut until the browser lays out the figure again.
-        """
+        further lines are cut until the browser lays out the figure again."""
         self.figure = figure
         self.title_lines = title_lines
         figure.name = f"{name}_figure"
@@ -137,7 +132,6 @@ class Card:
 
     def _set_axes_opacity(self, alpha: float) -> None:
         """Makes the axes transparent or opaque. Removing and adding axes instead would move the frame and
-        leave parts of an earlier title. alpha: opacity, 0 or 1.
-        """
+        leave parts of an earlier title. alpha: opacity, 0 or 1."""
         for axis in self.figure.axis:
             axis.update(**dict.fromkeys(AXIS_ALPHAS, alpha))

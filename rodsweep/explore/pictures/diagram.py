@@ -1,7 +1,7 @@
 """Picture of the stability diagram over the load and a second parameter. A click selects new values of the
-two parameters.
-"""
+two parameters."""
 
+from collections.abc import Iterable
 from itertools import groupby
 from math import nan
 from typing import Any, NamedTuple
@@ -29,8 +29,7 @@ DARKEST_COUNT = 6
 
 class DiagramCell(NamedTuple):
     """Rectangle around neighbouring grid points of a row that have equal numbers of unstable modes. left,
-    right, bottom, top: edges, in the units of the axes.
-    """
+    right, bottom, top: edges, in the units of the axes."""
 
     left: float
     right: float
@@ -41,8 +40,7 @@ class DiagramCell(NamedTuple):
 
 def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around n increasing positive values, (n,): the geometric means of
-    neighbouring values, and an edge beyond each end.
-    """
+    neighbouring values, and an edge beyond each end."""
     logs = np.log(values)
     if len(logs) == 1:
         return np.exp(logs[0] + np.array([-0.1, 0.1]))
@@ -52,15 +50,13 @@ def cell_edges(values: Array) -> Array:
 
 def diagram_cells(x: Array, y: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes on a grid. x: loads, (columns,). y: second parameter,
-    (rows,). counts: numbers of unstable modes, (rows, columns).
-    """
+    (rows,). counts: numbers of unstable modes, (rows, columns)."""
     return joined_cells(np.concatenate(([x[0]], (x[1:] + x[:-1]) / 2, [x[-1]])), cell_edges(y), counts)
 
 
 def joined_cells(edges: Array, row_edges: Array, counts: Array) -> list[DiagramCell]:
     """Rectangles of equal numbers of unstable modes in rows of cells. edges: edges of the columns, (columns +
-    1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
-    """
+    1,). row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns)."""
     cells = []
     for row, line in enumerate(counts):
         start = 0
@@ -75,11 +71,9 @@ def stability_colour(count: int) -> tuple[str, float]:
     """(colour, opacity) for a number of unstable modes, or for CRUSHED_COUNT or UNKNOWN_COUNT."""
     if count in (CRUSHED_COUNT, UNKNOWN_COUNT):
         return card.NEUTRAL_COLOUR, 0.55 if count == CRUSHED_COUNT else 0.25
-    return (
-        (card.STABLE_COLOUR, 0.18)
-        if count == 0
-        else (card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT)
-    )
+    if count == 0:
+        return card.STABLE_COLOUR, 0.18
+    return card.UNSTABLE_COLOUR, 0.2 + 0.5 * min(count, DARKEST_COUNT) / DARKEST_COUNT
 
 
 def unstable_count_words(count: int) -> str:
@@ -90,30 +84,25 @@ def unstable_count_words(count: int) -> str:
 
 class DiagramPicture:
     """Stability of the straight rod over two parameters. Blue: stable. Orange: flutter, darker for more
-    unstable modes. Grey: crushed, or not known.
-    """
+    unstable modes. Grey: crushed, or not known."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "force F (k3/L^2)", "k2", y_axis_type="log",
-            x_range=Range1d(0, 1), y_range=Range1d(0.1, 1),
-        )  # fmt: skip
+        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(0.1, 1)}
+        figure = card.new_figure("force F (k3/L^2)", "k2", y_axis_type="log", **ranges)
         self.cell_source = card.empty_source(
-            ("left", "right", "bottom", "top", "unstable", "words", "colour", "alpha"), "cell_source"
+            (*DiagramCell._fields, "words", "colour", "alpha"), "cell_source"
         )
         self.curve_source = card.empty_source(("x", "y", "colour"), "curve_source")
         self.cycle_curve_source = card.empty_source(("x", "y", "colour", "dash"), "cycle_curve_source")
         self.crossing_source = card.empty_source(("x", "y", "colour"), "crossing_source")
         self.point_source = card.empty_source(("x", "y"), "point_source")
-        areas = figure.quad(
-            left="left", right="right", bottom="bottom", top="top", color="colour", alpha="alpha",
-            line_width=0, source=self.cell_source,
-        )  # fmt: skip
+        look = {"color": "colour", "alpha": "alpha", "line_width": 0}
+        edges = {name: name for name in ("left", "right", "bottom", "top")}
+        areas = figure.quad(**edges, **look, source=self.cell_source)
         figure.add_tools(HoverTool(renderers=[areas], tooltips=[("", "@words")]))
         figure.multi_line("x", "y", color="colour", line_width=2, source=self.curve_source)
-        figure.multi_line(
-            "x", "y", color="colour", line_dash="dash", line_width=3, source=self.cycle_curve_source
-        )  # fmt: skip
+        look = {"color": "colour", "line_dash": "dash", "line_width": 3}
+        figure.multi_line("x", "y", **look, source=self.cycle_curve_source)
         keys = [
             LegendItem(label=text, renderers=[figure.line([nan], [nan], color=c, line_dash=d, line_width=3)])
             for text, c, d in CYCLE_CURVE_LOOKS.values()
@@ -121,16 +110,8 @@ class DiagramPicture:
         self.legend = Legend(items=keys, location="top_left", visible=False)
         figure.add_layout(self.legend)
         figure.scatter("x", "y", size=6, color="colour", source=self.crossing_source)
-        figure.scatter(
-            "x",
-            "y",
-            marker="cross",
-            size=22,
-            line_width=3,
-            color=card.POINT_COLOUR,
-            source=self.point_source,
-            level="overlay",
-        )
+        look = {"marker": "cross", "size": 22, "line_width": 3, "color": card.POINT_COLOUR}
+        figure.scatter("x", "y", **look, source=self.point_source, level="overlay")
         self.card = card.Card("diagram", figure)
 
     @property
@@ -140,30 +121,23 @@ class DiagramPicture:
 
     def show(self, answer: dict[str, Any], load: ControlScale, row_scale: ControlScale) -> None:
         """Draws the answer `answer` to the request "diagram". load, row_scale: scales of the controls whose
-        units the axes have.
-        """
+        units the axes have."""
         x = answer["x"] * load.factor
         y = answer["y"] * row_scale.factor
         regions = region_table(answer)
-        grid = (
-            diagram_cells(x, y, answer["unstable_count"])
-            if regions is None
-            else joined_cells(
-                regions.column_edges * load.factor, regions.row_edges * row_scale.factor, regions.counts
-            )
-        )
+        if regions is None:
+            grid = diagram_cells(x, y, answer["unstable_count"])
+        else:
+            edges = (regions.column_edges * load.factor, regions.row_edges * row_scale.factor)
+            grid = joined_cells(*edges, regions.counts)
         data = {name: [getattr(cell, name) for cell in grid] for name in DiagramCell._fields}
         shades = [stability_colour(cell.unstable) for cell in grid]
         data["words"] = [unstable_count_words(cell.unstable) for cell in grid]
         data |= {"colour": [colour for colour, _ in shades], "alpha": [alpha for _, alpha in shades]}
         self.cell_source.data = data
         self._show_curves(answer)
-        kinds = answer["crossing_kind"]
-        self.crossing_source.data = {
-            "x": answer["crossing_x"] * load.factor,
-            "y": answer["crossing_y"] * row_scale.factor,
-            "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
-        }
+        positions = (answer["crossing_x"] * load.factor, answer["crossing_y"] * row_scale.factor)
+        self.crossing_source.data = _boundary_columns(*positions, answer["crossing_kind"])
         figure = self.card.figure
         card.set_axis_range(figure.x_range, float(x[0]), float(x[-1]))
         card.set_axis_range(figure.y_range, float(grid[0].bottom), float(grid[-1].top))
@@ -172,20 +146,10 @@ class DiagramPicture:
         self.card.show_figure()
 
     def _show_curves(self, answer: dict[str, Any]) -> None:
-        x, y, kinds = _curves_of_answer(answer, "curve")
-        self.curve_source.data = {
-            "x": x,
-            "y": y,
-            "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds],
-        }
+        self.curve_source.data = _boundary_columns(*_curves_of_answer(answer, "curve"))
         x, y, kinds = _curves_of_answer(answer, "cycle_curve")
-        curve_looks = [CYCLE_CURVE_LOOKS[kind] for kind in kinds]
-        self.cycle_curve_source.data = {
-            "x": x,
-            "y": y,
-            "colour": [colour for _, colour, _ in curve_looks],
-            "dash": [dash for *_, dash in curve_looks],
-        }
+        colours, dashes = ([CYCLE_CURVE_LOOKS[kind][i] for kind in kinds] for i in (1, 2))
+        self.cycle_curve_source.data = {"x": x, "y": y, "colour": colours, "dash": dashes}
         self.legend.visible = len(kinds) > 0
 
     def move_point(self, x: float, y: float) -> None:
@@ -193,10 +157,14 @@ class DiagramPicture:
         self.point_source.data = {"x": [x], "y": [y]}
 
 
+def _boundary_columns(x: Any, y: Any, kinds: Iterable[str]) -> dict[str, Any]:
+    """Columns of curves or crossings with the colours of their kinds."""
+    return {"x": x, "y": y, "colour": [BOUNDARY_COLOURS.get(kind, card.STABLE_COLOUR) for kind in kinds]}
+
+
 def _curves_of_answer(answer: dict[str, Any], name: str) -> tuple[list[Array], list[Array], list[str]]:
     """Returns (x, y, kinds), lists with one entry per curve of the answer `answer`. x, y: arrays, (points,).
-    name: prefix of the curves' variables, such as "curve".
-    """
+    name: prefix of the curves' variables, such as "curve"."""
     numbers = np.asarray(answer[f"{name}_number"])
     lines = [np.flatnonzero(numbers == number) for number in np.unique(numbers)]
     x, y = ([answer[f"{name}_{axis}"][line] for line in lines] for axis in "xy")

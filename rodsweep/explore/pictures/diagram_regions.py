@@ -1,6 +1,5 @@
 """Regions of the stability diagram of the page: areas of equal numbers of unstable modes, bounded by the
-stored curves of Hopf points and by the crushing load as in the figures of `rodsweep plot`.
-"""
+stored curves of Hopf points and by the crushing load as in the figures of `rodsweep plot`."""
 
 from typing import Any, NamedTuple
 
@@ -17,8 +16,7 @@ PIXELS_PER_ROW = 2
 
 class RegionTable(NamedTuple):
     """Numbers of unstable modes in narrow rows of cells. column_edges: edges of the columns, (columns + 1,).
-    row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns).
-    """
+    row_edges: edges of the rows, (rows + 1,). counts: numbers of unstable modes, (rows, columns)."""
 
     column_edges: Array
     row_edges: Array
@@ -27,8 +25,7 @@ class RegionTable(NamedTuple):
 
 def region_table(answer: dict[str, Any]) -> RegionTable | None:
     """Regions of the answer `answer` to the request "diagram", in its units. None if the answer has no curve
-    of Hopf points, or fewer than two finite positive values of the second parameter.
-    """
+    of Hopf points, or fewer than two finite positive values of the second parameter."""
     x = answer["x"]
     y = answer["y"]
     is_hopf = np.asarray(answer["curve_kind"], dtype=object) == "hopf"
@@ -62,8 +59,7 @@ def region_table(answer: dict[str, Any]) -> RegionTable | None:
 def _crushing_ratio(plane: DrawnPlane, logs: Array, load: Array) -> Array:
     """Load divided by the crushing load (zero stretch), at every pixel, (PIXEL_COUNT, PIXEL_COUNT). logs:
     logarithms of the second parameter, (rows,). load: crushing load of each row, infinite on no row or on all
-    rows, (rows,).
-    """
+    rows, (rows,)."""
     if np.isinf(load).all():
         return np.zeros((PIXEL_COUNT, PIXEL_COUNT))
     # With two logarithmic axes the crushing load is a straight line over k1, and over the taper.

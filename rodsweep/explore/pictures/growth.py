@@ -26,35 +26,22 @@ THRESHOLD_LOOKS = {
 
 class GrowthPicture:
     """Growth rates of the leading modes against the load. Dotted vertical lines mark thresholds; the thick
-    vertical line marks the load of the page.
-    """
+    vertical line marks the load of the page."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "force F (k3/L^2)", "growth rate (1/tau2)", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
-        )
+        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-1, 1)}
+        figure = card.new_figure("force F (k3/L^2)", "growth rate (1/tau2)", **ranges)
         self.rate_source = card.empty_source(("F", "first", "second", "third"), "growth_source")
         self.threshold_source = card.empty_source(("F", "kind", "colour", "frequency"), "threshold_source")
-        for name, width in (("third", 1), ("second", 1), ("first", 2.5)):
-            figure.line(
-                "F",
-                name,
-                line_width=width,
-                color=card.NEUTRAL_COLOUR if width == 1 else card.STABLE_COLOUR,
-                source=self.rate_source,
-            )
-        spans = figure.vspan(
-            x="F", line_color="colour", line_width=2, line_dash="dotted", source=self.threshold_source
-        )
-        figure.add_tools(
-            HoverTool(
-                renderers=[spans],
-                tooltips=[("", "@kind"), ("load", "@F{0.0000000}"), ("frequency", "@frequency{0.000000}")],
-            )
-        )
-        figure.add_layout(
-            Span(location=0, dimension="width", line_color=card.NEUTRAL_COLOUR, line_dash="dashed")
-        )
+        for name in ("third", "second"):
+            figure.line("F", name, line_width=1, color=card.NEUTRAL_COLOUR, source=self.rate_source)
+        figure.line("F", "first", line_width=2.5, color=card.STABLE_COLOUR, source=self.rate_source)
+        look = {"line_color": "colour", "line_width": 2, "line_dash": "dotted"}
+        spans = figure.vspan(x="F", **look, source=self.threshold_source)
+        tooltips = [("", "@kind"), ("load", "@F{0.0000000}"), ("frequency", "@frequency{0.000000}")]
+        figure.add_tools(HoverTool(renderers=[spans], tooltips=tooltips))
+        look = {"line_color": card.NEUTRAL_COLOUR, "line_dash": "dashed"}
+        figure.add_layout(Span(location=0, dimension="width", **look))
         self.load_line = card.vertical_line(0, card.POINT_COLOUR)
         self.load_line.line_width = 3
         figure.add_layout(self.load_line)
@@ -62,17 +49,12 @@ class GrowthPicture:
         self.card.set_title("")
 
     def show_rates(self, answer: dict[str, Any], load: PictureAxis) -> None:
-        """Draws the growth rates of the answer `answer`. load: horizontal axis."""
-        rates = answer["growth_rate"]
-        names = ("first", "second", "third")
+        """Draws the growth rates of the answer `answer`."""
+        first, second, third = answer["growth_rate"][:, :3].T
         F = answer["F"] * load.factor
-        self.rate_source.data = card.source_columns(
-            F=F, **{name: rates[:, i] for i, name in enumerate(names)}
-        )
-        leading = rates[:, 0]
-        card.set_axis_range(
-            self.card.figure.y_range, *card.axis_limits(np.append(leading[np.isfinite(leading)], 0.0))
-        )
+        self.rate_source.data = card.source_columns(F=F, first=first, second=second, third=third)
+        limits = card.axis_limits(np.append(first[np.isfinite(first)], 0.0))
+        card.set_axis_range(self.card.figure.y_range, *limits)
         card.set_axis_range(self.card.figure.x_range, F[0], F[-1])
         self.card.figure.xaxis.axis_label = load.label
         self.card.figure.yaxis.axis_label = f"growth rate ({answer['unit']})"
@@ -80,8 +62,7 @@ class GrowthPicture:
 
     def show_thresholds(self, answer: dict[str, Any], load: PictureAxis) -> None:
         """Draws the thresholds of the answer `answer`, and writes the first threshold of each kind into the
-        title. load: horizontal axis.
-        """
+        title."""
         frequencies = answer.get(SI_NAMES["crossing_frequency"], answer["crossing_frequency"])
         rows = [
             (F * load.factor, *THRESHOLD_LOOKS[kind], frequency)

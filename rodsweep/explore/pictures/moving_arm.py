@@ -1,6 +1,5 @@
 """Picture of the arm: its limit cycle, its shape while the user drags the tip, and its motion after the
-release. The browser animates the solved shapes.
-"""
+release. The browser animates the solved shapes."""
 
 from collections.abc import Callable
 from typing import Any
@@ -34,8 +33,7 @@ class MovingArmPicture:
     """Animated picture of the arm with the path of its tip; one period of a cycle takes `PERIOD_SECONDS`. The
     attributes `..._source` are Bokeh data sources: `shapes` of the cycle, `motion` after a release, `reached`
     shapes of the cycle that the motion approaches, the drawn `arm`, the `bent` arm that the user drags, the
-    `path` of the tip, the position of the mouse (`grip`).
-    """
+    `path` of the tip, the position of the mouse (`grip`)."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -73,8 +71,7 @@ class MovingArmPicture:
 
     def animation_script(self) -> CustomJS:
         """Browser script that animates the arm; the page runs this script once, when the document is
-        ready.
-        """
+        ready."""
         names = ("shapes", "motion", "reached", "arm", "bent")
         sources: dict[str, Any] = {name: getattr(self, f"{name}_source") for name in names}
         variables = {"period": PERIOD_SECONDS, "figure": self.card.figure, "colour": card.STABLE_COLOUR}
@@ -82,8 +79,7 @@ class MovingArmPicture:
 
     def on_drag(self, drag: Callable[[str, TipPosition], None]) -> None:
         """Registers the callback `drag(kind, tip)`, called when the user drags or releases the tip. kind:
-        "bent" or "motion". tip: position of the tip, in L.
-        """
+        "bent" or "motion". tip: position of the tip, in L."""
 
         def dragged(attribute: str, previous: Any, data: dict[str, list[Any]]) -> None:
             if len(data["x"]) == 1:
@@ -95,8 +91,7 @@ class MovingArmPicture:
     def show(self, answer: dict[str, Any], length: PictureAxis) -> None:
         """Draws the cycle of an answer `answer` of the task `limit_cycle`, with a sentence if the cycle is
         not stable; if there is no cycle, the straight arm and a sentence. length: unit and label of both
-        axes.
-        """
+        axes."""
         self.length = length
         self.remove_dragged_shape()
         x, y = (answer[name] * length.factor for name in ("shape_x", "shape_y"))
@@ -118,14 +113,12 @@ class MovingArmPicture:
 
     def show_bent(self, answer: dict[str, Any]) -> None:
         """Draws the equilibrium shape of the arm whose tip the user drags. answer: result of
-        `dragged_equilibrium`.
-        """
+        `dragged_equilibrium`."""
         self.bent_source.data = {name: answer[name] * self.length.factor for name in "xy"}
 
     def show_motion(self, answer: dict[str, Any]) -> None:
         """Starts the animation of a released arm, and writes the state that the arm reaches into the title.
-        answer: result of `released_motion_answer`, and the position `tip`.
-        """
+        answer: result of `released_motion_answer`, and the position `tip`."""
         factor = self.length.factor
         step = answer["step"]
         x = answer["x"] * factor
@@ -156,15 +149,13 @@ class MovingArmPicture:
 
     def _draw_path(self, x: Array, y: Array, is_closed: bool) -> None:
         """Draws the path of the tip through shapes, (shapes, nodes). is_closed: whether the last shape is
-        followed by the first.
-        """
+        followed by the first."""
         path = smooth_tip_path(np.stack([x[:, -1], y[:, -1]], axis=1), is_closed)
         self.path_source.data = card.source_columns(x=path[:, 0], y=path[:, 1])
 
     def _fit_axes(self, x: Array, y: Array) -> None:
         """Sets the ranges of the axes so that all shapes fit. x, y: coordinates, (shapes, nodes), in the unit
-        of the axes.
-        """
+        of the axes."""
         factor = self.length.factor
         half_height = 1.15 * max(0.3 * factor, float(np.abs(y).max()))
         card.set_axis_range(self.card.figure.y_range, -half_height, half_height)
@@ -173,7 +164,6 @@ class MovingArmPicture:
 
 def source_of(x: Array, y: Array) -> dict[str, Any]:
     """Columns of a Bokeh source, see `SHAPE_COLUMNS`, in single precision. x, y: coordinates of the shapes,
-    (shapes, nodes).
-    """
+    (shapes, nodes)."""
     number = np.full(x.size, x.shape[1], dtype=np.float32)
     return {"x": x.ravel().astype(np.float32), "y": y.ravel().astype(np.float32), "number": number}

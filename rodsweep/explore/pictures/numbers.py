@@ -56,8 +56,7 @@ class NumbersTable:
 
     def show(self, kind: str, answer: dict[str, Any] | None) -> None:
         """Replaces the rows for the kind of request `kind` by numbers of the answer `answer`; None removes
-        these rows. A kind that is not in ROW_LABELS_BY_KIND has no effect.
-        """
+        these rows. A kind that is not in ROW_LABELS_BY_KIND has no effect."""
         if kind not in ROW_LABELS_BY_KIND:
             return
         if answer is None:
@@ -76,8 +75,7 @@ class NumbersTable:
 
 def number_text(value: Any, factor: float = 1.0) -> str:
     """First element of the array `value` as text: a real number times `factor`, or an integer; "" for a
-    nonfinite number or a negative integer.
-    """
+    nonfinite number or a negative integer."""
     number = np.ravel(value)[0]
     if np.issubdtype(np.asarray(number).dtype, np.integer):
         return str(int(number)) if number >= 0 else ""

@@ -11,8 +11,7 @@ from .numbers import SI_NAMES
 
 class SpectrumPicture:
     """Eigenvalues of the straight rod in the complex plane. Eigenvalues to the right of the imaginary axis
-    (the dashed line) are unstable.
-    """
+    (the dashed line) are unstable."""
 
     def __init__(self) -> None:
         figure = card.new_figure(
@@ -28,11 +27,9 @@ class SpectrumPicture:
 
     def show(self, answer: dict[str, Any]) -> None:
         """Draws the eigenvalues of `answer`, an answer of the task `spectrum`; if no eigenvalue is known,
-        shows the meaning of the status instead.
-        """
-        names = [
-            SI_NAMES[name] if SI_NAMES[name] in answer else name for name in ("growth_rate", "frequency")
-        ]
+        shows the meaning of the status instead."""
+        own_names = ("growth_rate", "frequency")
+        names = [SI_NAMES[name] if SI_NAMES[name] in answer else name for name in own_names]
         growth, frequency = (answer[name] for name in names)
         is_finite = np.isfinite(growth)
         if not is_finite.any():
@@ -45,18 +42,15 @@ class SpectrumPicture:
         figure = self.card.figure
         card.set_axis_range(figure.x_range, *card.axis_limits(np.append(growth, 0.0)))
         card.set_axis_range(figure.y_range, *card.axis_limits(frequency))
-        figure.xaxis.axis_label, figure.yaxis.axis_label = (
-            f"{word} ({answer['units'][name]})"
-            for word, name in zip(("growth rate", "frequency"), names, strict=True)
-        )
+        figure.xaxis.axis_label = f"growth rate ({answer['units'][names[0]]})"
+        figure.yaxis.axis_label = f"frequency ({answer['units'][names[1]]})"
         self.card.set_title(unstable_count_sentence(answer))
         self.card.show_figure()
 
 
 def unstable_count_sentence(answer: dict[str, Any]) -> str:
     """Sentence that states the number of unstable modes of the answer `answer`, and whether this number is
-    certified; the meaning of the status if the number is unknown.
-    """
+    certified; the meaning of the status if the number is unknown."""
     count = int(answer["unstable_count"])
     if count < 0:
         return answer["sentence"]
@@ -68,29 +62,21 @@ class ModePicture:
     """Real and imaginary part of the deflection Y(u) of the leading mode."""
 
     def __init__(self) -> None:
-        figure = card.new_figure(
-            "u along the arm", "deflection Y, Y(1) = 1", x_range=Range1d(0, 1), y_range=Range1d(-1, 1)
-        )
+        ranges = {"x_range": Range1d(0, 1), "y_range": Range1d(-1, 1)}
+        figure = card.new_figure("u along the arm", "deflection Y, Y(1) = 1", **ranges)
         self.source = card.empty_source(("u", "real", "imaginary"), "mode_source")
-        figure.line(
-            "u",
-            "real",
-            line_width=2.5,
-            color=card.STABLE_COLOUR,
-            legend_label="real part",
-            source=self.source,
-        )
-        figure.line(
-            "u", "imaginary", line_width=2.5, color=card.UNSTABLE_COLOUR, line_dash="dashed",
-            legend_label="imaginary part", source=self.source,
-        )  # fmt: skip
+        for name, colour, dash in (
+            ("real", card.STABLE_COLOUR, "solid"),
+            ("imaginary", card.UNSTABLE_COLOUR, "dashed"),
+        ):
+            look = {"line_width": 2.5, "color": colour, "line_dash": dash}
+            figure.line("u", name, **look, legend_label=f"{name} part", source=self.source)
         figure.legend.location = "top_left"
         self.card = card.Card("mode", figure)
 
     def show(self, answer: dict[str, Any]) -> None:
         """Draws the leading mode of `answer`, an answer of the task `spectrum`; if the mode is not known,
-        shows the meaning of the status instead.
-        """
+        shows the meaning of the status instead."""
         real_part = answer["Y_real"][0]
         imaginary = answer["Y_imag"][0]
         if not np.isfinite(real_part).all():

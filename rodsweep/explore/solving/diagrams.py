@@ -1,6 +1,5 @@
 """Stability diagram of a page: number of unstable modes of the straight rod over the load and a second
-parameter.
-"""
+parameter."""
 
 from collections.abc import Mapping
 from functools import lru_cache
@@ -95,9 +94,7 @@ def has_uniform_linear_rods(state: PageState) -> bool:
 
 def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
-    over TAPER_RANGE for the taper. rows: number of values. Raises InputError unless the current value is
-    finite and positive.
-    """
+    over TAPER_RANGE for the taper. Raises InputError unless the current value is finite and positive."""
     if state.second == "taper":
         return np.linspace(*TAPER_RANGE, rows)
     value = float_or_text(state.rod[state.second])
@@ -125,29 +122,22 @@ def _cached_rod_diagram(
     second_parameter: str, rows: tuple[float, ...], F_max: float, keywords: tuple[tuple[str, Any], ...]
 ) -> dict[str, Any]:
     """Diagram up to the load `F_max` on the values `rows` of the parameter `second_parameter`; callers must
-    not change it. keywords: further keywords of the sweep.
-    """
+    not change it."""
     axes: dict[str, Any] = {"F": np.linspace(0, F_max, LOAD_COUNT), second_parameter: list(rows)}
     data = sweep("phase_diagram", progress=False, **axes, **dict(keywords))
-    return diagram_from_phase_result(
-        data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second_parameter]), second_parameter
-    )
+    data = data.squeeze([n for n in ("k1", "k2", "gamma3") if n != second_parameter])
+    return diagram_from_phase_result(data, second_parameter)
 
 
 def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str, Any]:
     """Diagram, with the variables of `diagram_answer`, from a result of the task `phase_diagram` or
-    `spectrum` over F and the parameter `second_parameter`.
-    """
+    `spectrum` over F and the parameter `second_parameter`."""
     counts = data["unstable_count"].transpose(second_parameter, "F").values
     if "class" in data:
         is_crushed = flag_words(data["class"].transpose(second_parameter, "F")) == "crushed"
         counts = np.where(is_crushed, CRUSHED_COUNT, counts)
-    diagram = {
-        "x": data["F"].values,
-        "y": data[second_parameter].values,
-        "unstable_count": counts,
-        **_empty_curves(),
-    }
+    axes = {"x": data["F"].values, "y": data[second_parameter].values}
+    diagram = axes | {"unstable_count": counts} | _empty_curves()
     if "crossing_at" in data:
         diagram |= region_bounds(data, second_parameter)
     for curve in ("curve", "cycle_curve"):
@@ -160,33 +150,25 @@ def diagram_from_phase_result(data: Dataset, second_parameter: str) -> dict[str,
 
 def _diagram_from_thresholds(state: PageState) -> dict[str, Any]:
     """Diagram of rods that are not uniform or not of linear material, with the variables of `diagram_answer`,
-    from the task `thresholds`.
-    """
-    keywords: dict[str, Any] = {
-        **_fixed_parameters(state),
-        state.second: second_parameter_values(state, SLOW_ROW_COUNT),
-    }
+    from the task `thresholds`."""
+    values = second_parameter_values(state, SLOW_ROW_COUNT)
+    keywords: dict[str, Any] = _fixed_parameters(state) | {state.second: values}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
     data = sweep("thresholds", **keywords, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in ("k1", "k2", "gamma3", "taper") if n in data.dims and n != state.second])
-    return diagram_from_row_result(
-        data, second_parameter_values(state, SLOW_ROW_COUNT), "crossing_F", state.largest_force()
-    )
+    return diagram_from_row_result(data, values, "crossing_F", state.largest_force())
 
 
 def _diagram_of_arms(state: PageState) -> dict[str, Any]:
     """Diagram of arms, with the variables of `diagram_answer`, from the task `thresholds` for values around
-    the second quantity of `state`.
-    """
-    quantities = {name: text for name, text in state.arm.items() if name != "pressure"} | MATERIAL_CHOICES[
-        state.law
-    ]
+    the second quantity of `state`."""
+    quantities = {name: text for name, text in state.arm.items() if name != "pressure"}
     quantity = QUANTITIES[state.second]
     typed_value = quantity_in_si(state.second, state.arm[state.second], quantity.unit, quantity.example)
     values = np.geomspace(typed_value / ARM_SPAN_RATIO, typed_value * ARM_SPAN_RATIO, ARM_ROW_COUNT)
     arm = state.subject()
     assert isinstance(arm, Arm)
-    arms = quantities | {state.second: list(map(float, values))}
+    arms = quantities | MATERIAL_CHOICES[state.law] | {state.second: list(map(float, values))}
     data = sweep("thresholds", arm=arms, F_max=state.largest_force(), progress=False)
     data = data.squeeze([n for n in data.dims if data.sizes[n] == 1])
     return diagram_from_arm_result(data, values, arm.si.pressure)
@@ -202,9 +184,8 @@ def diagram_from_arm_result(data: Dataset, values: np.ndarray, pressure: float) 
     flutter = data["pressure_hopf"].values
     known_loads = flutter[np.isfinite(flutter)]
     largest_load = 2 * max(pressure or 0.0, known_loads.min() if len(known_loads) else 0.0)
-    return diagram_from_row_result(
-        data, values, "crossing_pressure", largest_load or float(data["pressure_end"].max())
-    )
+    largest_load = largest_load or float(data["pressure_end"].max())
+    return diagram_from_row_result(data, values, "crossing_pressure", largest_load)
 
 
 def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, largest: float) -> dict[str, Any]:
@@ -227,10 +208,8 @@ def diagram_from_row_result(data: Dataset, values: np.ndarray, name: str, larges
         counts[row, ~(x <= ends[row])] = UNKNOWN_COUNT
     listed = np.isfinite(loads) & (loads <= largest)
     rows = np.broadcast_to(values[:, None], loads.shape)
-    return {
-        "x": x, "y": values, "unstable_count": counts, **_empty_curves(),
-        "crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed]),
-    }  # fmt: skip
+    crossings = {"crossing_x": loads[listed], "crossing_y": rows[listed], "crossing_kind": list(kind[listed])}
+    return {"x": x, "y": values, "unstable_count": counts} | _empty_curves() | crossings
 
 
 def _empty_curves() -> dict[str, Any]:
@@ -243,8 +222,7 @@ def _empty_curves() -> dict[str, Any]:
 
 def flag_words(array: Dataset) -> Any:
     """Array of the words for an array of integer flags, with the same shape. Flags and words are listed in
-    the attributes of the array; an unlisted flag has the word "none".
-    """
+    the attributes of the array; an unlisted flag has the word "none"."""
     names = str(array.attrs["flag_meanings"]).split()
     by_code = dict(zip(map(int, np.atleast_1d(array.attrs["flag_values"])), names, strict=True))
     return np.vectorize(lambda code: by_code.get(int(code), "none"), otypes=[object])(array.values)

@@ -1,6 +1,5 @@
 """Fork server for solver processes: a process that has imported all modules but has not started MPI or
-PETSc.
-"""
+PETSc."""
 
 from multiprocessing import forkserver, get_context
 

@@ -1,6 +1,5 @@
 """Known numbers of unstable modes between the crossings of the rows of a phase diagram, and the crushing load
-(zero stretch); with the curves they determine the areas of the diagram of a page.
-"""
+(zero stretch); with the curves they determine the areas of the diagram of a page."""
 
 import json
 from typing import Any
@@ -16,8 +15,7 @@ Dataset = Any
 def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
     """Variables between_x, between_y, between_count and crushing_load of `diagram_answer`, from a result of
     the task `phase_diagram` over F and the parameter `row_parameter`. Raises ValueError for a config that
-    this version of rodsweep does not accept.
-    """
+    this version of rodsweep does not accept."""
     y = data[row_parameter].values
     positions, unstable_counts = (
         data[name].transpose(row_parameter, "crossing").values for name in ("crossing_at", "unstable_after")
@@ -34,8 +32,7 @@ def _points_between_crossings(
     """Points midway between neighbouring crossings of a row, with the known number of unstable modes there:
     between_x, between_y, between_count, (points,) each. y: second parameter, (rows,). positions: loads at the
     crossings, in increasing order, NaN in unused entries, (rows, crossings). unstable_counts: numbers of
-    unstable modes beyond the crossings, (rows, crossings).
-    """
+    unstable modes beyond the crossings, (rows, crossings)."""
     rows, crossing_indices = np.nonzero(np.isfinite(positions[:, 1:]) & (unstable_counts[:, :-1] >= 0))
     return {
         "between_x": (positions[rows, crossing_indices] + positions[rows, crossing_indices + 1]) / 2,

@@ -30,8 +30,7 @@ TIP_KINDS = ("bent", "motion")
 
 def inputs_of_request(request: SolveRequest) -> AnswerInputs:
     """Returns (state, tip). state: copy of the request's state in which all values without effect on the
-    answer are blank. tip: position of the tip if the answer depends on the tip, else None.
-    """
+    answer are blank. tip: position of the tip if the answer depends on the tip, else None."""
     kind = request.kind
     state = request.state
     if kind in ("spectrum", "cycle", "film", *TIP_KINDS):
@@ -45,8 +44,7 @@ def inputs_of_request(request: SolveRequest) -> AnswerInputs:
 def state_to_solve(kind: str, state: PageState, diagram_state: PageState | None) -> PageState:
     """State for a request of the kind `kind`: `state`, except for the request "cycles" while the rod of the
     page lies in the drawn diagram. This state is `diagram_state`, so that the curves of cycles are added to
-    the drawn diagram. state:
-    state of the page. diagram_state: state around which the drawn diagram was solved; None if there is no
+    the drawn diagram. diagram_state: state around which the drawn diagram was solved; None if there is no
     diagram."""
     if kind != "cycles" or diagram_state is None or state.tab != "rod":
         return state

@@ -66,8 +66,7 @@ class Reply(NamedTuple):
 
 def answer_variables(answer: Answer) -> AnswerVariables:
     """All variables of `answer` by name, and its `status`, `sentence` (meaning of the status), `message` and
-    `units` (by variable).
-    """
+    `units` (by variable)."""
     variables: AnswerVariables = {str(name): array.values for name, array in answer.data.variables.items()}
     return variables | {
         "status": str(answer.status), "sentence": answer.sentence, "message": answer.message,
@@ -91,16 +90,14 @@ def growth_answer(state: PageState) -> AnswerVariables:
     """Growth rates of the leading modes along F, as variables by name, up to the largest force or just below
     the crushing force (zero stretch). unit: "1/tau2" for a rod, "1/s" for an arm."""
     rod_or_arm = state.subject()
-    tau2 = rod_or_arm.tau2 if isinstance(rod_or_arm, Arm) else 1.0
+    tau2, unit = (rod_or_arm.tau2, "1/s") if isinstance(rod_or_arm, Arm) else (1.0, "1/tau2")
     rod = rod_of(rod_or_arm)
     keywords: dict[str, Any] = {n: rod[n] for n in ("k1", "k2", "gamma3", "taper") if n in rod}
     keywords |= {"material": MATERIAL_CHOICES[state.law]} if MATERIAL_CHOICES[state.law] else {}
-    F = np.linspace(
-        0, min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod)), GROWTH_FORCE_COUNT
-    )
+    F_max = min(state.largest_force(), MAX_CRUSHING_FRACTION * crushing_force(rod))
+    F = np.linspace(0, F_max, GROWTH_FORCE_COUNT)
     data = sweep("spectrum", F=F, **keywords, certify=False, progress=False)
     rates = data["growth_rate"].values.reshape(GROWTH_FORCE_COUNT, -1) / tau2
-    unit = "1/s" if isinstance(rod_or_arm, Arm) else "1/tau2"
     count = data["unstable_count"].values.reshape(-1)
     return {"F": F, "growth_rate": rates, "unit": unit, "unstable_count": count}
 
@@ -108,15 +105,13 @@ def growth_answer(state: PageState) -> AnswerVariables:
 def cycle_answer(state: PageState) -> AnswerVariables:
     """Limit cycle with shapes of the arm over a period, and x, y: coordinates of the straight arm, whose tip
     the user can drag."""
-    return answer_variables(state.subject().cycle(shapes=SHAPE_COUNT, progress=False)) | dragged_equilibrium(
-        state, None
-    )
+    cycle = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
+    return answer_variables(cycle) | dragged_equilibrium(state, None)
 
 
 def film_answer(state: PageState) -> AnswerVariables:
     """Film of the limit cycle, as made by `rodsweep plot`: the content of a GIF file, under the name `gif`.
-    Raises InputError if the rod has no cycle.
-    """
+    Raises InputError if the rod has no cycle."""
     answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
         raise InputError(f"there is no cycle to film: {answer.sentence}")
@@ -141,9 +136,7 @@ def branch_answer(state: PageState) -> AnswerVariables:
 
 
 def crushing_force(rod: Mapping[str, float]) -> float:
-    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2.
-    rod: parameters by name.
-    """
+    """Force that crushes the thinnest section of a rod of linear material, in k3/L^2: k1 min(1, taper)^2."""
     return rod["k1"] * min(1.0, rod.get("taper", DEFAULT_VALUES_OF_PARAMETERS.get("taper", 1.0))) ** 2
 
 
@@ -168,8 +161,7 @@ TIP_SOLVERS: dict[str, Callable[[PageState, TipPosition], AnswerVariables]] = {
 
 def answer_to(request: SolveRequest) -> AnswerVariables:
     """Answer to a request, as variables by name. Raises InputError for invalid values in the state of the
-    page.
-    """
+    page."""
     if request.stored is not None:
         return film_of_cycle(request.stored)
     if request.tip is not None:

@@ -1,6 +1,5 @@
-"""Solver processes, one for each group of kinds of requests. A new request replaces the older request of
-the same session and kind.
-"""
+"""Solver processes, one for each group of kinds of requests. A new request replaces the older request of the
+same session and kind."""
 
 import os
 import signal
@@ -61,8 +60,7 @@ class CancellationDelays:
 class SolverProcess:
     """One solver process, and the queue of its requests. A request starts the process if it is not running.
     delays: times until a superseded solve is cancelled, and until a process that does not react to the
-    cancellation is killed; None for the default times. niceness: Unix niceness of the process.
-    """
+    cancellation is killed; None for the default times. niceness: Unix niceness of the process."""
 
     def __init__(self, delays: CancellationDelays | None = None, niceness: int = 0):
         self.delays = delays or CancellationDelays()
@@ -89,9 +87,8 @@ class SolverProcess:
     def ask(
         self, key: RequestKey, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
-        """Queues a request. An older request with the same key is removed from the queue, or cancelled if
-        it is being solved. on_reply: callback for the reply. progress: callback for progress messages.
-        """
+        """Queues a request. An older request with the same key is removed from the queue, or cancelled if it
+        is being solved."""
         self.waiting.pop(key, None)
         self.waiting[key] = request, on_reply, progress
         if self.current_request is None:
@@ -105,8 +102,7 @@ class SolverProcess:
 
     def cancel_session(self, session: str) -> None:
         """Removes all requests of a session from the queue, and cancels the session's request that is being
-        solved.
-        """
+        solved."""
         for key in [key for key in self.waiting if key[0] == session]:
             del self.waiting[key]
         if self.current_request is not None and self.current_request[0][0] == session:
@@ -174,9 +170,8 @@ class SolverProcess:
             self._send_next()
 
     def _cancel(self, number: int, key: RequestKey) -> None:
-        """Cancels request `number` if it is still being solved while a newer request with an equal
-        key waits.
-        """
+        """Cancels request `number` if it is still being solved while a newer request with an equal key
+        waits."""
         if number == self.request_number and key in self.waiting:
             self._interrupt(number)
 
@@ -217,18 +212,14 @@ class Solvers:
         self.groups = {group: SolverProcess(delays, niceness) for group, niceness in GROUP_NICENESS.items()}
 
     def warm_up(self) -> None:
-        """Sends one request of each of the WARM_UP_KINDS, to start their processes and load compiled
-        code.
-        """
+        """Sends one request of each of the WARM_UP_KINDS, to start their processes and load compiled code."""
         for kind in WARM_UP_KINDS:
             self.ask("warm up", SolveRequest(kind, PageState()), lambda reply: None)
 
     def ask(
         self, session: str, request: SolveRequest, on_reply: OnReply, progress: OnReply = ignore_progress
     ) -> None:
-        """Queues a request of a session. on_reply: callback for the reply. progress: callback for progress
-        messages.
-        """
+        """Queues a request of a session."""
         self.groups[PROCESS_GROUPS[request.kind]].ask((session, request.kind), request, on_reply, progress)
 
     def cancel(self, session: str, kind: str) -> None:

@@ -21,8 +21,7 @@ TipPosition = tuple[float, float]
 
 def dragged_equilibrium(state: PageState, tip: TipPosition | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
-    None for the straight arm.
-    """
+    None for the straight arm."""
     x, y = bent_shape(_motion_job(state), tip)
     return {"x": x, "y": y}
 
@@ -44,8 +43,7 @@ def released_motion_answer(state: PageState, tip: TipPosition) -> dict[str, Any]
 
 def motion_film_answer(state: PageState, tip: TipPosition) -> dict[str, Any]:
     """Film of the motion after the release of the tip at `tip`: the content of a GIF file, under the name
-    `gif`.
-    """
+    `gif`."""
     return {"gif": motion_film(motion_in_page_units(state, released_motion_answer(state, tip)))}
 
 

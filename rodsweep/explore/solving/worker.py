@@ -102,8 +102,7 @@ def reply_to(request: SolveRequest, cancellation: Cancellation, send: Callable[[
 
 def end_with_page(life: "Connection[Any, Any]") -> None:
     """Waits until the other end of the pipe `life` closes, then ends this process. No data are written to
-    `life`.
-    """
+    `life`."""
     life.poll(None)
     os._exit(0)
 
@@ -112,8 +111,7 @@ def answer_requests(
     connection: "Connection[Reply, SolveRequest]", life: "Connection[Any, Any]", niceness: int
 ) -> None:
     """Answers the requests from the pipe `connection` until the pipe closes. life: pipe that closes when the
-    page's process ends. niceness: Unix niceness.
-    """
+    page's process ends."""
     os.setpgid(0, 0)  # protects from Ctrl-C, which ends the page; a separate session would undo the niceness
     os.nice(niceness)
     Thread(target=end_with_page, args=(life,), daemon=True).start()

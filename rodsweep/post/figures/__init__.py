@@ -43,8 +43,7 @@ OMITTED_STATUSES = {"missing": "are not computed", "failed": "failed"}
 
 def _style_context(look: FigureLook) -> AbstractContextManager[None]:
     """Context in which matplotlib uses the settings for all figures and the style that the user has chosen.
-    Raises InputError for an unknown style.
-    """
+    Raises InputError for an unknown style."""
     package_style = FIGURE_STYLE if look.width is None else PRINT_STYLE
     if look.style is None:
         return matplotlib.rc_context(package_style)
@@ -97,10 +96,10 @@ def draw(
     """Draws the figure of one or several result files to the file `output`; returns a sentence about the
     figure.
 
-    look: appearance. shapes: function that computes the shapes of cycles if the file has no shapes.
-    figure_callback: callback for the finished figure; if given, no file is written. choices: content. Raises
-    InputError for options that do not fit the files and for files without a result that can be drawn,
-    EnvironmentIncomplete if `output` cannot be written or a program of the style, such as LaTeX, fails.
+    shapes: function that computes the shapes of cycles if the file has no shapes. figure_callback: callback
+    for the finished figure; if given, no file is written. choices: content. Raises InputError for options
+    that do not fit the files and for files without a result that can be drawn, EnvironmentIncomplete if
+    `output` cannot be written or a program of the style, such as LaTeX, fails.
     """
     views = [views] if isinstance(views, ResultView) else views
     if look.width and choices.get("what") == "animation":

@@ -55,8 +55,7 @@ BRANCH_COLOURS = (
 def draw_branch(request: FigureRequest) -> str:
     """Draws the largest y of the tip and the period of cycles against the followed parameter, for one or
     several rods; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn.
-    """
+    nothing can be drawn."""
     view = request.only_view()
     rods = [RodBranches(view, number) for number in range(view.variables["status"].size)]
     rods_with_cycles = [rod for rod in rods if any(curve.cycles.any() for curve in rod.curves)]
@@ -64,11 +63,8 @@ def draw_branch(request: FigureRequest) -> str:
     drawn_rods = rods_with_cycles[: len(BRANCH_COLOURS)]
     curves = [curve for rod in drawn_rods for curve in rod.curves]
     is_single = len(rods) == 1
-    colours = (
-        BRANCH_COLOURS
-        if is_single
-        else [BRANCH_COLOURS[k] for k, rod in enumerate(drawn_rods) for _ in rod.curves]
-    )
+    colours_of_rods = [BRANCH_COLOURS[k] for k, rod in enumerate(drawn_rods) for _ in rod.curves]
+    colours: Sequence[str] = BRANCH_COLOURS if is_single else colours_of_rods
     parameter = followed_parameter(view)
     has_hopf_panel = any(curve.near_hopf_points() for curve in curves)
     figure = Figure(figsize=(5.6, 7.6 if has_hopf_panel else 5.6), layout="constrained")
@@ -84,11 +80,8 @@ def draw_branch(request: FigureRequest) -> str:
         marker_handles["predicted"] = _compare_prediction(axes, curves, colours, parameter)
     handles = stability_entries(curves)
     common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
-    handles += [
-        Line2D([], [], color=colour, lw=2, label=text)
-        for colour, text in zip(BRANCH_COLOURS, rod_texts, strict=False)
-        if text
-    ]
+    pairs = zip(BRANCH_COLOURS, rod_texts, strict=False)
+    handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
     style.legend_below(figure, [*handles, *marker_handles.values()], columns=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"{counted(len(curves), 'branch')} of cycles over {parameter}"
@@ -99,8 +92,7 @@ def draw_branch_curves(
     upper: Axes, lower: Axes, curves: Sequence[StoredBranch], colours: Sequence[str]
 ) -> dict[str, Line2D]:
     """Draws branches into two panels; returns legend entries of special points, by kind. upper: panel of the
-    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically.
-    """
+    largest y of the tip. lower: panel of the period. colours: colours of the branches, used cyclically."""
     marker_handles: dict[str, Line2D] = {}
     for number, curve in enumerate(curves):
         parameter_values, y, period, stable = smooth_curve_of_branch(curve)
@@ -122,35 +114,28 @@ def stability_entries(curves: Sequence[StoredBranch]) -> list[Line2D]:
     """Legend entries for the line styles of stable and unstable parts of branches, and of parts of unknown
     stability if there are any."""
     stabilities = {int(stability) for curve in curves for stability in curve.stable} | {1, 0}
-    return [
-        Line2D([], [], color="k", ls=STABILITY_LINES[stability][0], label=STABILITY_LINES[stability][1])
-        for stability in sorted(stabilities)[::-1]
-    ]
+    looks = (STABILITY_LINES[stability] for stability in sorted(stabilities)[::-1])
+    return [Line2D([], [], color="k", ls=line, label=word) for line, word in looks]
 
 
 def _omissions_clause(rods: Sequence[RodBranches], cycling: int, drawn_count: int) -> str:
-    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles.
-    drawn_count: number of drawn rods.
-    """
+    """Clause on branches and rods that the figure leaves out. cycling: number of rods with cycles."""
     hidden = sum(rod.hidden_count for rod in rods)
-    hidden_clause = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full" * (
-        hidden > 0
-    )
+    clause = ""
+    if hidden:
+        clause = f"; {hidden} more {is_or_are(hidden)} not drawn: the list of special points is full"
     if drawn_count < cycling:
-        hidden_clause += f"; of the first {drawn_count} of {cycling} rods with branches (--at chooses others)"
+        clause += f"; of the first {drawn_count} of {cycling} rods with branches (--at chooses others)"
     computed = int((rods[0].view.variables["status"] != MISSING_STATUS).sum())
     straight = computed - cycling
-    return hidden_clause + (
-        f"; {count_of_total(straight, computed, 'rod')} {has_or_have(straight)} no branch"
-        if straight > 0
-        else ""
-    )
+    if straight > 0:
+        clause += f"; {count_of_total(straight, computed, 'rod')} {has_or_have(straight)} no branch"
+    return clause
 
 
 def _drawn_parameter_range(rod: RodBranches) -> ParameterRange:
     """Range of the parameter in which the straight rod is drawn: the followed range, without crushed rods,
-    and up to 1.1 times the largest parameter of the branches.
-    """
+    and up to 1.1 times the largest parameter of the branches."""
     [(low, high)] = uncrushed_ranges(rod.view, [rod.index])
     if rod.curves:
         high = min(high, 1.1 * max(float(np.nanmax(curve.parameter)) for curve in rod.curves))
@@ -161,8 +146,7 @@ def _draw_pieces(
     axes: Axes, x: np.ndarray, y: np.ndarray, stable: np.ndarray, colour: str, marker: str = ""
 ) -> None:
     """Draws a curve with line styles by stability. x, y: vertices, (n,) each. stable: stability between
-    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib.
-    """
+    neighbouring vertices, (n - 1,). colour, marker: colour and marker of the curve, for matplotlib."""
     for vertices, kind in stability_runs(stable):
         axes.plot(x[vertices], y[vertices], ls=STABILITY_LINES[kind][0], marker=marker, color=colour, lw=1.4)
 
@@ -171,8 +155,7 @@ def _mark_special_points(
     upper: Axes, lower: Axes, curve: StoredBranch, marker_handles: dict[str, Line2D]
 ) -> None:
     """Marks the special points of a branch in two panels, as in `draw_branch_curves`; adds legend entries to
-    `marker_handles`.
-    """
+    `marker_handles`."""
     for special in curve.special:
         kind = special.reason if special.kind == "end" else special.kind
         if kind not in SPECIAL_POINT_MARKS:
@@ -187,11 +170,8 @@ def _compare_prediction(
     axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter: str
 ) -> Line2D:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
-    amplitude coefficient |a|; returns the legend entry of the prediction.
-
-    Each branch is drawn up to its first fold, beyond which the prediction is not valid. colours:
-    colours of the branches, in order. parameter: the parameter that varies along the branches.
-    """
+    amplitude coefficient |a|; returns the legend entry of the prediction. Each branch is drawn up to its
+    first fold, beyond which the prediction is not valid."""
     nearest = []
     distances = []
     for number, curve in enumerate(curves):
@@ -200,9 +180,8 @@ def _compare_prediction(
             nearest.append(float(relative_distance[0]))
             distances.append(float(relative_distance[-1]))
     ends = np.array([min(nearest), max(distances)])
-    (law,) = axes.plot(
-        ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0, label=PREDICTION_WORD
-    )
+    (law,) = axes.plot(ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0)
+    law.set_label(PREDICTION_WORD)
     symbol = style.SYMBOLS[parameter]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol

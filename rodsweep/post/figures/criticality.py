@@ -1,6 +1,5 @@
 """Criticality of the Hopf points of rods, and predicted amplitudes of cycles near Hopf points, as a map or as
-lines.
-"""
+lines."""
 
 from math import floor, log10
 
@@ -15,7 +14,7 @@ from ...arrays import Array
 from ...results.file.view import ResultView
 from ..summary.summary_lines import varied_parameters_at_points
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import PointMap, cell_edges, point_map, varies_two_parameters_on_grid
 from .cycle.selection import shared_and_own_of_points
@@ -55,18 +54,15 @@ LINEAR_FRACTION = 0.1
 def draw_criticality(request: FigureRequest) -> str:
     """Draws a map of the first Hopf points over two parameters, or the coefficients a and Re c against one
     parameter, or else predicted amplitudes against F; returns a sentence. Raises InputError for options that
-    the task does not have, and if nothing can be drawn.
-    """
+    the task does not have, and if nothing can be drawn."""
     view = request.only_view()
-    style.require_content(
-        view, np.isfinite(view.variables["criticality"]).any(), "Hopf point with a normal form"
-    )
+    has_normal_form = np.isfinite(view.variables["criticality"]).any()
+    style.require_content(view, has_normal_form, "Hopf point with a normal form")
     names = list(varied_parameters_at_points(view))
     if len(names) == 1 and np.isfinite(np.unique(view.point_columns[names[0]])).sum() > 1:
-        return request.write(
-            _curves_figure(view, names[0]),
-            f"the normal forms of Hopf points along {names[0]}{left_out_clause(view.point_columns, names)}",
-        )
+        omissions = left_out_clause(view.point_columns, names)
+        caption = f"the normal forms of Hopf points along {names[0]}{omissions}"
+        return request.write(_curves_figure(view, names[0]), caption)
     if not varies_two_parameters_on_grid(view):
         return request.write(*draw_predictions(view))
     points = point_map(view)
@@ -76,15 +72,13 @@ def draw_criticality(request: FigureRequest) -> str:
 
 def _curves_figure(view: ResultView, name: str) -> Figure:
     """Figure of the amplitude coefficient a (upper panel) and of Re c (lower panel) against the parameter
-    `name`. Markers show the criticality. Raises InputError if nothing can be drawn.
-    """
+    `name`. Markers show the criticality. Raises InputError if nothing can be drawn."""
     x = view.point_columns[name]
     is_finite = np.isfinite(x)
     figure = Figure(figsize=(5.6, 5.4), layout="constrained")
     upper, lower = figure.subplots(2, 1, sharex=True)
-    criticality, a, landau_real = (
-        view.by_point(key)[is_finite] for key in ("criticality", "amplitude_coefficient", "landau_real")
-    )
+    keys = ("criticality", "amplitude_coefficient", "landau_real")
+    criticality, a, landau_real = (view.by_point(key)[is_finite] for key in keys)
     style.require_content(view, np.isfinite(landau_real).any(), f"Hopf point with a finite {name}")
     linear_limit = float(np.nanquantile(np.abs(landau_real), LINEAR_FRACTION))
     lower.set_yscale("symlog", linthresh=10.0 ** floor(log10(linear_limit)))
@@ -95,32 +89,26 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
     style.legend_below(figure, handles, columns=3)
-    figure.suptitle(
-        style.heading_text(view, constant_quantities_text(view), style.constant_parameters_text(view, name))
-    )
+    set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
 
 
 def _draw_hopf_markers(axes: Axes, x: Array, values: Array, criticality: Array) -> list[Line2D]:
     """Draws Hopf points with markers by criticality; returns legend entries. x: (rods,). values: y, (rods,
-    crossings). criticality: signs of Re c, (rods, crossings).
-    """
+    crossings). criticality: signs of Re c, (rods, crossings)."""
     x_of_values = np.broadcast_to(x[:, None], values.shape)
-    handles = []
+    handles: list[Line2D] = []
     for number, (word, colour, marker) in CRITICALITY_MARKS.items():
-        is_of_class = criticality == number
-        if is_of_class.any():
-            (artist,) = axes.plot(
-                x_of_values[is_of_class], values[is_of_class], marker, color=colour, ms=3.5, label=word
-            )
-            handles.append(artist)
+        is_drawn = criticality == number
+        if is_drawn.any():
+            drawn = x_of_values[is_drawn], values[is_drawn]
+            handles += axes.plot(*drawn, marker, color=colour, ms=3.5, label=word)
     return handles
 
 
 def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
-    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. is_narrow:
-    whether the maps are stacked. Raises InputError if nothing can be drawn.
-    """
+    """Figure with two maps: criticality of the first Hopf points, and amplitude coefficient |a|. Raises
+    InputError if nothing can be drawn."""
     criticality = view.by_point("criticality")[points.point_indices]
     a = np.abs(view.by_point("amplitude_coefficient")[:, 0][points.point_indices])
     style.require_content(view, np.isfinite(a).any(), "first Hopf point with a normal form")
@@ -133,39 +121,26 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     style.draw_coloured_cells(panels[1], edges, a, "amplitude coefficient $|a|/L$")
     panels[1].set_facecolor(CRITICALITY_CLASSES[0][1])
     label_maps(panels, points)
-    entries = [
-        Patch(facecolor=class_colour, label=word)
-        for i, (word, class_colour) in enumerate(CRITICALITY_CLASSES)
-        if (classes == i).any()
-    ]
+    drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
+    entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
     style.legend_below(figure, entries, columns=3)
-    figure.suptitle(
-        style.heading_text(
-            view, constant_quantities_text(view), style.parameter_text(points.common_parameters)
-        )
-    )
+    set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
 
 def _class_indices(criticality: Array) -> Array:
-    """Index in CRITICALITY_CLASSES for each rod, (ny, nx).
-
-    criticality: signs of Re c at the Hopf points of the rods, (ny, nx, crossings); NaN for a missing Hopf
-    point.
-    """
-    first_criticality = criticality[..., 0]
+    """Index in CRITICALITY_CLASSES for each rod, (ny, nx). criticality: signs of Re c at the Hopf points of
+    the rods, (ny, nx, crossings); NaN for a missing Hopf point."""
+    first = criticality[..., 0]
     has_later_subcritical = (criticality[..., 1:] == 1).any(axis=-1)
     # The numbers are indices in CRITICALITY_CLASSES; a rod without a Hopf point has NaN and the index 0.
-    classes = np.select(
-        [first_criticality == -1, first_criticality == 1, first_criticality == 0], [1.0, 3.0, 4.0], 0.0
-    )
-    return np.where((first_criticality == -1) & has_later_subcritical, 2.0, classes)
+    cases = [(first == -1) & has_later_subcritical, first == -1, first == 1, first == 0]
+    return np.select(cases, [2.0, 1.0, 3.0, 4.0], 0.0)
 
 
 def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows predicted amplitudes near all Hopf points of the first
-    rods. Raises InputError if nothing can be drawn.
-    """
+    rods. Raises InputError if nothing can be drawn."""
     kinds, F, a = map(view.by_point, ("criticality", "crossing_F", "amplitude_coefficient"))
     rods_with_prediction = np.flatnonzero((np.isfinite(kinds) & np.isfinite(a)).any(axis=1))
     style.require_content(view, rods_with_prediction.size, "Hopf point with a normal form")
@@ -179,23 +154,14 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
             if np.isfinite(kind) and np.isfinite(size):
                 # For a > 0 the cycles have a larger F than the Hopf point, for a < 0 a smaller F.
                 forces = hopf_force * (1 + np.sign(size) * distance)
-                axes.plot(
-                    forces,
-                    abs(size) * np.sqrt(distance),
-                    CRITICALITY_LINES[int(kind)][0],
-                    color=colour,
-                    lw=1.4,
-                )
+                line = CRITICALITY_LINES[int(kind)][0]
+                axes.plot(forces, abs(size) * np.sqrt(distance), line, color=colour, lw=1.4)
                 axes.plot(hopf_force, 0, "o", color=colour, ms=4, clip_on=False, zorder=3)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel=style.LABELS["F"], ylabel="predicted largest $y/L$ of the tip")
     axes.set_ylim(bottom=0)
-    drawn_kinds = {int(kind) for kind in kinds[drawn_rods].ravel() if np.isfinite(kind)}
-    handles = [
-        Line2D([], [], color="0.3", ls=ls, label=word)
-        for k, (ls, word) in CRITICALITY_LINES.items()
-        if k in drawn_kinds
-    ]
+    drawn_looks = (look for kind, look in CRITICALITY_LINES.items() if (kinds[drawn_rods] == kind).any())
+    handles = [Line2D([], [], color="0.3", ls=ls, label=word) for ls, word in drawn_looks]
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]

@@ -39,8 +39,7 @@ def slice_at_values(view: ResultView, typed_values: Mapping[str, float | str]) -
 
 def _number_in_si(name: str, value: float | str) -> float:
     """The value of the parameter or quantity `name` as a number; for a quantity, in SI units. Raises
-    InputError for an invalid text.
-    """
+    InputError for an invalid text."""
     if name == "drag" and value in DRAG_NAMES:
         return float(DRAG_NAMES.index(str(value)))
     try:
@@ -131,16 +130,14 @@ def without_infinite_values(view: ResultView) -> ResultView:
 
 def left_out_clause(columns: Mapping[str, np.ndarray], names: Sequence[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
-    finite. columns: values by parameter, (n,) each.
-    """
+    finite. columns: values by parameter, (n,) each."""
     omissions = [f"{name} = inf" for name in names if not np.isfinite(columns[name]).all()]
     return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
 def checked_slice_values(section_values: Mapping[str, float | str]) -> dict[str, float | str]:
     """Copy of the values that a Python caller gives, by name of the parameter. Raises InputError for a value
-    that is neither a number nor a text.
-    """
+    that is neither a number nor a text."""
     try:
         return {
             str(n): value if isinstance(value, str) else float(value) for n, value in section_values.items()

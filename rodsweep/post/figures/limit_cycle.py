@@ -1,6 +1,5 @@
 """Figures of the task `limit_cycle`: the kind chosen by the user, or a default kind that depends on the
-file.
-"""
+file."""
 
 import numpy as np
 
@@ -36,8 +35,7 @@ FEW_POINT_FIGURES = {"cycle": draw_portrait, "energy": draw_energy, "transient":
 def draw_limit_cycle(request: FigureRequest) -> str:
     """Draws the figure of one file or the amplitudes of several files, or writes an animation; returns a
     sentence. If the file lacks variables that the figure needs, `request.shapes`, if given, solves the cycles
-    again. Raises InputError for options that do not match the files, and if nothing can be drawn.
-    """
+    again. Raises InputError for options that do not match the files, and if nothing can be drawn."""
     points = request.points
     name = chosen_figure_kind(request)
     view = _with_needed_variables(request, name)
@@ -56,12 +54,9 @@ def draw_limit_cycle(request: FigureRequest) -> str:
 
 def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
     """View of the file with the variables that the figure `name` needs. If variables are missing,
-    `request.shapes`, if given, computes them.
-    """
+    `request.shapes`, if given, computes them."""
     view = request.views[0]
-    if request.shapes is None or all(
-        variable in view.variables for variable in NEEDED_VARIABLES.get(name, ())
-    ):
+    if request.shapes is None or view.variables.keys() >= set(NEEDED_VARIABLES.get(name, ())):
         return view
     numbers = request.points or [int(index) + 1 for index in np.flatnonzero(view.status_names == "cycle")]
     chosen_cycles(view, request.points, ())  # refuses points without a cycle
@@ -70,8 +65,7 @@ def _with_needed_variables(request: FigureRequest, name: str) -> ResultView:
 
 def chosen_figure_kind(request: FigureRequest) -> str:
     """Kind of figure that the user has chosen by --what, or the default kind. Raises InputError for options
-    that do not match the files.
-    """
+    that do not match the files."""
     first_view, *other_views = request.views
     for view in other_views:
         if view.task != first_view.task:
@@ -87,11 +81,8 @@ def chosen_figure_kind(request: FigureRequest) -> str:
 
 
 def _default_figure_kind(request: FigureRequest) -> str:
-    """Default kind of figure.
-
-    An animation for an output file with the suffix of an animation; shapes or transients for a few points;
-    maps for many lines; else amplitudes.
-    """
+    """Default kind of figure. An animation for an output file with the suffix of an animation; shapes or
+    transients for a few points; maps for many lines; else amplitudes."""
     first_view, *other_views = request.views
     if request.output.suffix in FILM_SUFFIXES:
         return "animation"

@@ -1,6 +1,5 @@
 """Figures of the leading mode of the straight rod, with deformations and adjoint mode, as in the paper's
-Figs. 7 to 9.
-"""
+Figs. 7 to 9."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...results.file.view import ResultView
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .request import FigureRequest
-from .style import BLUE, VERMILION, heading_text, legend_below, number_in_tex, parameter_text, require_content
+from .style import BLUE, VERMILION, legend_below, number_in_tex, parameter_text, require_content
 
 MAX_RODS = 4
 """Largest number of points in one figure; a narrow figure shows one point."""
@@ -25,42 +24,39 @@ MODE_PANELS = (
 def draw_modes(request: FigureRequest) -> str:
     """Draws a row of panels for each point: leading mode, deformations of this mode, and adjoint mode;
     returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     view = request.only_view()
     growth = view.variables["growth_rate"][..., 0].ravel()
     points = np.flatnonzero(np.isfinite(growth))
     require_content(view, points.size, "computed point")
     is_narrow = request.look.is_narrow
     drawn_points = points[: 1 if is_narrow else MAX_RODS]
-    rows, columns = (
-        (len(drawn_points) * len(MODE_PANELS), 1) if is_narrow else (len(drawn_points), len(MODE_PANELS))
-    )
+    count = len(drawn_points)
+    rows, columns = (count * len(MODE_PANELS), 1) if is_narrow else (count, len(MODE_PANELS))
     size = (4.6, 2.4 * rows + 0.4) if is_narrow else (10.0, 2.8 * rows + 0.4)
     figure = Figure(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, squeeze=False)
-    for row, point in zip(panels.reshape(len(drawn_points), len(MODE_PANELS)), drawn_points, strict=True):
+    for row, point in zip(panels.reshape(count, len(MODE_PANELS)), drawn_points, strict=True):
         for panel, (word, fields) in zip(row, MODE_PANELS, strict=True):
             _draw_mode_fields(panel, view, int(point), fields)
             panel.set_title(word)
-        if len(drawn_points) > 1:
+        if count > 1:
             row[1].set_title(f"{': '.join(_point_texts(view, int(point)))}\n{MODE_PANELS[1][0]}")
     for panel in panels[-1]:
         panel.set_xlabel("material coordinate $u/L$")
-    texts = _point_texts(view, int(drawn_points[0])) if len(drawn_points) == 1 else ()
-    figure.suptitle(heading_text(view, constant_quantities_text(view), *texts))
+    texts = _point_texts(view, int(drawn_points[0])) if count == 1 else ()
+    set_heading(figure, view, *texts)
     legend_below(figure, _part_entries(view, drawn_points), columns=2)
-    omission_clause = f" of the first of {points.size} points" if len(drawn_points) == 1 < points.size else ""
-    if points.size > len(drawn_points) > 1:
-        omission_clause = f" of the first {len(drawn_points)} of {points.size} points"
-    omission_clause += " (--at chooses others)" if omission_clause else ""
+    omission_clause = ""
+    if points.size > count:
+        first_words = f"first {count}" if count > 1 else "first"
+        omission_clause = f" of the {first_words} of {points.size} points (--at chooses others)"
     return request.write(figure, f"the leading mode{omission_clause}: real part solid, imaginary part dotted")
 
 
 def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
     """Legend entries for the real part (solid) and, if a drawn mode oscillates, for the imaginary part
-    (dotted). points: indices of the drawn points, (n,).
-    """
+    (dotted). points: indices of the drawn points, (n,)."""
     oscillates = view.by_point("frequency")[points, 0].any()
     line_styles = (("real part", "-"), ("imaginary part", ":"))[: 1 + bool(oscillates)]
     return [Line2D([], [], color="0.3", lw=1.5, ls=style, label=word) for word, style in line_styles]
@@ -68,8 +64,7 @@ def _part_entries(view: ResultView, points: np.ndarray) -> list[Line2D]:
 
 def _draw_mode_fields(panel: Axes, view: ResultView, point: int, fields: tuple[tuple[str, str], ...]) -> None:
     """Draws two fields of the leading mode against u, with separate vertical axes that have 0 at the same
-    height. point: index of the point. fields: (field, label) of the two fields.
-    """
+    height. fields: (field, label) of the two fields."""
     u = view.variables["u"]
     twins = panel, panel.twinx()
     limits = []
@@ -96,6 +91,5 @@ def _point_texts(view: ResultView, point: int) -> tuple[str, str]:
     parameters = {name: values[point] for name, values in view.point_columns.items()}
     eigenvalue = [float(view.by_point(name)[point, 0]) for name in ("growth_rate", "frequency")]
     imaginary = rf" + {number_in_tex(eigenvalue[1])}\,\mathrm{{i}}" if eigenvalue[1] else ""
-    return parameter_text(
-        parameters, digits=4
-    ), rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"
+    eigenvalue_text = rf"$\omega_1\tau_2 = {number_in_tex(eigenvalue[0])}{imaginary}$"
+    return parameter_text(parameters, digits=4), eigenvalue_text

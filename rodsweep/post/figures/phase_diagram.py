@@ -1,6 +1,5 @@
 """Phase diagrams, as in the paper's Fig. 4: stability class of the rod over two parameters, and boundary
-curves. line, row: parameters along a row, and constant on a row.
-"""
+curves. line, row: parameters along a row, and constant on a row."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -18,7 +17,7 @@ from ...results.layouts import lacks_sweep_wide_variables
 from ...results.layouts.variables import flag_number
 from ..crushing import crushing_ratio
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .arm.validity_hatches import hatch_compressed
 from .grid_slices import left_out_clause
 from .layout.fitting import MAP_ASPECT
@@ -39,8 +38,7 @@ from .stability.row_classes import classes_between_crossings, pixel_classes_of_r
 class ClassMap:
     """Content of a map of classes. plane: the rectangle of the map. classes: class of the rod at each
     computed point, (rows, columns). crushing_ratio: force divided by the crushing force (zero stretch), at
-    every pixel, (pixels, pixels).
-    """
+    every pixel, (pixels, pixels)."""
 
     plane: DrawnPlane
     classes: Array
@@ -56,8 +54,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     """Draws the class of the rod, or its stable states if they are stored, as a map over two parameters with
     boundary curves; as one bar per row if fewer than two rows have a finite value of the row parameter.
     Returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     view = request.only_view()
     line = next(name for name in LINEAR_PARAMETERS if name not in view.parameters)
     row = next((name for name in view.parameters if len(view.parameter_values[name]) > 1), view.parameters[0])
@@ -83,16 +80,13 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.imshow(pixels, interpolation="nearest", origin="lower", **unit, **palette.colour_keywords)
     style.scale_axis(axes, "x", x)
     style.scale_axis(axes, "y", y)
-    boundaries = [
-        *_draw_crushing(axes, ratio, *pixel_coordinates),
-        *hatch_compressed(axes, view, ratio, *pixel_coordinates),
-    ]
+    boundaries: list[Any] = [*_draw_crushing(axes, ratio, *pixel_coordinates)]
+    boundaries += hatch_compressed(axes, view, ratio, *pixel_coordinates)
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
     style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
-    constants = constant_quantities_text(view), _constant_parameters_text(view, line, row)
-    figure.suptitle(style.heading_text(view, *constants, stored_crossings_text(view)))
+    set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
     infinite = left_out_clause(view.parameter_values, [row])
@@ -101,8 +95,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
 
 def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: str, row: str) -> list[Any]:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
-    their legend entries. line, row: parameters along a row, and constant on a row.
-    """
+    their legend entries. line, row: parameters along a row, and constant on a row."""
     handles: list = []
     if "curve_number" in view.variables:
         handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
@@ -115,8 +108,7 @@ def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: st
 
 def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
-    criticality. line, row: parameters on the axes.
-    """
+    criticality. line, row: parameters on the axes."""
     fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in (line, row)}
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
@@ -126,10 +118,8 @@ def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
 
 
 def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]:
-    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry.
-
-    ratio: force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,).
-    """
+    """Draws the line on which the force begins to crush the rod; returns a list with its legend entry. ratio:
+    force divided by the crushing force at x and y, (pixels, pixels). x, y: coordinates, (pixels,)."""
     if not ratio.min() < 1 < ratio.max():
         return []
     axes.contour(x, y, ratio, levels=[1.0], colors="0.4", linewidths=1.2)
@@ -138,49 +128,37 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]
 
 def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
-    parameter. line, row: parameters along a row, and constant on a row.
-    """
+    parameter. line, row: parameters along a row, and constant on a row."""
     x = view.variables[line]
     y = view.parameter_values[row]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
-    fractions = np.linspace(0, 1, PIXEL_COUNT + 1)
-    edges = (
-        x[0] * (x[-1] / x[0]) ** fractions if style.is_logarithmic(x) else x[0] + (x[-1] - x[0]) * fractions
-    )
-    table = np.array(
-        [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
-    )
+    edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
+    rows = [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
+    table: Array = np.array(rows)
     keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **keywords)
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    axes.set_yticks(
-        np.arange(len(y)), [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
-    )
+    texts = [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
+    axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
     axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line])
     style.legend_below(figure, palette.legend_entries(table), columns=3)
-    figure.suptitle(
-        style.heading_text(view, constant_quantities_text(view), _constant_parameters_text(view, line, row))
-    )
+    set_heading(figure, view, _constant_parameters_text(view, line, row))
     return figure
 
 
 def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file and by the crushing force.
-
-    line, row: parameters along a row, and constant on a row.
-    """
+    curves of the file and by the crushing force. line, row: parameters along a row, and constant on a row."""
     plane = map_.plane
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
     is_known = map_.classes != crushed_class
-    computed = ClassifiedPoints(
-        plane.fractions_of_axes(columns[is_known], rows[is_known]), map_.classes[is_known]
-    )
+    places = plane.fractions_of_axes(columns[is_known], rows[is_known])
+    computed = ClassifiedPoints(places, map_.classes[is_known])
     row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
         x, row_values, row_classes = classes_between_crossings(view, line, row)
@@ -191,11 +169,8 @@ def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, ma
         number = v[f"{kind}_number"]
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
             number = np.where(v["curve_kind"] == 1, number, 0)
-        masks = [number == region_number for region_number in np.unique(number[number > 0])]
-        curves += [
-            plane.fractions_of_axes(v[f"{kind}_{line}"][region_number], v[f"{kind}_{row}"][region_number])
-            for region_number in masks
-        ]
+        for mask in (number == curve for curve in np.unique(number[number > 0])):
+            curves.append(plane.fractions_of_axes(v[f"{kind}_{line}"][mask], v[f"{kind}_{row}"][mask]))
     undecided = flag_number("undecided", palette.words)
     pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
     return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

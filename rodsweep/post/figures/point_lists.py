@@ -1,6 +1,5 @@
 """Lists of points in figures: conversion to a grid if the points form a grid, and axes with the number of the
-point.
-"""
+point."""
 
 from dataclasses import replace
 
@@ -51,7 +50,7 @@ def shared_parameters(view: ResultView) -> dict[str, float]:
 
 
 def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
-    """Labels the horizontal axis with the numbers of the points of a list, from 1. count: number of points.
+    """Labels the horizontal axis with the numbers of the points of a list, from 1.
 
     For an arm, the label names the varied quantities, in SI units; the tick labels of a short list are the
     values of these quantities.
@@ -70,20 +69,15 @@ def label_point_numbers(axes: Axes, view: ResultView, count: int) -> None:
 
 def _varied_quantities(view: ResultView) -> list[tuple[str, list[str]]]:
     """Pairs (name with unit, values at the points as text), one pair for each quantity of an arm that
-    varies.
-    """
-    own_quantities = {name: values for name, values in view.quantities.items() if name not in ARM_SCALES}
-    return [
-        _name_and_value_texts(name, values)
-        for name, values in own_quantities.items()
-        if len(np.unique(values)) > 1
-    ]
+    varies."""
+    quantities = view.quantities.items()
+    varied = ((n, v) for n, v in quantities if n not in ARM_SCALES and len(np.unique(v)) > 1)
+    return [_name_and_value_texts(name, values) for name, values in varied]
 
 
 def _name_and_value_texts(name: str, values: np.ndarray) -> tuple[str, list[str]]:
     """Returns (name with unit, values as text) of the quantity `name`. values: (points,); for a drag, indices
-    in DRAG_NAMES.
-    """
+    in DRAG_NAMES."""
     if name == "drag":
         return quantity_words(name), [DRAG_NAMES[int(value)].replace("_", " ") for value in values]
     unit = ALL_QUANTITIES[name].unit

@@ -70,21 +70,17 @@ class FigureLook:
 
     def fit(self, figure: Figure, min_aspect: float = MIN_ASPECT) -> None:
         """Scales a figure to the width `width_in_inches`, if given, and lays out the figure, see
-        `fit_layout`. min_aspect: smallest ratio of height to width of a panel.
-        """
+        `fit_layout`. min_aspect: smallest ratio of height to width of a panel."""
         if self.width_in_inches is not None:
-            width_inches, height_inches = figure.get_size_inches()
-            figure.set_size_inches(
-                self.width_in_inches,
-                height_inches * min(1.0, self.width_in_inches / width_inches) ** HEIGHT_EXPONENT,
-            )
+            natural_width, natural_height = figure.get_size_inches()
+            shrinkage = min(1.0, self.width_in_inches / natural_width)
+            figure.set_size_inches(self.width_in_inches, natural_height * shrinkage**HEIGHT_EXPONENT)
         fit_layout(figure, min_aspect)
 
 
 def _inches(width: str) -> float:
     """Width in inches, from a name in WIDTHS or a length with a unit. Raises InputError for another text, and
-    for a width outside MIN_WIDTH to MAX_WIDTH.
-    """
+    for a width outside MIN_WIDTH to MAX_WIDTH."""
     if width in WIDTHS:
         return WIDTHS[width]
     message = f"width = {width!r} is not allowed; choose {', '.join(WIDTHS)}, or a length such as '89 mm'"
@@ -101,8 +97,7 @@ def _inches(width: str) -> float:
 @dataclass(frozen=True, slots=True)
 class FigureRequest:
     """Result files `views` to draw, output file, and options of `rodsweep plot` (roots, what, points: see
-    `FigureChoices`; look: appearance).
-    """
+    `FigureChoices`; look: appearance)."""
 
     views: Sequence[ResultView]
     output: Path
@@ -119,16 +114,13 @@ class FigureRequest:
 
     def only_view(self, *kinds: str) -> ResultView:
         """View of the only file to draw. Raises InputError for several files, for chosen points, for a value
-        of --what that is not in `kinds`, and for an invalid output name.
-        """
+        of --what that is not in `kinds`, and for an invalid output name."""
         self.refuse_choices(self.views[0], kinds)
         self.require_output()
         return self.views[0]
 
     def refuse_choices(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for options that the task of `view` does not have, and for several files. kinds:
-        values of --what that the task has.
-        """
+        """Raises InputError for options that the task of `view` does not have, and for several files."""
         self.refuse_points(view, kinds)
         if self.views[1:]:
             raise InputError(
@@ -137,26 +129,21 @@ class FigureRequest:
             )
 
     def refuse_points(self, view: ResultView, kinds: Sequence[str] = ()) -> None:
-        """Raises InputError for chosen points, and for a value of --what that is not in `kinds`. view: file
-        whose task does not have these options.
-        """
+        """Raises InputError for chosen points, and for a value of --what that is not in `kinds`."""
         if self.points:
             raise InputError(
                 f"{view.path}: --point is for results of limit_cycle, and this is a result of {view.task}"
             )
         if self.what and self.what not in kinds:
-            task = next(
-                task for task, kinds_of_task in FIGURE_KINDS_BY_TASK.items() if self.what in kinds_of_task
-            )
+            task = next(task for task, own_kinds in FIGURE_KINDS_BY_TASK.items() if self.what in own_kinds)
+            option = f"--what {self.what}"
             raise InputError(
-                f"{view.path}: --what {self.what} is for results of {task}, and this is a result of "
-                f"{view.task}"
+                f"{view.path}: {option} is for results of {task}, and this is a result of {view.task}"
             )
 
     def require_output(self, *suffixes: str) -> None:
         """Raises InputError if the name of the output file has none of the suffixes (by default suffixes of
-        images), or if `is_protected` is true.
-        """
+        images), or if `is_protected` is true."""
         suffixes = suffixes or (".png", ".pdf", ".svg")
         if self.output.suffix not in suffixes:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
@@ -183,8 +170,6 @@ class FigureRequest:
         if (dpi := rcParams["savefig.dpi"]) != "figure":
             figure.set_dpi(dpi)  # texts are measured as they are saved
         self.look.fit(figure, min_aspect)
-        figure.set_layout_engine(
-            None
-        )  # `fit_layout` has laid out the figure; savefig would repeat the layout
+        figure.set_layout_engine(None)  # savefig would repeat the layout of `fit_layout`
         save_figure(figure, self.output)
         return caption

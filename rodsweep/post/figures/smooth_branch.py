@@ -65,40 +65,28 @@ def smooth_curve_of_branch(curve: StoredBranch) -> tuple[Array, Array, Array, ND
         cycles = np.insert(cycles, i + 1, corners[i], axis=0)
         stable = np.insert(stable, i, stable[i])
     corner_indices = [i + 1 + k for k, i in enumerate(sorted(corners))]
-    smooth_parts = [
-        _smooth_vertices(cycles[low : high + 1], extent)
-        for low, high in pairwise([0, *corner_indices, len(cycles) - 1])
-    ]
-    values, y, log_period = np.concatenate(
-        [*(smooth_part[:-1] for smooth_part in smooth_parts), smooth_parts[-1][-1:]]
-    ).T
+    ends = pairwise([0, *corner_indices, len(cycles) - 1])
+    parts = [_smooth_vertices(cycles[low : high + 1], extent) for low, high in ends]
+    values, y, log_period = np.concatenate([*(part[:-1] for part in parts), parts[-1][-1:]]).T
     return values, y, np.exp(log_period), np.repeat(stable, SEGMENT_COUNT)
 
 
 def _smooth_vertices(cycles: Array, extent: Array) -> Array:
     """Vertices, (m, 3), of a smooth curve through the cycles `cycles`, (n, 3), with SEGMENT_COUNT segments
-    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,).
-
-    At a Hopf point the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point,
-    therefore give the curve a square-root shape.
-    """
+    between two cycles. Columns: parameter, y, log period. extent: ranges of the branch, (3,). At a Hopf point
+    the branch is symmetric under y to -y. Mirror images of cycles, beyond the Hopf point, therefore give the
+    curve a square-root shape."""
     cycles_before = cycles[MIRRORED_CYCLE_COUNT:0:-1] * MIRROR_FACTORS
     cycles_after = cycles[-2 : -MIRRORED_CYCLE_COUNT - 2 : -1] * MIRROR_FACTORS
     first = len(cycles_before) if cycles[0, 1] == 0 else 0
     last_count = len(cycles_after) if cycles[-1, 1] == 0 else 0
     extended = np.concatenate([cycles_before[:first], cycles, cycles_after[:last_count]])
-    variables = [
-        _cumulative_chord_lengths(extended, extent, weights, power) for weights, power in CHORD_VARIABLES
-    ]
+    variables = [_cumulative_chord_lengths(extended, extent, *choice) for choice in CHORD_VARIABLES]
     s = min(variables, key=lambda variable: _largest_cubic_deviation(variable, extended / extent))
     ends = s[first : first + len(cycles)]
-    s_drawn = np.append(
-        np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel(), ends[-1]
-    )
-    vertices: Array = scipy.interpolate.CubicHermiteSpline(s, extended, slopes_at_cycles(s, extended))(
-        s_drawn
-    )
-    return vertices
+    drawn = np.linspace(ends[:-1], ends[1:], SEGMENT_COUNT, endpoint=False, axis=1).ravel()
+    spline = scipy.interpolate.CubicHermiteSpline(s, extended, slopes_at_cycles(s, extended))
+    return np.asarray(spline(np.append(drawn, ends[-1])))
 
 
 def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
@@ -127,10 +115,9 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
                 and slope_jumps[1] > MIN_SLOPE_JUMP
                 and slope_jumps[1] > MIN_SLOPE_JUMP_RATIO * max(map(abs, slope_jumps[::2]))
             ):
-                corner = scipy.interpolate.barycentric_interpolate(x, cycles[window], root.real)
-                corner[1] = scipy.interpolate.barycentric_interpolate(
-                    x[x < 0.5], cycles[window][x < 0.5, 1], root.real
-                )
+                interpolate = scipy.interpolate.barycentric_interpolate
+                corner = interpolate(x, cycles[window], root.real)
+                corner[1] = interpolate(x[x < 0.5], cycles[window][x < 0.5, 1], root.real)
                 candidates[i] = slope_jumps[1], corner
     return {
         i: corner
@@ -141,44 +128,35 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
 
 def _jump_polynomial(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
-    the slope of the steepest chord. x, values: (m,) each.
-    """
-    left, right = (
-        Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in (x < 0.5, x > 0.5)
-    )
+    the slope of the steepest chord. x, values: (m,) each."""
+    sides = (x < 0.5, x > 0.5)
+    left, right = (Polynomial.fit(x[side], values[side], side.sum() - 1).convert() for side in sides)
     return (right - left) / (np.abs(np.diff(values) / np.diff(x)).max() or 1.0)
 
 
 def _cumulative_chord_lengths(
     points: Array, extent: Array, weights: Array = CHORD_WEIGHTS, power: float = 1.0
 ) -> Array:
-    """Sum of the chord lengths to the power `power`, from the first point to each point, (n,).
-
-    points: points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,).
-    """
+    """Sum of the chord lengths to the power `power`, from the first point to each point, (n,). points:
+    points, (n, 3). extent: ranges of the branch, (3,). weights: weights of the coordinates, (3,)."""
     chords = np.linalg.norm(np.diff(points / extent * weights, axis=0), axis=1)
     return np.append(0.0, np.cumsum(chords**power))
 
 
 def _largest_cubic_deviation(s: Array, points: Array) -> float:
     """Largest deviation, in a coordinate, of a point from the cubic through two neighbours on each side of
-    the point. s: variable, (n,). points: points, (n, columns).
-    """
-    neighbour_steps = (-2, -1, 1, 2)
-    deviations = [
-        points[i]
-        - scipy.interpolate.barycentric_interpolate(
-            s[[i + k for k in neighbour_steps]], points[[i + k for k in neighbour_steps]], s[i]
-        )
-        for i in range(2, len(s) - 2)
-    ]
+    the point. s: variable, (n,). points: points, (n, columns)."""
+    deviations = []
+    for i in range(2, len(s) - 2):
+        neighbours = [i - 2, i - 1, i + 1, i + 2]
+        cubic = scipy.interpolate.barycentric_interpolate(s[neighbours], points[neighbours], s[i])
+        deviations.append(points[i] - cubic)
     return float(np.abs(deviations).max()) if deviations else 0.0
 
 
 def slopes_at_cycles(s: Array, points: Array) -> Array:
     """Derivatives of the points with respect to s, (n, columns), from polynomials through SLOPE_CYCLE_COUNT
-    neighbouring points. s: (n,). points: points, (n, columns).
-    """
+    neighbouring points. s: (n,). points: points, (n, columns)."""
     count = min(SLOPE_CYCLE_COUNT, len(s))
     slopes = np.empty_like(points)
     for i, start in enumerate(np.clip(np.arange(len(s)) - count // 2, 0, len(s) - count)):

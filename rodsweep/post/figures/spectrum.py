@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .grid_slices import left_out_clause, slice_at_values, without_infinite_values
 from .layout.fitting import MAP_ASPECT
 from .point_lists import as_grid_if_possible
@@ -59,8 +59,7 @@ GROWTH_LABEL = r"largest growth rate $\mathrm{Re}\,\omega_1\,\tau_2$"
 
 def draw_spectrum(request: FigureRequest) -> str:
     """Draws spectra along lines, a map, or the eigenvalues of single points, depending on the files; returns
-    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn.
-    """
+    a sentence. Raises InputError for options that the task does not have, and if nothing can be drawn."""
     if len(request.views) > 1:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view())
@@ -87,8 +86,7 @@ def draw_spectrum(request: FigureRequest) -> str:
 
 def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Sequence[str] = ()) -> None:
     """Raises InputError if the user's choice of roots is neither None nor in `allowed`. figure: noun for the
-    figure of `view`, which does not follow roots.
-    """
+    figure of `view`, which does not follow roots."""
     if roots not in (None, *allowed):
         raise InputError(
             f"{view.path}: --roots {roots} is for spectra along a line of points, and this is {figure}"
@@ -98,15 +96,13 @@ def _refuse_roots(view: ResultView, roots: str | None, figure: str, allowed: Seq
 def _draw_line_per_value(view: ResultView, curve_parameter: str, request: FigureRequest) -> str:
     """Draws a panel of spectra for each value of the parameter `curve_parameter`, which has too few values
     for a map; returns a sentence."""
-    lines = [
-        without_infinite_values(slice_at_values(view, {curve_parameter: float(value)}))
-        for value in view.parameter_values[curve_parameter]
-    ]
+    values = view.parameter_values[curve_parameter].tolist()
+    slices = (slice_at_values(view, {curve_parameter: value}) for value in values)
+    lines = map(without_infinite_values, slices)
     views = [line for line in lines if np.isfinite(line.variables["growth_rate"]).any()]
     others = [name for name in style.varied_axes(view) if name != curve_parameter]
-    return _draw_line_panels(
-        views, request, f"{curve_parameter}{left_out_clause(view.parameter_values, others)}"
-    )
+    omissions = left_out_clause(view.parameter_values, others)
+    return _draw_line_panels(views, request, f"{curve_parameter}{omissions}")
 
 
 def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel_noun: str) -> str:
@@ -119,14 +115,12 @@ def _draw_line_panels(views: Sequence[ResultView], request: FigureRequest, panel
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws a panel for each file; returns a sentence. Raises InputError if a file is not a line of
-    spectra.
-    """
+    spectra."""
     request.refuse_points(request.views[0])
     request.require_output()
     if len(request.views) > MAX_PANELS:
-        raise InputError(
-            f"{len(request.views)} files are given, but a figure has room for {MAX_PANELS}; give fewer files"
-        )
+        room = f"but a figure has room for {MAX_PANELS}; give fewer files"
+        raise InputError(f"{len(request.views)} files are given, {room}")
     views = [_line_of_spectra(view, request) for view in request.views]
     grids = map(as_grid_if_possible, request.views)
     omissions = [left_out_clause(grid.parameter_values, style.varied_axes(grid)) for grid in grids]
@@ -135,8 +129,7 @@ def _draw_files(request: FigureRequest) -> str:
 
 def _line_of_spectra(view: ResultView, request: FigureRequest) -> ResultView:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
-    a line of spectra.
-    """
+    a line of spectra."""
     if view.task != request.views[0].task:
         raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
     view = as_grid_if_possible(view)
@@ -174,22 +167,15 @@ def _growth_map(view: ResultView, names: list[str]) -> Figure:
     axes.set(xlabel=style.LABELS[horizontal], ylabel=style.LABELS[vertical])
     colours = matplotlib.cm.ScalarMappable(norm, MAP_COLOURS)
     figure.colorbar(colours, ax=axes, label=GROWTH_LABEL)
-    _note_points(axes, view.parameter_values[horizontal], view.parameter_values[vertical], growth)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.constant_parameters_text(view, *names),
-            "black: zero growth, interpolated between the points",
-        )
-    )
+    _note_points(axes, x, y, growth)
+    note = "black: zero growth, interpolated between the points"
+    set_heading(figure, view, style.constant_parameters_text(view, *names), note)
     return figure
 
 
 def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -> None:
     """Adds an invisible scatter plot of the points of a map, from which `rodsweep report` reads the values.
-    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny).
-    """
+    x, y: values along the axes, (nx,) and (ny,). growth: growth rates, (nx, ny)."""
     limits = axes.axis()
     x_grid, y_grid = np.meshgrid(x, y, indexing="ij")
     axes.scatter(x_grid.ravel(), y_grid.ravel(), c=growth.ravel(), visible=False, label=GROWTH_LABEL)
@@ -197,9 +183,7 @@ def _note_points(axes: Axes, x: np.ndarray, y: np.ndarray, growth: np.ndarray) -
 
 
 def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Figure:
-    """Figure with a panel of roots for each view, and one legend. roots: choice of the roots. is_narrow:
-    whether the panels are stacked.
-    """
+    """Figure with a panel of roots for each view, and one legend."""
     columns = 1 if is_narrow else 2
     rows = -(-len(views) // columns)
     size = FIGURE_WIDTH[columns], PANEL_HEIGHT[columns] * rows + 0.8
@@ -217,9 +201,8 @@ def draw_panels(views: Sequence[ResultView], roots: str, is_narrow: bool) -> Fig
             word = THRESHOLD_WORDS[threshold.kind]
             _, dashes = THRESHOLD_LOOKS[threshold.kind]
             handles[word] = Line2D([], [], ls=dashes, label=word, **THRESHOLD_LINE)
-        text = style.heading_text(
-            view, style.constant_parameters_text(view, name), ", ".join(map(threshold_text, thresholds))
-        )
+        threshold_texts = ", ".join(map(threshold_text, thresholds))
+        text = style.heading_text(view, style.constant_parameters_text(view, name), threshold_texts)
         panel.set_title(f"({letter})  {text}", loc="left")
     for panel in panels[len(views) :]:
         panel.remove()

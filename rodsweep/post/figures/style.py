@@ -77,17 +77,15 @@ def escape_dollar_signs(text: object) -> str:
 
 
 def heading_text(view: ResultView, *lines: str) -> str:
-    """Text above a figure: title of the result file (if requested), constitutive law, profile and
-    segments (if not standard), and `lines`, one below the other.
-    """
+    """Text above a figure: title of the result file (if requested), constitutive law, profile and segments
+    (if not standard), and `lines`, one below the other."""
     title = " ".join(escape_dollar_signs(view.attributes.get("title", "")).split())
     return "\n".join(filter(None, (title, material_words(view), *lines)))
 
 
 def file_label(view: ResultView, views: Sequence[ResultView]) -> str:
     """Text that identifies a file in a figure of several files: constitutive law if all laws differ, else
-    title if all titles differ, else file name.
-    """
+    title if all titles differ, else file name."""
     laws = [material_words(other_view) or "linear" for other_view in views]
     if len(set(laws)) == len(laws):
         return laws[list(views).index(view)]
@@ -100,8 +98,7 @@ def file_label(view: ResultView, views: Sequence[ResultView]) -> str:
 
 def number_in_tex(value: float, digits: int = 6) -> str:
     """The number `value` as TeX without dollar signs: 1e4 gives 10^4, 2.5e-4 gives 2.5 x 10^-4, 200 gives
-    200. digits: largest number of significant digits.
-    """
+    200. digits: largest number of significant digits."""
     if isinf(value):
         return r"\infty" if value > 0 else r"-\infty"
     if value == 0:
@@ -117,9 +114,8 @@ def number_in_tex(value: float, digits: int = 6) -> str:
 
 
 def parameter_text(parameters: Mapping[str, float], digits: int = 6) -> str:
-    """Parameters with their symbols and values, as one line of TeX. parameters: values by name. digits:
-    largest number of significant digits.
-    """
+    """Parameters with their symbols and values, as one line of TeX. digits: largest number of significant
+    digits."""
     return ", ".join(
         f"${SYMBOLS[name]} = {number_in_tex(value, digits)}$" for name, value in parameters.items()
     )
@@ -134,8 +130,7 @@ def constant_parameters_text(view: ResultView, *axis_names: str) -> str:
 
 def varied_axes(view: ResultView) -> list[str]:
     """Names of the one or two parameters of a grid that have several values. Raises InputError if no
-    parameter, or more than two, have several values.
-    """
+    parameter, or more than two, have several values."""
     long = [name for name, values in view.parameter_values.items() if len(values) > 1]
     if not long:
         raise InputError(
@@ -159,16 +154,13 @@ def require_content(view: ResultView, available: object, noun: str) -> None:
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:
-    """Draws one legend, with up to `columns` columns, below the panels of the figure. handles: legend
-    entries.
-    """
+    """Draws one legend, with up to `columns` columns, below the panels of the figure."""
     figure.legend(handles=handles, loc="outside lower center", ncols=columns, frameon=False)
 
 
 def is_logarithmic(values: np.ndarray) -> bool:
     """Whether an axis with the increasing values `values`, (n,), is logarithmic: the values have equal
-    ratios, or span more than a decade without equal steps.
-    """
+    ratios, or span more than a decade without equal steps."""
     if len(values) < 2 or values[0] <= 0 or not np.isfinite(values).all():
         return False
     steps = np.diff(values)
@@ -181,8 +173,7 @@ def is_logarithmic(values: np.ndarray) -> bool:
 
 def scale_axis(axes: Axes, letter: Literal["x", "y"], values: np.ndarray) -> None:
     """Makes the axis `letter` logarithmic, with suitable tick labels, if `is_logarithmic(values)`. values:
-    (n,).
-    """
+    (n,)."""
     if not is_logarithmic(values):
         return
     axes.set(**{f"{letter}scale": "log"})
@@ -191,8 +182,7 @@ def scale_axis(axes: Axes, letter: Literal["x", "y"], values: np.ndarray) -> Non
 
 def label_few_decades(axis: Axis, low: float, high: float) -> None:
     """Labels numbers such as 1, 2 and 5 of each decade on a logarithmic axis from `low` to `high`, if the
-    axis is short. All labels are numbers, or all are powers of ten.
-    """
+    axis is short. All labels are numbers, or all are powers of ten."""
     if high < FEW_DECADES_RATIO * low:
         multiples = (1, 2, 5) if high > SHORT_AXIS_RATIO * low else (1, 1.5, 2, 3, 4, 6, 8)
         axis.set_major_locator(LogLocator(subs=multiples))
@@ -205,8 +195,7 @@ def label_few_decades(axis: Axis, low: float, high: float) -> None:
 
 def label_outer(axes: Axes, xlabel: str, ylabel: str) -> None:
     """Labels the axes of a panel in a grid of panels that share axes. Only panels at the left and at the
-    bottom have labels.
-    """
+    bottom have labels."""
     grid_cell = axes.get_subplotspec()
     if grid_cell is None or grid_cell.is_last_row():
         axes.set_xlabel(xlabel)
@@ -222,8 +211,7 @@ def draw_coloured_cells(
     colours: str = "viridis",
     ratios: bool = True,
 ) -> None:
-    """Draws coloured cells with a colour bar. edges: edges of the cells along x and along y. values: (ny,
-    nx); a cell with NaN has no colour. label: label of the colour bar. colours: name of a colour map.
+    """Draws coloured cells with a colour bar. values: (ny, nx); a cell with NaN has no colour.
 
     ratios: whether the colours are logarithmic if the values span more than a decade.
     """

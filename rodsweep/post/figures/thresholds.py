@@ -1,6 +1,5 @@
 """Figures of the task `thresholds`: curves against parameters, maps over two parameters, or bars for single
-rods.
-"""
+rods."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -9,7 +8,7 @@ from matplotlib.patches import Patch
 from ...errors import InputError
 from ...results.file.view import ResultView
 from . import style
-from .arm.quantities import constant_quantities_text
+from .arm.quantities import set_heading
 from .cycle.maps import label_maps, map_panels
 from .cycle.point_map import cell_edges, point_map
 from .layout.fitting import MAP_ASPECT, MIN_ASPECT
@@ -34,21 +33,19 @@ SEARCH_DIGITS = 4
 def draw_thresholds(request: FigureRequest) -> str:
     """Draws the first thresholds against one parameter or over two parameters, or a bar of classes for each
     rod; returns a sentence. Raises InputError for options that the task does not have, and if nothing can be
-    drawn.
-    """
+    drawn."""
     if request.views[1:]:
         return _draw_files(request)
     view = as_grid_if_possible(request.only_view("lines", "map"))
     if not view.is_grid or view.variables["status"].size == 1:
-        if request.what and view.quantities and view.variables["status"].size > 1:
-            raise InputError(
-                f"{view.path}: --what {request.what} is not for a grid over an arm's quantities; remove "
-                "--what or draw lines over the other quantities with --at, such as --at 'length=12 cm'"
-            )
         if request.what:
-            raise InputError(
-                f"{view.path}: --what {request.what} needs one or two varied parameters; remove --what"
-            )
+            reason = "needs one or two varied parameters; remove --what"
+            if view.quantities and view.variables["status"].size > 1:
+                reason = (
+                    "is not for a grid over an arm's quantities; remove --what or draw lines over the other "
+                    "quantities with --at, such as --at 'length=12 cm'"
+                )
+            raise InputError(f"{view.path}: --what {request.what} {reason}")
         min_aspect = BAR_ASPECT if view.variables["status"].size == 1 else MIN_ASPECT
         return request.write(draw_class_bars(view), "behaviour of each rod over F", min_aspect)
     long = style.varied_axes(view)
@@ -58,28 +55,24 @@ def draw_thresholds(request: FigureRequest) -> str:
     if request.what == "map" or (len(long) == 2 and not has_few_lines and request.what != "lines"):
         figure, omissions = _threshold_maps(view, drawable_names, request.look.is_narrow)
         return request.write(figure, f"critical forces over {' and '.join(long)}{omissions}", MAP_ASPECT)
+    search = searched_range_clause(view)
     if len(long) == 1 or has_few_lines:
-        return request.write(*draw_lines_of_grid(view, long, searched_range_clause(view)))
-    return request.write(
-        *draw_selected_lines(view, long, request.look.is_narrow, searched_range_clause(view))
-    )
+        return request.write(*draw_lines_of_grid(view, long, search))
+    return request.write(*draw_selected_lines(view, long, request.look.is_narrow, search))
 
 
 def _draw_files(request: FigureRequest) -> str:
     """Draws the thresholds of several files against the parameter that varies in all files; returns a
     sentence. Raises InputError for too many files, for unsuitable options, and unless the files have one task
-    and vary in one common parameter only.
-    """
+    and vary in one common parameter only."""
     request.refuse_points(request.views[0], ("lines",))
     request.require_output()
     views = request.views
-    names = (
-        style.varied_axes(views[0]) if views[0].is_grid else []
-    )  # a list over an arm's quantities has many
+    # A list over an arm's quantities has many.
+    names = style.varied_axes(views[0]) if views[0].is_grid else []
     if len(views) > len(FILE_COLOURS):
-        raise InputError(
-            f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}"
-        )
+        room = f"a figure of thresholds has room for {len(FILE_COLOURS)}"
+        raise InputError(f"{len(views)} files are given; {room}")
     for view in views:
         if view.task != views[0].task:
             raise InputError(
@@ -103,31 +96,22 @@ def searched_range_clause(*views: ResultView) -> str:
 
 def _threshold_maps(view: ResultView, names: list[str], is_narrow: bool) -> tuple[Figure, str]:
     """Returns (figure, omissions). The figure has a map over two parameters for each kind of threshold in
-    `names`. omissions: clause on infinite values of the parameters. is_narrow: whether the maps are stacked.
-    Raises InputError if nothing can be drawn.
-    """
+    `names`. omissions: clause on infinite values of the parameters. Raises InputError if nothing can be
+    drawn."""
     points = point_map(view)
     figure, panels = map_panels(len(names), is_narrow)
     lacking = False
-    for axes, (name, word, *_) in zip(
-        panels, [force for force in CRITICAL_FORCES if force[0] in names], strict=True
-    ):
+    edges = cell_edges(points.x), cell_edges(points.y)
+    forces = [force for force in CRITICAL_FORCES if force[0] in names]
+    for axes, (name, word, *_) in zip(panels, forces, strict=True):
         values = view.variables[name].ravel()[points.point_indices]
         style.require_content(view, np.isfinite(values).any(), f"{name} of rods with finite parameters")
-        style.draw_coloured_cells(
-            axes, (cell_edges(points.x), cell_edges(points.y)), values, f"{word} in $k_3/L^2$"
-        )
+        style.draw_coloured_cells(axes, edges, values, f"{word} in $k_3/L^2$")
         axes.set_facecolor(NO_THRESHOLD)
         lacking |= bool(np.isnan(values).any())
     label_maps(panels, points)
     if lacking:
         style.legend_below(figure, [Patch(facecolor=NO_THRESHOLD, label="none found")], columns=1)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.parameter_text(points.common_parameters),
-            searched_range_clause(view),
-        )
-    )
+    constants = style.parameter_text(points.common_parameters)
+    set_heading(figure, view, constants, searched_range_clause(view))
     return figure, points.omissions

@@ -58,8 +58,7 @@ class ColumnTexts:
 
     def value_and_error_texts(self, name: str) -> list[tuple[str, str]]:
         """Pairs (value, absolute error) of the variable `name` as text, one per row. An unknown error is an
-        empty text.
-        """
+        empty text."""
         column = self.columns[name]
         if column.is_boolean:
             return [(BOOLEAN_WORDS[int(value)], "") for value in column.values]
@@ -78,9 +77,7 @@ class ColumnTexts:
         """
         largest_rounding = np.zeros_like(self._values[error])
         for table, relative in ((ABSOLUTE_ERRORS, False), (RELATIVE_ERRORS, True)):
-            for name in (
-                name for name, table_errors in table.items() if table_errors == error and name in self.columns
-            ):
+            for name in (n for n, own_error in table.items() if own_error == error and n in self.columns):
                 values = self._values[name]
                 printed_values = np.array([float(text) if text else np.nan for text in self.texts(name)])
                 with np.errstate(divide="ignore", invalid="ignore"):
@@ -108,8 +105,7 @@ CROSSINGS_TABLE = "crossings"
 
 class OneRod:
     """Numbers and lists in the result of one rod. For an arm, variables in SI units are printed where they
-    exist.
-    """
+    exist."""
 
     def __init__(self, view: ResultView):
         self.view = view
@@ -124,8 +120,7 @@ class OneRod:
 
     def _threshold_errors(self) -> Mapping[str, np.ndarray]:
         """Absolute errors, (1,) each, of the first threshold force of each kind, read from the list of
-        crossings. Empty if the result has no list of crossings.
-        """
+        crossings. Empty if the result has no list of crossings."""
         if (
             CROSSINGS_TABLE not in self.list_texts
             or "crossing_error" not in self.list_texts[CROSSINGS_TABLE].columns
@@ -143,14 +138,12 @@ class OneRod:
 
     def preferred_name(self, digits: ColumnTexts, name: str) -> str:
         """Name of the variable that is printed for the variable `name`: the corresponding SI variable if
-        `digits` has such a column, else `name`.
-        """
+        `digits` has such a column, else `name`."""
         return self.si_names.get(name, name) if self.si_names.get(name) in digits.columns else name
 
     def column(self, name: str) -> Column | None:
         """The variable `name` of the rod as a column of one row; None if the variable or its value is
-        missing.
-        """
+        missing."""
         column = self.point_texts.columns.get(self.preferred_name(self.point_texts, name))
         return None if column is None or column.absent[0] else column
 

@@ -1,6 +1,5 @@
 """For each task, the sentence with the answer about one rod, and the numbers and the list printed below the
-sentence.
-"""
+sentence."""
 
 from collections import Counter
 from collections.abc import Callable

@@ -31,8 +31,7 @@ QUOTED_TEXT = re.compile("`([^`]*)`")
 
 def require_page(output: Path, inputs: Sequence[Path]) -> None:
     """Raises InputError if `output` is not a valid name for an HTML page, see `require_output_path`. inputs:
-    result files, which must not be overwritten.
-    """
+    result files, which must not be overwritten."""
     require_output_path(output, (".html",), "page", inputs)
 
 
@@ -62,27 +61,16 @@ def page_text(results: Sequence[ReportContents], shared_pictures: Pictures) -> s
 
 
 def rendered_template(template: str, page_pictures: Sequence[VectorPicture], **contents: Any) -> str:
-    """HTML text made from a template of this package. template: file name. page_pictures: all pictures of the
-    page. contents: variables of the template.
-    """
-    environment = Environment(
-        loader=PackageLoader(__name__),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    """HTML text made from a template of this package. contents: variables of the template."""
+    spaces: dict[str, Any] = {"trim_blocks": True, "lstrip_blocks": True, "keep_trailing_newline": True}
+    loader = PackageLoader(__name__)
+    environment = Environment(loader=loader, autoescape=True, undefined=StrictUndefined, **spaces)
     environment.filters["svg"] = Markup  # made here from numbers and escaped texts
     environment.filters["with_code"] = _with_code
     colours = sorted(set[str]().union(*(picture.colours for picture in page_pictures)))
-    return environment.get_template(template).render(
-        colours=[(colour, dark_page_colour(colour)) for colour in colours],
-        max_rows=MAX_ROWS,
-        version=__version__,
-        written=utc_time(),
-        **contents,
-    )
+    contents["colours"] = [(colour, dark_page_colour(colour)) for colour in colours]
+    contents |= {"max_rows": MAX_ROWS, "version": __version__, "written": utc_time()}
+    return environment.get_template(template).render(contents)
 
 
 def _with_code(text: str) -> Markup:

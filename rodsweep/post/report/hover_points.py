@@ -39,8 +39,7 @@ FRAME_MARGIN = 1.0
 @dataclass(frozen=True, slots=True)
 class HoverPoint:
     """A value in a figure with the text shown for it. x, y: position relative to the upper left corner of the
-    figure, in points.
-    """
+    figure, in points."""
 
     x: float
     y: float
@@ -50,8 +49,7 @@ class HoverPoint:
 @dataclass(frozen=True, slots=True)
 class HoverSeries:
     """Texts for n values of a curve. positions: positions relative to the lower left corner of the figure, in
-    pixels, (n, 2). texts: texts of the values.
-    """
+    pixels, (n, 2). texts: texts of the values."""
 
     positions: Array
     texts: Sequence[str]
@@ -80,12 +78,9 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
         return
     names = (axis_name(axes, "x"), axis_name(axes, "y"))
     series_list = [*_cell_series(axes, names, meanings), *_bar_series(axes, names, meanings)]
-    for line in axes.lines:
-        if line.get_visible():
-            series_list.append(_line_series(axes, line, names))
-    series_list += [
-        _scatter_series(dots, names) for dots in axes.collections if isinstance(dots, PathCollection)
-    ]
+    series_list += [_line_series(axes, line, names) for line in axes.lines if line.get_visible()]
+    scatters = (dots for dots in axes.collections if isinstance(dots, PathCollection))
+    series_list += [_scatter_series(dots, names) for dots in scatters]
     panel_box = axes.bbox.padded(FRAME_MARGIN)
     for series in series_list:
         is_inside = np.isfinite(series.positions).all(axis=1)
@@ -95,8 +90,7 @@ def _panel_series(axes: Axes, meanings: dict[str, str]) -> Iterator[HoverSeries]
 
 def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSeries:
     """Texts for the vertices of a line. A line across the whole panel, such as a threshold, has a single
-    text, its legend entry, at the middle. names: labels of the two axes.
-    """
+    text, its legend entry, at the middle. names: labels of the two axes."""
     data = np.ma.filled(np.ma.asarray(line.get_xydata(), float), np.nan).reshape(-1, 2)
     with np.errstate(all="ignore"):  # zero has no position on a logarithmic axis
         pixels = line.get_transform().transform(data)
@@ -109,10 +103,7 @@ def _line_series(axes: Axes, line: Line2D, names: tuple[str, str]) -> HoverSerie
 
 def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries:
     """Texts for the points of a scatter plot, with the value that is shown by the colour of a point, if any.
-    names: labels of the two axes.
-
-    An invisible scatter plot contains the points between which filled contours are interpolated.
-    """
+    An invisible scatter plot contains the points between which filled contours are interpolated."""
     data = np.ma.filled(np.ma.asarray(dots.get_offsets(), float), np.nan)
     pixels = dots.get_offset_transform().transform(data)
     texts = _curve_point_texts(names, data, _series_name(dots.get_label()))
@@ -120,20 +111,15 @@ def _scatter_series(dots: PathCollection, names: tuple[str, str]) -> HoverSeries
     if values is None:
         return HoverSeries(pixels, texts)
     name = "" if dots.colorbar is None else label_text(dots.colorbar.ax.get_ylabel())
-    name = name or _series_name(dots.get_label())
-    return HoverSeries(
-        pixels,
-        [
-            f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, point)}" if name else text
-            for value, point, text in zip(np.ma.filled(values, np.nan), data, texts, strict=True)
-        ],
-    )
+    if name := name or _series_name(dots.get_label()):
+        rows = zip(np.ma.filled(values, np.nan), data, strict=True)
+        texts = [f"{name}: {_coordinate_text(value)}\n{_coordinates_text(names, p)}" for value, p in rows]
+    return HoverSeries(pixels, texts)
 
 
 def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
     """Yields the texts for the cells of coloured meshes: value on the colour bar, or legend entry of the
-    colour, and coordinates. names: labels of the two axes. meanings: legend entries by colour.
-    """
+    colour, and coordinates."""
     for mesh in axes.collections:
         if not isinstance(mesh, QuadMesh):
             continue
@@ -145,25 +131,17 @@ def _cell_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -
         values = np.ma.masked_invalid(np.ma.asarray(mesh.get_array())).ravel()
         name = "" if mesh.colorbar is None else label_text(mesh.colorbar.ax.get_ylabel())
         drawn_indices = np.flatnonzero(~np.ma.getmaskarray(values))
+        centres = axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2)
         texts = []
-        for centre, value in zip(
-            axes.transData.inverted().transform(pixels[drawn_indices]).reshape(-1, 2),
-            values[drawn_indices],
-            strict=True,
-        ):
-            word = (
-                f"{name}: {_coordinate_text(value)}"
-                if name
-                else meanings.get(to_hex(mesh.to_rgba(value)), "")
-            )
+        for centre, value in zip(centres, values[drawn_indices], strict=True):
+            meaning = "" if name else meanings.get(to_hex(mesh.to_rgba(value)), "")
+            word = f"{name}: {_coordinate_text(value)}" if name else meaning
             texts.append("\n".join(filter(None, (word, _coordinates_text(names, centre)))))
         yield HoverSeries(pixels[drawn_indices], texts)
 
 
 def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) -> Iterator[HoverSeries]:
-    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends. names:
-    labels of the two axes. meanings: legend entries by colour.
-    """
+    """Yields the texts for bars, at the middle of each bar: legend entry, and values at both ends."""
     for bars in axes.containers:
         if not isinstance(bars, BarContainer):
             continue
@@ -178,8 +156,7 @@ def _bar_series(axes: Axes, names: tuple[str, str], meanings: dict[str, str]) ->
 
 def axis_name(axes: Axes, letter: Literal["x", "y"]) -> str:
     """Label of an axis as plain text, from the panel itself or from a panel with the same axis; `letter` if
-    there is no label.
-    """
+    there is no label."""
     shared_axes = axes.get_shared_x_axes() if letter == "x" else axes.get_shared_y_axes()
     for panel in (axes, *shared_axes.get_siblings(axes), *_panels_with_same_axis(axes, letter)):
         label = panel.get_xlabel() if letter == "x" else panel.get_ylabel()
@@ -201,9 +178,7 @@ def _panels_with_same_axis(axes: Axes, letter: Literal["x", "y"]) -> list[Axes]:
 
     figure = axes.get_figure()
     panels = [] if figure is None else figure.axes
-    return [
-        other_panel for other_panel in panels if other_panel is not axes and place(other_panel) == place(axes)
-    ]
+    return [other for other in panels if other is not axes and place(other) == place(axes)]
 
 
 def _legend_words(figure: Figure) -> dict[str, str]:
@@ -224,16 +199,13 @@ def _series_name(label: object) -> str:
 
 
 def _curve_point_texts(names: tuple[str, str], data: Array, series: str) -> list[str]:
-    """Text for each point of a curve: legend entry `series` and both coordinates. names: labels of the axes.
-    data: points in data coordinates, (n, 2).
-    """
+    """Text for each point of a curve: legend entry `series` and both coordinates. data: points in data
+    coordinates, (n, 2)."""
     return ["\n".join(filter(None, (series, _coordinates_text(names, point)))) for point in data]
 
 
 def _coordinates_text(names: tuple[str, str], point: Array) -> str:
-    """Coordinates of a point as text, one line each. names: labels of the axes. point: point in data
-    coordinates, (2,).
-    """
+    """Coordinates of a point as text, one line each. point: point in data coordinates, (2,)."""
     return "\n".join(f"{name} = {_coordinate_text(value)}" for name, value in zip(names, point, strict=True))
 
 

@@ -43,17 +43,10 @@ def _unicode_of_formula(tex: str) -> str:
         previous = tex
         tex = COMMAND_WITH_ARGUMENT.sub(lambda match: match[1] or match[2] or "", tex)
     tex = SUBSCRIPT.sub(lambda match: match[1] or match[2], tex)
-    tex = SUPERSCRIPT.sub(lambda match: _superscript_text(match[1] or match[2]), tex)
-    return (
-        TEX_COMMAND.sub(lambda match: _unicode_of_tex_command(match[1]), tex)
-        .replace("{", "")
-        .replace("}", "")
-    )
-
-
-def _superscript_text(exponent: str) -> str:
-    """A superscript as text: "^" and the exponent, or only the dagger of an adjoint mode."""
-    return exponent if exponent == r"\dagger" else f"^{exponent}"
+    tex = SUPERSCRIPT.sub(lambda match: f"^{match[1] or match[2]}", tex)
+    tex = tex.replace(r"^\dagger", r"\dagger")  # of an adjoint mode
+    tex = TEX_COMMAND.sub(lambda match: _unicode_of_tex_command(match[1]), tex)
+    return tex.replace("{", "").replace("}", "")
 
 
 @cache

@@ -1,6 +1,5 @@
 """Tables of a result on an HTML page: rounded numbers, with all digits under the pointer, without empty
-columns.
-"""
+columns."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -45,42 +44,34 @@ class PageTable:
 
 def page_tables(view: ResultView) -> Iterator[PageTable]:
     """Yields all nonempty tables of a result: first the default table of the task, then the table of points,
-    then the other tables.
-    """
+    then the other tables."""
     tables = Tables(view)
-    names = dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables))
-    for name in names:
-        if name in tables.contents.tables:
-            table = tables.table(name)
-            if table.rows:
-                yield _table_for_page(table)
+    for name in dict.fromkeys((DEFAULT_TABLE[view.task], POINTS, *tables.contents.tables)):
+        if name in tables.contents.tables and (table := tables.table(name)).rows:
+            yield _table_for_page(table)
 
 
 def _table_for_page(table: Table) -> PageTable:
     """The table in a form for the page: without empty columns; columns with equal values in all rows are
-    listed separately.
-    """
+    listed separately."""
     filled_columns = [column for column in table.columns if not column.absent.all()]
     constant_columns = [column for column in filled_columns if table.rows > 1 and _is_constant(column)]
     varied_columns = [column for column in filled_columns if column not in constant_columns]
     cells = [_cells(column.rows(slice(0, MAX_ROWS))) for column in varied_columns]
+    firsts = ((column, _cells(column.rows(slice(0, 1)))[0]) for column in constant_columns)
     return PageTable(
         name=table.name,
-        column_heads=tuple((column.name, column.printed_unit, column.meaning) for column in varied_columns),
+        column_heads=tuple((c.name, c.printed_unit, c.meaning) for c in varied_columns),
         rows=tuple(zip(*cells, strict=True)),
         total_rows=table.rows,
-        constant_columns=tuple(
-            (column.name, _cells(column.rows(slice(0, 1)))[0], column.printed_unit, column.meaning)
-            for column in constant_columns
-        ),
+        constant_columns=tuple((c.name, first, c.printed_unit, c.meaning) for c, first in firsts),
     )
 
 
 def _is_constant(column: Column) -> bool:
     """Whether all rows of a column have the same value; False for "status" and for absent values."""
-    if column.name == "status" or column.absent.any():
-        return False
-    return len(np.unique(column.values)) == 1
+    has_all_values = column.name != "status" and not column.absent.any()
+    return has_all_values and len(np.unique(column.values)) == 1
 
 
 def _cells(column: Column) -> list[Cell]:
@@ -90,8 +81,7 @@ def _cells(column: Column) -> list[Cell]:
 
 def _cell(column: Column, text: str, value: float) -> Cell:
     """Cell for the value `value` of a column. text: the value with all digits; empty if the value is
-    missing.
-    """
+    missing."""
     is_number = column.values.dtype.kind == "f" and not column.flag_meanings and not column.is_estimate
     if not text or not is_number:
         return Cell(text)

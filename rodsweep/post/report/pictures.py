@@ -1,6 +1,5 @@
 """Figures on the HTML page of a result: all figures of `rodsweep plot` that can be drawn from the result
-file.
-"""
+file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -32,8 +31,7 @@ class CaptionedPicture:
 @dataclass(frozen=True, slots=True)
 class Pictures:
     """Pictures of a result. shown: pictures in their order on the page. refusal: reason for which there is no
-    picture; empty if there are pictures.
-    """
+    picture; empty if there are pictures."""
 
     shown: tuple[CaptionedPicture, ...]
     refusal: str = ""

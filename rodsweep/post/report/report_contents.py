@@ -57,7 +57,7 @@ class ReportContents:
 
 
 def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
-    """Contents of the page about the result `view`. pictures: figures of this result."""
+    """Contents of the page about the result `view`."""
     a = view.attributes
     summary = summary_of(view)
     name = printable(view.path.name)
@@ -77,8 +77,7 @@ def report_contents(view: ResultView, pictures: Pictures) -> ReportContents:
 
 def _with_parameter_ranges(view: ResultView, statuses: TextTable) -> TextTable:
     """Table of statuses. If there are several statuses, a column with the parameter ranges of each status is
-    added.
-    """
+    added."""
     if len(statuses.rows) == 1:
         return statuses
     list_view = view.as_list

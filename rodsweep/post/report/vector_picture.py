@@ -1,6 +1,5 @@
 """SVG element of a matplotlib figure for an HTML page, with texts under the pointer and colours for dark
-pages.
-"""
+pages."""
 
 import re
 from dataclasses import dataclass
@@ -41,8 +40,7 @@ class VectorPicture:
 
 def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
     """The figure as an SVG element. number: number of the picture on the page. caption: description for
-    readers who cannot see the picture.
-    """
+    readers who cannot see the picture."""
     written = BytesIO()
     # Pictures of a page must not share the names of their clipping paths.
     with matplotlib.rc_context({"svg.hashsalt": f"picture {number}", "svg.fonttype": "path"}):
@@ -65,8 +63,7 @@ def vector_picture(figure: Figure, number: int, caption: str) -> VectorPicture:
 
 def _remove_element(root: ElementTree.Element, element_path: str) -> None:
     """Removes the first element at a path below `root`. element_path: path of element names, such as
-    "defs/style".
-    """
+    "defs/style"."""
     *parents, name = element_path.split("/")
     parent = root.find("/".join(f"{{{SVG}}}{tag}" for tag in parents)) if parents else root
     if parent is not None and (found := parent.find(f"{{{SVG}}}{name}")) is not None:
@@ -86,8 +83,7 @@ def _name_colours(root: ElementTree.Element) -> frozenset[str]:
 
 def _add_texts(root: ElementTree.Element, figure: Figure) -> None:
     """Adds to the SVG element `root` an invisible circle for each value of the figure; the title of the
-    circle is the text under the pointer.
-    """
+    circle is the text under the pointer."""
     group = ElementTree.SubElement(root, f"{{{SVG}}}g", {"class": "values"})
     for point in hover_points(figure):
         circle_attributes = {"cx": f"{point.x:.1f}", "cy": f"{point.y:.1f}", "r": HOVER_RADIUS}
@@ -112,29 +108,20 @@ def dark_page_colour(colour: str) -> str:
     if len(set(rgb)) == 1:
         rgb = [round(INK_BRIGHTNESS + (PAPER_BRIGHTNESS - INK_BRIGHTNESS) * value / 255) for value in rgb]
     else:
-        lighter = (
-            [value + (255 - value) * step / LIGHTENING_STEP_COUNT for value in rgb]
-            for step in range(LIGHTENING_STEP_COUNT + 1)
-        )
-        rgb = next(
-            [round(value) for value in candidate]
-            for candidate in lighter
-            if _contrast(candidate) >= MIN_CONTRAST
-        )
+        fractions = (step / LIGHTENING_STEP_COUNT for step in range(LIGHTENING_STEP_COUNT + 1))
+        lighter = ([value + (255 - value) * fraction for value in rgb] for fraction in fractions)
+        rgb = [round(value) for value in next(c for c in lighter if _contrast(c) >= MIN_CONTRAST)]
     return "".join(f"{value:02x}" for value in rgb)
 
 
 def _contrast(channels: list[float]) -> float:
     """Contrast ratio, as defined by WCAG 2, of a colour with the background of the dark page. channels: red,
-    green and blue, from 0 to 255.
-    """
+    green and blue, from 0 to 255."""
     return (_luminance(channels) + 0.05) / (_luminance([PAPER_BRIGHTNESS] * 3) + 0.05)
 
 
 def _luminance(channels: list[float]) -> float:
     """Relative luminance, from 0 to 1, as defined by WCAG 2. channels: red, green and blue, from 0 to 255."""
-    linear = [
-        channel / 255 / 12.92 if channel <= 0.04045 * 255 else ((channel / 255 + 0.055) / 1.055) ** 2.4
-        for channel in channels
-    ]
-    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    shares = [channel / 255 for channel in channels]
+    red, green, blue = (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in shares)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue

@@ -16,11 +16,9 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
     cycles, and the plane of motion."""
     view = results.views["thresholds"]
     quantities = {name: float(values.ravel()[0]) for name, values in view.quantities.items()}
-    yield (
-        f"F = 1 stands for {quantities['force_scale']:.6g} N, or a pressure of "
-        f"{quantities['pressure_scale']:.6g} Pa on the face of its tip, and tau2 for "
-        f"{quantities['tau2']:.6g} s."
-    )
+    force, pressure, time = (quantities[name] for name in ("force_scale", "pressure_scale", "tau2"))
+    face = f"a pressure of {pressure:.6g} Pa on the face of its tip"
+    yield f"F = 1 stands for {force:.6g} N, or {face}, and tau2 for {time:.6g} s."
     validity = {variable.name: view.by_point(variable.name) for variable in VALIDITY_VARIABLES}
     flutter_clause = " at flutter" if np.isfinite(view.variables["F_hopf"]).all() else ""
     branch = results.views.get("branch")
@@ -32,7 +30,7 @@ def arm_sentences(results: RodResults) -> Iterator[str]:
 
 def cycle_caveat(view: ResultView) -> str:
     """Sentence in brackets, after a blank, on the cycle of an arm to which the model does not apply; else an
-    empty text. view: result with one limit cycle."""
+    empty text."""
     validity = view.variables.get("model_applies")
     if validity is None or (validity != Validity.does_not_apply).any():
         return ""

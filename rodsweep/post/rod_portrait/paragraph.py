@@ -1,6 +1,5 @@
 """Paragraph of the portrait of a rod: thresholds, criticality, branches, coexisting states, cycles, missing
-results.
-"""
+results."""
 
 from collections.abc import Iterator, Sequence
 from math import isfinite
@@ -39,20 +38,13 @@ SUCCESS_STATUS = "ok"
 
 def paragraph(results: RodResults) -> str:
     """All results about the rod as one paragraph of text."""
-    sentences = [
-        *_rod_sentence(results),
-        *_threshold_sentences(results),
-        *_branch_sentences(results),
-        *_cycle_sentences(results),
-        *_missing_result_sentences(results),
-    ]
-    return " ".join(sentences)
+    states = (*_threshold_sentences(results), *_branch_sentences(results), *_cycle_sentences(results))
+    return " ".join([*_rod_sentence(results), *states, *_missing_result_sentences(results)])
 
 
 def _rod_sentence(results: RodResults) -> Iterator[str]:
     """Yields a sentence on the parameters of the rod and the searched range of the load, and for an arm
-    further sentences.
-    """
+    further sentences."""
     end = float(results.views["thresholds"].point_values(0)["F_end"])
     units = results.units
     end_text = units.load_text(end)
@@ -62,11 +54,10 @@ def _rod_sentence(results: RodResults) -> Iterator[str]:
     if not isfinite(end):
         search_text = "could not be searched"
     elif end_text != requested_force:
-        early = results.views["thresholds"].has_status("ended_early").all()
-        ends = "the search ended early: the list was full, or modes could not be counted"
-        search_text += (
-            f", not to {requested_force}: {ends if early else f'just above {end_text} the {kind} is crushed'}"
-        )
+        reason = f"just above {end_text} the {kind} is crushed"
+        if results.views["thresholds"].has_status(ENDED_EARLY).all():
+            reason = "the search ended early: the list was full, or modes could not be counted"
+        search_text += f", not to {requested_force}: {reason}"
     yield f"The {kind} with {results.rod.description} {search_text}."
     if results.rod.arm:
         yield from arm_sentences(results)
@@ -107,16 +98,13 @@ def _criticality_clause(results: RodResults, F: float) -> str:
     criticalities = v["criticality"][is_same_crossing & np.isfinite(v["criticality"])]
     if not criticalities.size:
         return ""
-    a = float(v["amplitude_coefficient"][is_same_crossing][0])
-    return (
-        f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {'above' if a > 0 else 'below'} this load"
-    )
+    side = "above" if v["amplitude_coefficient"][is_same_crossing][0] > 0 else "below"
+    return f"; {CRITICALITY_WORDS[int(criticalities[0])]}, with cycles {side} this load"
 
 
 def _branch_sentences(results: RodResults) -> Iterator[str]:
     """Yields sentences on the branches of cycles, their special points, and the ranges in which cycles are
-    stable.
-    """
+    stable."""
     rod = results.branches
     if rod is None:
         return
@@ -146,10 +134,8 @@ def _branch_sentences(results: RodResults) -> Iterator[str]:
     no_cycle = "none" if is_decided and not rod.hidden_count else "none is known"
     yield f"Stable cycles: {units.load_ranges_text(stable, rod.parameter_errors) if stable else no_cycle}."
     if not rod.hidden_count:
-        coexistence_ranges = rod.coexistence_ranges
-        ranges = (
-            units.load_ranges_text(coexistence_ranges, rod.parameter_errors) if coexistence_ranges else ""
-        )
+        both = rod.coexistence_ranges
+        ranges = units.load_ranges_text(both, rod.parameter_errors) if both else ""
         yield _coexistence_sentence(ranges, rod.coexistence_is_decided, results.rod.kind)
         if pairs := rod.two_cycle_ranges:
             yield f"Two different cycles are stable at {units.load_ranges_text(pairs, rod.parameter_errors)}."
@@ -187,11 +173,9 @@ def _work_limit_sentence(curves: Sequence[StoredBranch], units: PortraitUnits) -
 
 
 def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
-    """Sentence on the coexistence of a stable cycle and the stable straight rod.
-
-    ranges: loads of coexistence as text; empty if no such load was found. is_decided: whether the stability
-    of all states is known. kind: "rod" or "arm".
-    """
+    """Sentence on the coexistence of a stable cycle and the stable straight rod. ranges: loads of coexistence
+    as text; empty if no such load was found. is_decided: whether the stability of all states is known. kind:
+    "rod" or "arm"."""
     if ranges:
         return f"A stable cycle exists beside the stable straight {kind} at {ranges}."
     if is_decided:
@@ -200,16 +184,9 @@ def _coexistence_sentence(ranges: str, is_decided: bool, kind: str) -> str:
 
 
 def _special_point_loads(curves: Sequence[StoredBranch], kind: str, factor: float) -> list[str]:
-    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1. curves: all
-    branches of the rod.
-    """
-    load_texts = {
-        rounded_text(factor * special.at, factor * special.error): None
-        for curve in curves
-        for special in curve.special
-        if special.kind == kind
-    }
-    return list(load_texts)
+    """Distinct loads, as text, at the special points of the given kind. factor: load at F = 1."""
+    points = [special for curve in curves for special in curve.special if special.kind == kind]
+    return list(dict.fromkeys(rounded_text(factor * point.at, factor * point.error) for point in points))
 
 
 def _cycle_sentences(results: RodResults) -> Iterator[str]:
@@ -220,23 +197,13 @@ def _cycle_sentences(results: RodResults) -> Iterator[str]:
         v = view.point_values(0)
         word = str(view.status_names[0])
         if word not in CYCLE_STATUSES:
-            clauses.append(
-                f"at {units.load_text(F)} a motion from a small deflection leads to no cycle that is drawn "
-                f"({word.replace('_', ' ')})"
-            )
+            no_cycle = f"no cycle that is drawn ({word.replace('_', ' ')})"
+            clauses.append(f"at {units.load_text(F)} a motion from a small deflection leads to {no_cycle}")
             continue
-        period, y = (
-            unit.text(float(v[name]), float(v[name] * v[error]))
-            for name, error, unit in (
-                ("period", "period_error", units.time),
-                ("tip_y_max", "amplitude_error", units.length),
-            )
-        )
-        unstable = ", unstable," if word == "unstable" else ""
-        clauses.append(
-            f"at {units.load_text(F)}{unstable} the period is {period} and the largest y of the tip {y}"
-            f"{cycle_caveat(view)}"
-        )
+        period = units.time.text(float(v["period"]), float(v["period"] * v["period_error"]))
+        y = units.length.text(float(v["tip_y_max"]), float(v["tip_y_max"] * v["amplitude_error"]))
+        place = f"at {units.load_text(F)}{', unstable,' if word == 'unstable' else ''}"
+        clauses.append(f"{place} the period is {period} and the largest y of the tip {y}{cycle_caveat(view)}")
     if clauses:
         yield f"Cycles: {'; '.join(clauses)}."
 

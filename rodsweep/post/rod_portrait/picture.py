@@ -1,9 +1,9 @@
 """Portrait of a rod as a figure: thresholds along F, branches of cycles, modes at the thresholds, three
-cycles.
-"""
+cycles."""
 
 import textwrap
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -87,9 +87,7 @@ def _has_branches(results: RodResults) -> bool:
 
 
 def _show_units(panels: Sequence[Axes], results: RodResults) -> None:
-    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait.
-    panels: these three panels.
-    """
+    """Converts the panels of the thresholds, the largest y and the period to the units of the portrait."""
     units = results.units
     end = panels[0].get_xlim()[1]
     for axes, y in zip(panels, (1.0, units.length.factor, units.time.factor), strict=True):
@@ -112,27 +110,21 @@ def _draw_thresholds(axes: Axes, results: RodResults) -> list[Artist]:
     axes.set_xlim(0, float(v["F_end"]))
     drawn_classes = draw_class_bar(axes, view, 0, is_vertical=False)
     force = results.units.force
-    mark_handles = mark_thresholds_on_bars(
-        axes, view, is_vertical=False, unit=force.name, factor=force.factor
-    )
-    return [*class_legend_entries(drawn_classes), *mark_handles]
+    marks = mark_thresholds_on_bars(axes, view, is_vertical=False, unit=force.name, factor=force.factor)
+    return [*class_legend_entries(drawn_classes), *marks]
 
 
 def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist]:
     """Draws the branches of cycles, and the ranges with two stable states; returns legend entries. Without
-    branches, the upper panel states the reason, and the list is empty. upper: panel of the largest y. lower:
-    panel of the period."""
+    branches, the upper panel states the reason, and the list is empty."""
     rod = results.branches
     if rod is None or not _has_branches(results):
         lower.set_axis_off()
-        _write_sentence(
-            upper, results.missing.get("branch", "no branch of cycles begins in this range"), PARAGRAPH_WIDTH
-        )
+        reason = results.missing.get("branch", "no branch of cycles begins in this range")
+        _write_sentence(upper, reason, PARAGRAPH_WIDTH)
         return []
-    handles: list[Artist] = [
-        *stability_entries(rod.curves),
-        *draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values(),
-    ]
+    handles: list[Artist] = [*stability_entries(rod.curves)]
+    handles += draw_branch_curves(upper, lower, rod.curves, BRANCH_COLOURS).values()
     draw_straight_rod(upper, rod)
     if not rod.hidden_count:
         for ranges, (colour, word) in (
@@ -143,8 +135,7 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
             handles += bands[:1]
     handles += _mark_cycles(upper, lower, results)
     upper.tick_params(labelbottom=False)
-    units = results.units
-    force, y, period = units.labels
+    force, y, period = results.units.labels
     upper.set_ylabel(y)
     lower.set(ylabel=period, xlabel=force, yscale="log")
     return handles
@@ -153,22 +144,11 @@ def _draw_branches(upper: Axes, lower: Axes, results: RodResults) -> list[Artist
 def _mark_cycles(upper: Axes, lower: Axes, results: RodResults) -> list[Line2D]:
     """In the panels of the branches, marks the cycles whose shapes are drawn; returns a list with the legend
     entry, empty without such cycles."""
-    cycles = [
-        (F, view.point_values(0)) for F, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()
-    ]
+    cycles = [(F, view.point_values(0)) for F, view in results.cycles if _has_cycle(view)]
     handles: list[Line2D] = []
+    look: dict[str, Any] = {"color": "k", "ms": 9, "mec": "white", "mew": 0.6, "label": CYCLE_LEGEND_ENTRY}
     for axes, name in ((upper, "tip_y_max"), (lower, "period")):
-        values = [float(v[name]) for _, v in cycles]
-        handles = axes.plot(
-            [F for F, _ in cycles],
-            values,
-            "*",
-            color="k",
-            ms=9,
-            mec="white",
-            mew=0.6,
-            label=CYCLE_LEGEND_ENTRY,
-        )
+        handles = axes.plot([F for F, _ in cycles], [float(v[name]) for _, v in cycles], "*", **look)
     return handles if cycles else []
 
 
@@ -183,10 +163,10 @@ def _draw_mode(axes: Axes, results: RodResults, kind: str) -> None:
     if not np.isfinite(v["Y_real"][0]).all():
         _write_sentence(axes, f"no mode: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
         return
-    mode_parts = {part_name: v[f"Y_{part_name}"][0] for part_name in ("real", "imag")}
-    for part_name, line, label in (("real", "-", "Re"), ("imag", ":", "Im")):
-        if np.abs(mode_parts[part_name]).max() > MIN_DRAWN_PART * np.abs(mode_parts["real"]).max():
-            axes.plot(view.variables["u"], mode_parts[part_name], line, color=style.BLUE, lw=1.5, label=label)
+    smallest = MIN_DRAWN_PART * np.abs(v["Y_real"][0]).max()
+    for name, line, label in (("Y_real", "-", "Re"), ("Y_imag", ":", "Im")):
+        if np.abs(v[name][0]).max() > smallest:
+            axes.plot(view.variables["u"], v[name][0], line, color=style.BLUE, lw=1.5, label=label)
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.set(xlabel="$u/L$", ylabel="$Y_1$", xlim=(0, 1))
     axes.legend(frameon=False, loc="upper left", fontsize=7, handlelength=1.2, borderpad=0)
@@ -199,14 +179,14 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
             axes.set_axis_off()
         _write_sentence(panels[0], f"no cycle: {results.missing['limit_cycle']}", PANEL_TEXT_WIDTH)
         return
-    cycles = [view.point_values(0) for _, view in results.cycles if view.has_status(*CYCLE_STATUSES).all()]
+    cycles = [view.point_values(0) for _, view in results.cycles if _has_cycle(view)]
     units = results.units
     length = units.length.factor
     max_y = max((float(np.abs(v["shape_y"]).max()) for v in cycles), default=0.0) + ARROW_LENGTH
     for axes, (F, view) in zip(panels, results.cycles, strict=True):
         v = view.point_values(0)
         force = units.force_title(F)
-        if not view.has_status(*CYCLE_STATUSES).all():
+        if not _has_cycle(view):
             axes.set_title(force)
             _write_sentence(axes, f"no cycle: {_status_meaning(view)}", PANEL_TEXT_WIDTH)
             continue
@@ -221,6 +201,11 @@ def _draw_cycles(panels: Sequence[Axes], results: RodResults) -> None:
         axes.set(xlim=ends, ylim=(-length * max_y, length * max_y), aspect="equal")
         axes.set(xlabel=units.axis_label("x"), ylabel=units.axis_label("y") if axes is panels[0] else "")
         axes.tick_params(labelleft=axes is panels[0])
+
+
+def _has_cycle(view: ResultView) -> bool:
+    """Whether the only point in `view` has a cycle."""
+    return bool(view.has_status(*CYCLE_STATUSES).all())
 
 
 def _status_meaning(view: ResultView) -> str:

@@ -25,8 +25,7 @@ LABELLED_NUMBERS = (1.0, 2.0, 5.0)
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Unit:
     """Unit of a portrait. name: symbol of the unit. factor: value, in this unit, of a quantity whose
-    dimensionless value is 1.
-    """
+    dimensionless value is 1."""
 
     name: str
     factor: float = 1.0
@@ -39,8 +38,7 @@ class Unit:
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PortraitUnits:
     """Units of force, length, time and frequency in the portrait of a rod or an arm. load: kind of the arm's
-    load; empty for a rod.
-    """
+    load; empty for a rod."""
 
     force: Unit
     length: Unit
@@ -54,8 +52,7 @@ class PortraitUnits:
 
     def load_phrase(self, text: str) -> str:
         """Phrase for the load: "F = 50" for a rod, "a pressure of 400 Pa" for an arm. text: one or more
-        loads, as numbers in the unit of the portrait.
-        """
+        loads, as numbers in the unit of the portrait."""
         return f"a {self.load} of {text} {self.force.name}" if self.load else f"F = {text}"
 
     def load_text(self, F: float, error: float = 0.0) -> str:
@@ -64,13 +61,11 @@ class PortraitUnits:
 
     def load_ranges_text(self, ranges: Sequence[ParameterRange], errors: Mapping[float, float]) -> str:
         """Ranges of the load as text. ranges: ranges of the dimensionless force. errors: absolute errors of
-        the ends, by end.
-        """
+        the ends, by end."""
         factor = self.force.factor
         scaled_ranges = [(factor * low, factor * high) for low, high in ranges]
-        return self.load_phrase(
-            ranges_text(scaled_ranges, {factor * end: factor * error for end, error in errors.items()})
-        )
+        scaled_errors = {factor * end: factor * error for end, error in errors.items()}
+        return self.load_phrase(ranges_text(scaled_ranges, scaled_errors))
 
     def frequency_text(self, omega: float) -> str:
         """Angular frequency `omega`, in 1/tau2, as text; for an arm, as a frequency in Hz."""
@@ -104,29 +99,29 @@ ROD_UNITS = PortraitUnits(
 
 
 def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits:
-    """Units of the portrait of a rod or an arm. load: kind of the arm's load. largest: largest F, for which
-    the prefix of the load is chosen.
-    """
+    """Units of the portrait of a rod or an arm. largest: largest F, for which the prefix of the load is
+    chosen."""
     if not view.quantities:
         return ROD_UNITS
     force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))
-    units = [
-        Unit(name=name, factor=scale * factor)
-        for scale, (factor, name) in (
-            (force, printing_unit(view, "N" if load == "force" else "Pa", force * largest)),
-            (length, printing_unit(view, "m", length)),
-            (tau2, printing_unit(view, "s", tau2)),
-        )
-    ]
-    hertz = Unit(name="Hz", factor=1 / (tau * tau2))
-    return PortraitUnits(force=units[0], length=units[1], time=units[2], frequency=hertz, load=load)
+
+    def unit(si: str, scale: float, largest: float) -> Unit:
+        factor, name = printing_unit(view, si, largest)
+        return Unit(name=name, factor=scale * factor)
+
+    return PortraitUnits(
+        force=unit("N" if load == "force" else "Pa", force, force * largest),
+        length=unit("m", length, length),
+        time=unit("s", tau2, tau2),
+        frequency=Unit(name="Hz", factor=1 / (tau * tau2)),
+        load=load,
+    )
 
 
 def rescale_panel(axes: Axes, x: float, y: float) -> None:
     """Multiplies the coordinates of all curves and marks in a panel by the factors x and y, and the
     horizontal coordinates of all bars and spans by x. Resets the tick labels of a logarithmic y axis if y is
-    not 1.
-    """
+    not 1."""
     for line in axes.lines:
         line.set_data(x * np.asarray(line.get_xdata()), y * np.asarray(line.get_ydata()))
     for area in axes.patches:

@@ -26,15 +26,13 @@ HIDDEN_TABLES = ("mode_shapes", "shapes", "harmonics", "multipliers", "samples")
 def require_portrait(output: Path) -> None:
     """Raises InputError if `output` is not a valid name for an image or an HTML page, see
     `require_output_path`."""
-    require_output_path(
-        output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), "page" if output.suffix == PAGE_SUFFIX else "picture"
-    )
+    noun = "page" if output.suffix == PAGE_SUFFIX else "picture"
+    require_output_path(output, (*IMAGE_SUFFIXES, PAGE_SUFFIX), noun)
 
 
 def write_portrait(results: RodResults, output: Path) -> str:
     """Writes the portrait to the file `output`, and returns a sentence about the file. Raises InputError for
-    an invalid file name.
-    """
+    an invalid file name."""
     require_portrait(output)
     if output.suffix == PAGE_SUFFIX:
         with atomic_write(output) as stream:

@@ -1,6 +1,5 @@
 """Summary of a result file, for `rodsweep show` and `rodsweep report`: answer, reliability, further results,
-parameters and provenance.
-"""
+parameters and provenance."""
 
 import os
 from collections.abc import Callable, Iterable, Sequence
@@ -53,8 +52,7 @@ POINT_NOUNS = {"thresholds": "rod", "criticality": "rod", "branch": "rod", "phas
 
 def summary_of(view: ResultView, every_status: bool = False) -> Summary:
     """Summary of a result file. every_status: whether the list of statuses includes statuses that no point
-    has.
-    """
+    has."""
     view = view.as_list
     status = view.variables["status"]
     computed = status != MISSING_STATUS
@@ -70,9 +68,7 @@ def summary_of(view: ResultView, every_status: bool = False) -> Summary:
             *lines.reliability,
             *_failure_sentences(view),
         ],
-        statuses=TextTable(
-            ("status", plural(noun), "meaning"), tuple(_status_rows(view, status, every_status))
-        ),
+        statuses=_status_table(view, status, every_status, noun),
         details=lines.details,
         material=material_lines(view),
         axes=_axes_table(view),
@@ -114,8 +110,7 @@ def show_summary(view: ResultView, every_status: bool = False) -> None:
 
 def print_lines(console: Console, lines: Sequence[str]) -> None:
     """Prints lines, wrapped at the width of the terminal window. Lines written to a pipe or a file are not
-    wrapped.
-    """
+    wrapped."""
     for line in lines:
         console.print(rewrap_line(line, console.width) if wraps_lines(console) else line, soft_wrap=True)
 
@@ -137,8 +132,7 @@ def _print_numbers(console: Console, table: TextTable) -> None:
 
 def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines) -> list[str]:
     """Lines of the answer; for an arm first in SI units, then dimensionless. computed: mask of the computed
-    points, of the shape of the points. summary: lines of the task.
-    """
+    points, of the shape of the points."""
     if not view.quantities or not computed.any():
         return [*summary.answer]
     lines = [*arm_answer(view, computed), *summary.arm_sentences, *arm_lines(view, computed)]
@@ -147,37 +141,31 @@ def _answer_lines(view: ResultView, computed: np.ndarray, summary: SummaryLines)
 
 def _unfinished_lines(view: ResultView, missing: int, noun: str) -> list[str]:
     """Lines about points and curves that are not computed yet, and about points that only the journal holds.
-    missing: number of missing points. noun: noun for a point.
-    """
+    missing: number of missing points."""
     lines = []
+    subject = f"{counted(missing, noun)} {is_or_are(missing)}"
     if missing and (shard := view.attributes.get("shard")):
         lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} not in this file: it is shard {shard}, and "
-            "`rodsweep merge` combines the shards; if the run of this shard was interrupted, the "
-            "same command continues the run"
+            f"{subject} not in this file: it is shard {shard}, and `rodsweep merge` combines the shards; if "
+            "the run of this shard was interrupted, the same command continues the run"
         )
     elif missing:
-        lines.append(
-            f"{counted(missing, noun)} {is_or_are(missing)} missing; if no run is in progress, the same "
-            "command continues"
-        )
+        lines.append(f"{subject} missing; if no run is in progress, the same command continues")
     elif lacks_sweep_wide_variables(view.attributes):
         lines.append(
             f"all {plural(noun)} are computed; the curves are missing; repeat the command to add the curves"
         )
     if waiting := view.journalled_count:
-        verb = "is" if waiting == 1 else "are"
         lines.append(
-            f"{waiting} of the computed {plural(noun)} {verb} so far only in the journal of the run, which "
-            "writes the file later"
+            f"{waiting} of the computed {plural(noun)} {is_or_are(waiting)} so far only in the journal of "
+            "the run, which writes the file later"
         )
     return lines
 
 
 def _failure_sentences(view: ResultView) -> Iterable[str]:
     """Yields one sentence for each distinct reason for which points failed, with one failed point as an
-    example.
-    """
+    example."""
     columns = view.point_columns
     for line in str(view.attributes.get(FAILURE_REASONS_ATTRIBUTE, "")).splitlines():
         points_text, _, outcome = line.partition(": ")
@@ -200,8 +188,7 @@ def _terminal_table(table: TextTable) -> Table:
 
 def _axes_table(view: ResultView) -> TextTable:
     """Table of the quantities of an arm and of the parameters, with their values or ranges over the
-    points.
-    """
+    points."""
     rows = []
     for name, values in view.quantities.items():
         if name == "drag":
@@ -210,19 +197,9 @@ def _axes_table(view: ResultView) -> TextTable:
             continue
         si = ALL_QUANTITIES[name].unit
         unit = view.typed_units.get(name, si)
-        rows.append(
-            (
-                name,
-                *_count_and_range(
-                    np.vectorize(lambda v, to=unit, to_unit=si: value_in_unit(v, to, to_unit))(values)
-                ),
-                unit,
-            )
-        )
-    rows += [
-        (name, *_count_and_range(values), DIMENSIONS[name][0])
-        for name, values in view.parameter_values.items()
-    ]
+        rows.append((name, *_count_and_range(np.vectorize(value_in_unit)(values, unit, si)), unit))
+    for name, values in view.parameter_values.items():
+        rows.append((name, *_count_and_range(values), DIMENSIONS[name][0]))
     if all(row[1] == "1" for row in rows):
         return TextTable(("parameter", "value", "unit"), tuple((row[0], row[2], row[4]) for row in rows))
     return TextTable(("parameter", "values", "from", "to", "unit"), tuple(rows))
@@ -230,8 +207,7 @@ def _axes_table(view: ResultView) -> TextTable:
 
 def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     """Returns (count, smallest, largest) of `values`, of any shape, as text. count: number of distinct
-    values. NaN is ignored. `largest` is empty if all values are equal.
-    """
+    values. NaN is ignored. `largest` is empty if all values are equal."""
     # Twelve digits, because values computed from an arm may differ by rounding.
     distinct = {f"{value:.12g}" for value in values[~np.isnan(values)]}
     ends = sorted(map(float, distinct))
@@ -239,12 +215,13 @@ def _count_and_range(values: np.ndarray) -> tuple[str, str, str]:
     return str(len(ends)), texts[0] if texts else "", texts[-1] if len(texts) > 1 else ""
 
 
-def _status_rows(view: ResultView, status: np.ndarray, is_every_shown: bool) -> Iterable[tuple[str, ...]]:
-    """Yields (status, number of points, meaning of the status). is_every_shown: whether statuses that no
-    point has are included.
-    """
+def _status_table(view: ResultView, status: np.ndarray, is_every_shown: bool, noun: str) -> TextTable:
+    """Table of statuses, numbers of points, and meanings. is_every_shown: whether statuses that no point has
+    are included."""
     sentences = view.sentences | {"missing": "not computed yet"}
+    rows = []
     counts = dict(zip(*(a.tolist() for a in np.unique(status, return_counts=True)), strict=True))
     for value in sorted(view.flags.keys() | counts.keys()) if is_every_shown else counts:
         name = view.flags.get(value, f"unknown ({value})")
-        yield name, str(counts.get(value, 0)), sentences.get(name, "")
+        rows.append((name, str(counts.get(value, 0)), sentences.get(name, "")))
+    return TextTable(("status", plural(noun), "meaning"), tuple(rows))

@@ -1,4 +1,5 @@
-"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states."""
+"""Branches of cycles in `rodsweep show`: ends, special points, and ranges with two stable states. parameter:
+name of the followed parameter."""
 
 from collections.abc import Iterator, Sequence
 
@@ -48,8 +49,10 @@ def branch_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     v = view.variables
     rods = [RodBranches(view, int(rod)) for rod in np.flatnonzero(computed.ravel())]
     counts = v["branch_count"][computed]
-    branches = counted(int(counts.clip(min=0).sum()), "branch")
-    cycles = counted(int(v["point_count"][computed].clip(min=0).sum()), "cycle")
+    branches, cycles = (
+        counted(int(v[f"{name}_count"][computed].clip(min=0).sum()), noun)
+        for name, noun in (("branch", "branch"), ("point", "cycle"))
+    )
     count_text = count_of_total((counts > 0).sum(), len(rods), "rod")
     line = f"{branches} at {count_text}, {cycles}{_sizes_text(view, computed)}"
     parameter = followed_parameter(view)
@@ -97,8 +100,7 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
 
 def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
     """Number of cycles on a branch, range of the parameter `parameter`, and range of the largest tip y, as
-    text. errors: relative errors of y, (cycles,).
-    """
+    text. errors: relative errors of y, (cycles,)."""
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
@@ -109,7 +111,7 @@ def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
 
 
 def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterator[str]:
-    """Yields one line for each special point between the ends of a branch. parameter: followed parameter."""
+    """Yields one line for each special point between the ends of a branch."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
             continue
@@ -124,16 +126,16 @@ def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterato
 
 
 def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
-    """Phrase for the start and the end of a branch: "from ... to ...". parameter: followed parameter."""
+    """Phrase for the start and the end of a branch: "from ... to ..."."""
     first = curve.special[0]
     last = curve.special[-1]
-    start = f"from the Hopf point at {parameter} = {number_with_error(first.at, first.error)}"
+    position = f"{parameter} = {number_with_error(first.at, first.error)}"
+    start = f"from the Hopf point at {position}"
     if first.kind == "symmetry_breaking":
-        span = f"{parameter} = {number_with_error(first.at, first.error)}"
-        start = f"without mirror symmetry, from branch {first.meets} at {span}"
+        start = f"without mirror symmetry, from branch {first.meets} at {position}"
     if curve.enters_range:
-        span = f"{parameter} = {rounded_text(first.at, first.error)}"
-        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {span},"
+        position = f"{parameter} = {rounded_text(first.at, first.error)}"
+        start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {position},"
     end = f"{parameter} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
@@ -146,8 +148,7 @@ def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
 
 def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
     """Clause with the ranges of period and amplitude over all cycles at the points in the mask `computed`;
-    empty if there is no cycle.
-    """
+    empty if there is no cycle."""
     v = view.variables
     if not np.isfinite(v["period"][computed]).any():
         return ""
@@ -157,11 +158,8 @@ def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
 
 def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
-    then a line for each branch that stopped because no further cycle was found. parameter: followed
-    parameter."""
-    points: dict[str, list[tuple[float, float]]] = {
-        word: [] for word in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)
-    }
+    then a line for each branch that stopped because no further cycle was found."""
+    points: dict[str, list[tuple[float, float]]] = {w: [] for w in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)}
     curves = [(rod, number, curve) for rod in rods for number, curve in enumerate(rod.curves, 1)]
     entries = [curve.special[0] for _, _, curve in curves if curve.enters_range]
     for _, number, curve in curves:
@@ -183,27 +181,23 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
         span = span_text(*np.array([(entry.at, entry.error) for entry in entries]).T)
         verb = "enters" if len(entries) == 1 else "enter"
         yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter} = {span}"
-    stopped = [
-        f"{point_text(rod.view, rod.index)}: branch {number}, at {parameter} = "
-        f"{rounded_text(end.at, end.error)}"
-        for rod, number, curve in curves
-        if (end := curve.special[-1]).reason == "no_cycle_found"
-    ]
+    stopped = []
+    for rod, number, curve in curves:
+        if (end := curve.special[-1]).reason == "no_cycle_found":
+            position = f"{parameter} = {rounded_text(end.at, end.error)}"
+            stopped.append(f"{point_text(rod.view, rod.index)}: branch {number}, at {position}")
     yield from first_lines(stopped, "branch")
 
 
 def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
-    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods.
-    parameter: followed parameter.
-    """
+    """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
         unknown = counted(len(rods) - len(complete), "rod")
         yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
-        yield from _lines_on_rods_with(
-            complete, parameter, COEXISTENCE_WORDS, [rod.coexistence_ranges for rod in complete]
-        )
+        coexistence = [rod.coexistence_ranges for rod in complete]
+        yield from _lines_on_rods_with(complete, parameter, COEXISTENCE_WORDS, coexistence)
     two_cycles = [rod.two_cycle_ranges for rod in complete]
     if any(two_cycles):
         yield from _lines_on_rods_with(complete, parameter, TWO_CYCLES_WORDS, two_cycles)
@@ -213,23 +207,13 @@ def _lines_on_rods_with(
     rods: Sequence[RodBranches], parameter: str, phrase: str, ranges: Sequence[list[ParameterRange]]
 ) -> Iterator[str]:
     """Yields a line with the number of rods that have ranges with the property `phrase`, and a line for each
-    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property.
-    """
-    unknown = sum(
-        not (rod_ranges or rod.coexistence_is_decided) for rod, rod_ranges in zip(rods, ranges, strict=True)
-    )
-    texts = [
-        ": ".join(
-            filter(
-                None,
-                (
-                    point_text(rod.view, rod.index),
-                    f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}",
-                ),
-            )
-        )
-        for rod, rod_ranges in zip(rods, ranges, strict=True)
-        if rod_ranges
-    ]
+    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property."""
+    unknown = 0
+    texts = []
+    for rod, rod_ranges in zip(rods, ranges, strict=True):
+        unknown += not (rod_ranges or rod.coexistence_is_decided)
+        if rod_ranges:
+            text = f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}"
+            texts.append(": ".join(filter(None, (point_text(rod.view, rod.index), text))))
     yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(texts, "rod")

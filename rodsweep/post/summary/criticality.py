@@ -1,4 +1,5 @@
-"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors."""
+"""Hopf points in `rodsweep show`: criticality, coefficients of the normal form, and errors. v: variables of a
+single rod, by name."""
 
 from collections.abc import Iterator, Mapping
 
@@ -11,13 +12,11 @@ from ...wording import count_of_total, counted
 from .arm.arm import crossings_of_arm
 from .errors import absolute_errors
 from .number_texts import number_and_error, rounded_text, span_text
-from .summary_lines import SummaryLines, TextTable, in_brackets, proof_clause, region_text
+from .summary_lines import MAX_LISTED_ITEMS, SummaryLines, TextTable, in_brackets, proof_clause, region_text
 from .thresholds import ENDED_EARLY, unknown_beyond_clause, unknown_clause, unstored_clause
 
 CRITICALITY_WORDS = {-1: "supercritical", 1: "subcritical", 0: "undecided"}
 """Word for the criticality of a Hopf point, by sign of Re c (c: cubic coefficient of the normal form)."""
-MAX_LISTED_RODS = 8
-"""At most this number of rods with subcritical Hopf points are listed one by one."""
 HOPF_NUMBERS = {
     "crossing_F": "F, k3/L^2",
     "crossing_frequency": f"frequency, {ANGULAR_UNIT}",
@@ -61,20 +60,16 @@ def criticality_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     size = span_text(*(table[:, 0] for table in values))
     lines.append(f"first Hopf point of each rod: {_count_text(criticality[:, 0])}; F = {F}, a = {size} L")
     lines += _subcritical_lines(view)
-    reliability = [
-        _searched_range_line(view, computed),
-        f"worst relative errors: c {_maximum(v['landau_error'][computed])}, dw/dF "
-        f"{_maximum(v['growth_slope_error'][computed])}, a "
-        f"{_maximum(v['amplitude_coefficient_error'][computed])}, b "
-        f"{_maximum(v['frequency_slope_error'][computed])}",
-    ]
+    symbols = {"landau": "c", "growth_slope": "dw/dF", "amplitude_coefficient": "a", "frequency_slope": "b"}
+    worst = [f"{symbol} {_maximum(v[f'{name}_error'][computed])}" for name, symbol in symbols.items()]
+    reliability = [_searched_range_line(view, computed), f"worst relative errors: {', '.join(worst)}"]
     scope = "stored" if (v["crossing_count"][computed] > is_known.sum(axis=-1)).any() else "all"
     sizes = f"a = {span_text(*values)} L, b = {span_text(*errors)} L^2/(k3 tau2)"
     return SummaryLines(lines, reliability, [f"{scope} Hopf points: {_count_text(criticality)}; {sizes}"])
 
 
 def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """Yields one line for each Hopf point of the only rod in a file. v: variables of this rod."""
+    """Yields one line for each Hopf point of the only rod in a file."""
     for i in np.flatnonzero(v["crossing_kind"] > 0):
         F = rounded_text(v["crossing_F"][i], v["crossing_error"][i])
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
@@ -89,9 +84,8 @@ def _hopf_lines(v: Mapping[str, np.ndarray]) -> Iterator[str]:
 
 
 def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
-    """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf point.
-    v: variables of this rod.
-    """
+    """Table with one column for each Hopf point of the only rod in a file; None if the rod has no Hopf
+    point."""
     indices = np.flatnonzero(v["crossing_kind"] > 0)
     kinds = (CROSSING_KINDS[int(v["crossing_kind"][i])] for i in indices)
     rows = []
@@ -104,8 +98,7 @@ def _hopf_table(v: Mapping[str, np.ndarray]) -> TextTable | None:
 
 def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
     """Clause on the cycles near the i-th Hopf point of the only rod in a file: whether F is larger or
-    smaller, and whether the cycles are stable. v: variables of this rod.
-    """
+    smaller, and whether the cycles are stable."""
     sign = int(v["criticality"][i])
     if sign == 0:
         return "the sign of Re c is within its error"
@@ -117,22 +110,19 @@ def _nearby_cycles_clause(v: Mapping[str, np.ndarray], i: int) -> str:
         return f"unstable cycles at {side_of_hopf}"
     if count < 0:
         return f"cycles at {side_of_hopf}"
-    return (
-        f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
-        if other_count
-        else f"stable cycles at {side_of_hopf}"
-    )
+    if other_count:
+        return f"cycles at {side_of_hopf}, unstable by {other_count} other modes"
+    return f"stable cycles at {side_of_hopf}"
 
 
 def _subcritical_lines(view: ResultView) -> Iterator[str]:
     """Yields lines on rods with subcritical Hopf points; rods whose first Hopf point is subcritical come
-    first.
-    """
+    first."""
     criticality = view.by_point("criticality")
     rods = np.flatnonzero((criticality == 1).any(axis=-1))
     rods = rods[np.argsort(criticality[rods, 0] != 1, kind="stable")]
     columns = view.point_columns
-    for rod in rods[:MAX_LISTED_RODS]:
+    for rod in rods[:MAX_LISTED_ITEMS]:
         name = ", ".join(f"{key} = {column[rod]:.6g}" for key, column in columns.items())
         indices = np.flatnonzero(criticality[rod] == 1)
         names = ("crossing_F", "amplitude_coefficient", "amplitude_coefficient_error", "crossing_error")
@@ -142,22 +132,19 @@ def _subcritical_lines(view: ResultView) -> Iterator[str]:
             for F, dF, i, x, dx in zip(forces, absolute, indices, a, relative, strict=True)
         )
         yield f"subcritical Hopf points, with the amplitude coefficient a, for {name}: {texts}"
-    if len(rods) > MAX_LISTED_RODS:
-        yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_RODS, 'rod')} more"
+    if len(rods) > MAX_LISTED_ITEMS:
+        yield f"and subcritical Hopf points for {counted(len(rods) - MAX_LISTED_ITEMS, 'rod')} more"
 
 
 def _count_text(signs: np.ndarray) -> str:
     """Numbers of supercritical, subcritical and undecided Hopf points, as text. signs: signs of Re c, of any
-    shape.
-    """
+    shape."""
     counts = {word: int((signs == value).sum()) for value, word in CRITICALITY_WORDS.items()}
     return ", ".join(f"{count} {word}" for word, count in counts.items() if count) or "none known"
 
 
 def _searched_range_line(view: ResultView, computed: np.ndarray) -> str:
-    """Line on the searched range of F, and on the completeness of the list of Hopf points. computed: mask of
-    the computed points.
-    """
+    """Line on the searched range of F, and on the completeness of the list of Hopf points."""
     v = view.variables
     certified = int(v["certified"][computed].sum())
     rods = int(computed.sum())

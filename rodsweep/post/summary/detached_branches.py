@@ -1,4 +1,5 @@
-"""Cycles on branches that no Hopf point of a diagram's row leads to, in `rodsweep show`."""
+"""Cycles on branches that no Hopf point of a diagram's row leads to, in `rodsweep show`. line: parameter that
+varies along a row. row: parameter that is constant on a row."""
 
 from itertools import pairwise
 
@@ -16,8 +17,7 @@ the row, divided by the length of the row."""
 
 
 def detached_branch_lines(view: ResultView, row: str) -> list[str]:
-    """List with a line about the rows with cycles on detached branches; empty if there are none. row:
-    parameter that is constant on a row."""
+    """List with a line about the rows with cycles on detached branches; empty if there are none."""
     if DETACHED_ROW not in view.variables:
         return []
     numbers = view.variables[DETACHED_ROW] - 1
@@ -33,9 +33,7 @@ def rows_without_cycles_of_curve(
     view: ResultView, line: str, row: str, indices: NDArray[np.intp]
 ) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
-    has this special point. line: parameter that varies along a row. row: parameter that is constant on a row.
-    indices: indices of the points of the curve, (points,).
-    """
+    has this special point. indices: indices of the points of the curve, (points,)."""
     v = view.variables
     if len(indices) < 2:
         return []

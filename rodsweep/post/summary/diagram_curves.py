@@ -1,4 +1,5 @@
-"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points."""
+"""Curves of a phase diagram in `rodsweep show`: folds, ends, and generalised Hopf points. line: parameter
+that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +9,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
+from .criticality import CRITICALITY_WORDS
 from .detached_branches import detached_branch_lines, rows_without_cycles_of_curve
 from .number_texts import error_text, number_with_error, span_text
 
@@ -47,8 +49,7 @@ END_SUFFIXES = ("start", "end")
 
 def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
-    cycles. line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    cycles."""
     v = view.variables
     lines = fold_lines(view, line, row)
     if "curve_criticality" in v:
@@ -61,9 +62,7 @@ def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 
 def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends. line:
-    parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    """Lines about the curves of folds and torus points of cycles, with the reasons for their ends."""
     v = view.variables
     lines = []
     for number in np.unique(v["cycle_curve_number"]):
@@ -87,11 +86,9 @@ def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def _extremum_clause(view: ResultView, line: str, row: str, points: NDArray[np.intp]) -> str:
     """Clause on an extremum of the row parameter near which a curve ends; empty for all other ends. points:
-    indices of the points of the curve, from this end on, (n,).
-
-    At an extremum two branches of cycles exchange their parts, or a closed branch shrinks to a cycle; there
-    cycles cannot be computed as functions of the row parameter and of a position along a branch.
-    """
+    indices of the points of the curve, from this end on, (n,). At an extremum two branches of cycles exchange
+    their parts, or a closed branch shrinks to a cycle; there cycles cannot be computed as functions of the
+    row parameter and of a position along a branch."""
     v = view.variables
     side = "start" if points[0] <= points[-1] else "end"
     if len(points) < 2 or v[f"cycle_curve_{side}"][points[0]] != list(CYCLE_CURVE_ENDS).index("not_followed"):
@@ -120,9 +117,8 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         error = error_text(float(v["cycle_curve_agreement"]))
-        agreement = f"points located on rows lie on them within {error} of the range of {line}; " * (
-            curves > 0
-        )
+        agreement = f"points located on rows lie on them within {error} of the range of {line}; "
+        agreement *= curves > 0
         untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
         lines.append(f"curves of folds and torus points of cycles: {curves}; {agreement}{untraced}")
     return lines
@@ -130,8 +126,7 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
 
 def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
-    list was full. line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    list was full."""
     v = view.variables
     lines = []
     for end in ("not_followed", "list_full"):
@@ -139,24 +134,19 @@ def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
         for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
             noun = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
             position = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
-            number = int(v["curve_number"][i])
-            lines.append(
-                f"curve {number}, of {noun}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}"
-            )
+            curve = f"curve {int(v['curve_number'][i])}, of {noun}"
+            lines.append(f"{curve}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}")
     return lines
 
 
 def _on_no_curve_clause(count: int, noun: str) -> str:
-    """Clause on the number `count` of points located on rows that lie on no curve. noun: noun for a point."""
-    return (
-        f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else f"every {noun} is on a curve"
-    )
+    """Clause on the number `count` of points located on rows that lie on no curve."""
+    none = f"every {noun} is on a curve"
+    return f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else none
 
 
 def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII.
-    line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
     v = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
@@ -173,8 +163,7 @@ def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
 
 def _position_text(view: ResultView, prefix: str, i: int, names: tuple[str, str]) -> str:
     """Position of the i-th fold or generalised Hopf point as text, with errors. prefix: prefix of the
-    variables, "fold" or "bautin". names: parameters.
-    """
+    variables, "fold" or "bautin"."""
     v = view.variables
     return ", ".join(
         f"{name} = {number_with_error(v[f'{prefix}_{name}'][i], v[f'{prefix}_{name}_error'][i])}"
@@ -187,24 +176,16 @@ def criticality_lines(view: ResultView) -> list[str]:
     undecided and unknown."""
     v = view.variables
     criticality = v["curve_criticality"][v["curve_kind"] == 1]
-    kinds = {
-        "supercritical": criticality < 0,
-        "subcritical": criticality > 0,
-        "undecided": criticality == 0,
-        "without a normal form": np.isnan(criticality),
-    }
+    kinds = {word: np.sign(criticality) == sign for sign, word in CRITICALITY_WORDS.items()}
+    kinds["without a normal form"] = np.isnan(criticality)
     counts = [f"{int(mask.sum())} {word}" for word, mask in kinds.items() if mask.any()]
-    points = counted(len(criticality), "point")
-    return [
-        f"criticality, gamma1 = {float(v['curve_gamma1']):g}: of {points} of the Hopf curves "
-        f"{', '.join(counts) or 'none'}"
-    ]
+    curves = f"of {counted(len(criticality), 'point')} of the Hopf curves {', '.join(counts) or 'none'}"
+    return [f"criticality, gamma1 = {float(v['curve_gamma1']):g}: {curves}"]
 
 
 def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:
-    """Lines about generalised Hopf points, and on the number of changes of criticality that were not located.
-    line: parameter that varies along a row. row: parameter that is constant on a row.
-    """
+    """Lines about generalised Hopf points, and on the number of changes of criticality that were not
+    located."""
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "

@@ -1,4 +1,5 @@
-"""Absolute errors of the variables in a result file, which limit the digits in a summary."""
+"""Absolute errors of the variables in a result file, which limit the digits in a summary. v: variables of the
+file, by name."""
 
 from collections.abc import Mapping
 
@@ -60,8 +61,7 @@ measured on a torus."""
 
 def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, of the shape of the variable; 0 for a variable without an
-    error. v: variables of the file.
-    """
+    error."""
     stem, _, part_name = name.rpartition("_")
     with np.errstate(invalid="ignore"):  # an infinite value times the error 0
         if stem in COMPLEX_VARIABLES and part_name != "error" and f"{stem}_error" in v:
@@ -71,8 +71,7 @@ def absolute_errors(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 def _errors_of_real_variable(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
     """Absolute errors of the variable `name`, which is not a part of a complex variable. The errors have the
-    shape of the variable. NumPy may warn of infinite values. v: variables of the file.
-    """
+    shape of the variable. NumPy may warn of infinite values."""
     values = np.abs(v[name])
     if name in STRAIGHT_EIGENVALUE:
         return EIGENVALUE_ERROR * np.hypot(*(v[part_name] for part_name in STRAIGHT_EIGENVALUE))
@@ -105,8 +104,7 @@ def relative_power_error(v: Mapping[str, np.ndarray], fluctuation: bool = False)
 
 
 def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
-    """Mask of the known values of the variable `name`, of the shape of the variable. v: variables of the
-    file.
+    """Mask of the known values of the variable `name`, of the shape of the variable.
 
     Only the time of the largest transient growth can be unknown: the error of this time is large if the
     growth hardly exceeds 1.
@@ -119,7 +117,6 @@ def is_known(v: Mapping[str, np.ndarray], name: str) -> np.ndarray:
 
 def known_range_text(v: Mapping[str, np.ndarray], name: str, mask: np.ndarray) -> str:
     """Range of the variable `name` over the points in `mask`, (...,), as text, rounded according to the
-    errors; unknown values of transient_time are left out. v: variables of the file.
-    """
+    errors; unknown values of transient_time are left out."""
     selected = mask & is_known(v, name) if name == "transient_time" else mask
     return span_text(v[name][selected], absolute_errors(v, name)[selected])

@@ -31,8 +31,7 @@ def followed_range_text(view: ResultView, computed: np.ndarray, parameter: str, 
 
 def searched_range_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the range of the followed parameter, and on the completeness of the list of Hopf points.
-    computed: mask of the computed points, (...,).
-    """
+    computed: mask of the computed points, (...,)."""
     parameter = followed_parameter(view)
     start, end = branch_ends(view)
     ranges = uncrushed_ranges(view, np.flatnonzero(computed.ravel()).tolist())

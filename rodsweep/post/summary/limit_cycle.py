@@ -1,4 +1,5 @@
-"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability."""
+"""Limit cycles in `rodsweep show`: which rods beat, variables of the cycles, and reliability. v: variables of
+the file, by name."""
 
 from collections.abc import Callable, Mapping
 
@@ -86,32 +87,25 @@ def outcome_line(
     status = view.variables["status"]
     total = counted(int(computed.sum()), "point")
     masks = {word: computed & (status == value) for value, word in view.flags.items() if value >= 0}
-    found = {
-        OUTCOME_WORDS.get(word, word.replace("_", " ")): mask for word, mask in masks.items() if mask.any()
-    }
+    found = {OUTCOME_WORDS.get(w, w.replace("_", " ")): mask for w, mask in masks.items() if mask.any()}
     if len(found) == 1:
         word = next(iter(found))
         outcome = f"the rod {word}" if word in OUTCOME_WORDS.values() else word
-        if computed.size > 1:
-            return (
-                f"{outcome} at all {total}" if computed.sum() > 1 else f"{outcome} at the only solved point"
-            )
-        return outcome
+        place = f" at all {total}" if computed.sum() > 1 else " at the only solved point"
+        return outcome + place * (computed.size > 1)
     counts = (f"{word} at {int(mask.sum())}{in_brackets(region(view, mask))}" for word, mask in found.items())
     return f"of {total}: {', '.join(counts)}"
 
 
 def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
     """Returns (lines, lines in an arm's units) about thresholds of the straight rod along F, or along all
-    varied parameters if F is not varied.
-    """
+    varied parameters if F is not varied."""
     names = [name for name in LINEAR_PARAMETERS if name in varied_parameters_at_points(view)]
     lines = list[str]()
     arm_sentences = list[str]()
     for name in names[:1] if "F" in names else names:
-        threshold_text, sentences = stability_lines(
-            view, name, StoredThresholds(view, name).thresholds_up_to_end
-        )
+        thresholds_on = StoredThresholds(view, name).thresholds_up_to_end
+        threshold_text, sentences = stability_lines(view, name, thresholds_on)
         lines += threshold_text
         arm_sentences += sentences
     return lines, arm_sentences
@@ -119,8 +113,7 @@ def _threshold_lines(view: ResultView) -> tuple[list[str], list[str]]:
 
 def _proof_lines(view: ResultView) -> list[str]:
     """Sentence, in a list, on whether the Hopf points are proved complete; empty if no line of points was
-    searched.
-    """
+    searched."""
     v = view.variables
     lines = int(v["hopf_lines"]) if "hopf_lines" in v else 0
     if not lines:
@@ -141,8 +134,7 @@ def orbit_line(v: Mapping[str, np.ndarray], stable: bool) -> str:
 
 def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
     """Table of the numbers of the only cycle in a file, with errors. v: variables of the file, (1, ...)
-    each.
-    """
+    each."""
     rows = []
     for label, name, unit in CYCLE_NUMBERS:
         value = float(np.nanmax(v[name], initial=-np.inf))
@@ -153,24 +145,19 @@ def orbit_table(v: Mapping[str, np.ndarray]) -> TextTable:
 
 def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about points at which a second stable state is certain or possible, or at which the straight rod
-    is stable but the motion ended in no stable state. computed: mask of the computed points.
-    """
+    is stable but the motion ended in no stable state."""
     v = view.variables
     numbers = {word: number for number, word in SECOND_STATES}
     lines = []
-    straight, cycle = (
-        computed & (v["second_state"] == numbers[word]) for word in ("straight", "cycle_possible")
-    )
+    straight = computed & (v["second_state"] == numbers["straight"])
+    cycle = computed & (v["second_state"] == numbers["cycle_possible"])
     are_bistable = straight & view.has_status("cycle", "torus")
     if are_bistable.any():
-        lines.append(
-            f"two stable states{_at_count(are_bistable, computed)}: the straight rod is stable as well"
-        )
+        at_points = _at_count(are_bistable, computed)
+        lines.append(f"two stable states{at_points}: the straight rod is stable as well")
     if (straight_only := straight & ~are_bistable).any():
-        lines.append(
-            f"the straight rod is stable{_at_count(straight_only, computed)} where the motion reached no "
-            "stable state"
-        )
+        at_points = _at_count(straight_only, computed)
+        lines.append(f"the straight rod is stable{at_points} where the motion reached no stable state")
     if cycle.any():
         lines.append(
             f"a stable cycle may exist beside the straight rod{_at_count(cycle, computed)}: the Hopf point "
@@ -182,15 +169,13 @@ def _second_state_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 def _at_count(mask: np.ndarray, computed: np.ndarray) -> str:
     """Clause on the number of points in the mask `computed` that are also in the mask `mask`; empty if
-    `computed` has a single point.
-    """
+    `computed` has a single point."""
     return "" if computed.sum() == 1 else f" at {count_of_total(mask.sum(), computed.sum(), 'point')}"
 
 
 def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]:
     """Lines on frequency, period in tau1, extrema of the tip, power, multiplier, integrated periods and least
-    h1 of the cycles. v: variables of the file. is_cycle: mask of the points with a cycle.
-    """
+    h1 of the cycles."""
     tips = (
         f"{label} {known_range_text(v, f'tip_{name}', is_cycle)} {unit}"
         for label, name, unit in (
@@ -213,9 +198,7 @@ def _cycle_lines(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> list[str]
 
 def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
     """Clause that compares the frequencies of the cycles with the frequencies of the leading modes; empty if
-    no frequency of a leading mode is known. v: variables of the file. is_cycle: mask of the points with a
-    cycle.
-    """
+    no frequency of a leading mode is known."""
     oscillates = is_cycle & (np.abs(v["linear_frequency"]) > 0)
     steady = is_cycle & (v["linear_frequency"] == 0)
     clause = ""
@@ -229,9 +212,7 @@ def _relative_frequency_clause(v: Mapping[str, np.ndarray], is_cycle: np.ndarray
 
 
 def _error_line(v: Mapping[str, np.ndarray], is_cycle: np.ndarray) -> str:
-    """Line on the largest errors of the cycles. v: variables of the file. is_cycle: mask of the points with a
-    cycle.
-    """
+    """Line on the largest errors of the cycles."""
     names = {
         "period": "period_error",
         "largest y of the tip": "amplitude_error",

@@ -1,54 +1,34 @@
 """Modes of the straight rod in `rodsweep show`: stability, non-normality, and accuracy."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...results.file.view import ResultView
 from ...wording import count_of_total, counted
 from .errors import absolute_errors, known_range_text
 from .number_texts import NONE_TEXT, span_text
-from .spectrum import (
-    eigenvalue_table,
-    error_lines,
-    leading_lines,
-    stability_line,
-    stable_line,
-    threshold_lines,
-    unknowns_lines,
-    unstable_count_line,
-)
+from .spectrum import spectrum_summary
 from .summary_lines import SummaryLines
 
 
 def modes_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of modes. computed: mask of the computed points, of the shape of the points."""
-    unknowns = unknowns_lines(view, computed)
-    if computed.size == 1:
-        answer = [unstable_count_line(view)]
-        reliability = []
-        details = unknowns
-        arm_sentences = list[str]()
-    else:
-        lines, location_note, arm_sentences = threshold_lines(view)
-        answer = [stable_line(view, computed), *lines]
-        reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
-        details = [*leading_lines(view, computed), *unknowns]
+    summary = spectrum_summary(view, computed)
+    reliability = [*summary.reliability]
     errors = view.variables["mode_error"][computed]
     if np.isfinite(errors).any():
-        unknown_count = int((~np.isfinite(errors)).any(axis=-1).sum())
-        unknown_clause = (
-            f"; not known at {count_of_total(unknown_count, len(errors), 'point')}" if unknown_count else ""
-        )
-        reliability.append(f"error of the modes, relative: worst {np.nanmax(errors):.1e}{unknown_clause}")
-    numbers = eigenvalue_table(view) if computed.size == 1 else None
-    return SummaryLines(
-        [*answer, *growth_lines(view, computed)], reliability, details, arm_sentences, numbers
-    )
+        text = f"error of the modes, relative: worst {np.nanmax(errors):.1e}"
+        if unknown_count := int((~np.isfinite(errors)).any(axis=-1).sum()):
+            text += f"; not known at {count_of_total(unknown_count, len(errors), 'point')}"
+        reliability.append(text)
+    answer = [*summary.answer, *growth_lines(view, computed)]
+    return replace(summary, answer=answer, reliability=reliability)
 
 
 def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """Lines about the condition of the leading eigenvalue, the numerical abscissa and the transient growth;
-    fewer if no growth is stored. computed: mask of the computed points, of the shape of the points.
-    """
+    fewer if no growth is stored. computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     condition = v["condition"][computed][:, 0]
     error = absolute_errors(v, "condition")[computed][:, 0]
@@ -59,9 +39,8 @@ def growth_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     lines.append(f"numerical abscissa: {known_range_text(v, 'numerical_abscissa', computed)} 1/tau2")
     if np.isfinite(growth).any():
         finite = computed & np.isfinite(v["transient_growth"])
-        growth_text, time_text = (
-            known_range_text(v, f"transient_{name}", finite) for name in ("growth", "time")
-        )
+        names = ("transient_growth", "transient_time")
+        growth_text, time_text = (known_range_text(v, name, finite) for name in names)
         time_clause = "" if time_text == NONE_TEXT else f", at t = {time_text} tau2"
         lines.append(f"largest transient growth: {growth_text} times{time_clause}")
     if np.isinf(growth).any():

@@ -29,8 +29,7 @@ NONE_TEXT = "none"
 def span_text(values: np.ndarray, errors: np.ndarray | None = None, max_digits: int = RANGE_DIGITS) -> str:
     """Range of the finite `values`, of any shape, as text; NONE_TEXT if no value is finite.
 
-    errors: absolute errors, of the shape of the values, which limit the number of digits. max_digits: largest
-    number of digits.
+    errors: absolute errors, of the shape of the values, which limit the number of digits.
     """
     values = np.asarray(values, dtype=float)
     is_finite = np.isfinite(values)
@@ -54,8 +53,7 @@ def axis_values_text(values: np.ndarray) -> str:
 def ranges_text(ranges: Sequence[tuple[float, float]], errors: Mapping[float, float]) -> str:
     """Ranges of a parameter as text; NONE_TEXT for an empty list. errors: absolute errors of ends of ranges,
     by end; other ends are exact. Each end is rounded at the decimal place of twice its error, to END_DIGITS
-    digits at most.
-    """
+    digits at most."""
     ends = [[_rounded_to_error(end, 2 * errors.get(end, 0.0), END_DIGITS) for end in ends] for ends in ranges]
     return ", ".join(" to ".join(pair) for pair in ends) or NONE_TEXT
 
@@ -101,16 +99,14 @@ def number_and_error(value: float, error: float) -> tuple[str, str]:
 
 def stated_error(value: float, error: float) -> tuple[str, float]:
     """Returns (number as text, rounded at the decimal place of `error`; sum of `error` and the rounding
-    error).
-    """
+    error)."""
     text = _rounded_to_error(value, error / 10, MAX_DIGITS)
     return text, error + abs(float(text) - value)
 
 
 def error_text(error: float) -> str:
     """An error as text with one significant digit, rounded up; "inf" or "nan" for an error that is not
-    finite.
-    """
+    finite."""
     if not MIN_ERROR < error < inf:
         return f"{error:.0e}"
     unit = 10.0 ** floor(log10(error))

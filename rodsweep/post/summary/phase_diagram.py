@@ -1,4 +1,5 @@
-"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows."""
+"""Phase diagrams in `rodsweep show`: fraction of the plane in each class, and changes along the rows. line:
+parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -64,19 +65,16 @@ def phase_diagram_summary(view: ResultView, computed: np.ndarray) -> SummaryLine
 def count_lines(classes: np.ndarray) -> list[str]:
     """List with a line on the number of grid points in each class. classes: class of each point, of any
     shape."""
-    counts = [
-        f"{int((classes == value).sum())} {word}"
-        for value, word in STABILITY_CLASSES
-        if (classes == value).any()
-    ]
-    return [f"of {counted(classes.size, 'grid point')} on the rows: {', '.join(counts)}"]
+    counts = ((int((classes == value).sum()), word) for value, word in STABILITY_CLASSES)
+    texts = ", ".join(f"{count} {word}" for count, word in counts if count)
+    return [f"of {counted(classes.size, 'grid point')} on the rows: {texts}"]
 
 
 def cost_saving_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
-    computed: mask of the computed rows, of the shape of the rows. line: parameter that varies along a row.
+    computed: mask of the computed rows, of the shape of the rows.
     """
     if not has_standard_rods(view.config):
         return []
@@ -102,8 +100,7 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
 
 def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
-    computed: mask of the computed rows, (...,). line: parameter along a row.
-    """
+    computed: mask of the computed rows, (...,)."""
     start = view.variables["class"][computed][:, 0]
     texts = [f"{word} on {int((start == n).sum())}" for n, word in STABILITY_CLASSES if (start == n).any()]
     if texts == [f"monotone on {len(start)}"]:
@@ -114,9 +111,7 @@ def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[s
 
 def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
-    undecided ranges, rows with and without flutter. line: parameter along a row. row: parameter constant on a
-    row.
-    """
+    undecided ranges, rows with and without flutter."""
     v = view.variables
     row_values = view.point_columns[row].reshape(computed.shape)
     lines = row_start_lines(view, computed, line)
@@ -126,10 +121,9 @@ def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str
         of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
         has_kind = of_kind.any(axis=-1)
         if number and has_kind.any():
-            is_first = of_kind & (of_kind.cumsum(axis=-1) == 1)
-            is_later = of_kind & ~is_first
-            spans = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in (is_first, is_later))
-            first_text, later_text = spans
+            is_later = of_kind & (of_kind.cumsum(axis=-1) > 1)
+            masks = (of_kind & ~is_later, is_later)
+            first_text, later_text = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in masks)
             bound = "at least " * bool((unknown & ~has_kind).any())
             on_rows = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
             text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {first_text}"
@@ -149,12 +143,12 @@ def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
     never_flutters = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
-    if (computed & never_flutters).any() and (computed & flutters).any():
-        with_flutter, without = (
-            axis_values_text(row_values[computed & mask]) for mask in (flutters, never_flutters)
-        )
-        count = count_of_total((computed & flutters).sum(), computed.sum(), "row")
-        none = int((computed & never_flutters).sum())
+    flutters &= computed
+    never_flutters &= computed
+    if never_flutters.any() and flutters.any():
+        with_flutter, without = (axis_values_text(row_values[mask]) for mask in (flutters, never_flutters))
+        count = count_of_total(flutters.sum(), computed.sum(), "row")
+        none = int(never_flutters.sum())
         lines.append(f"flutter: on {count}, {row} = {with_flutter}; none on {none}, {row} = {without}")
     return lines
 
@@ -167,9 +161,9 @@ def crossings_of_arms(view: ResultView, computed: np.ndarray) -> list[str]:
         return []
     v = view.variables
     lines = []
-    for number, word in enumerate(CROSSING_KINDS):
+    for number, word in list(enumerate(CROSSING_KINDS))[1:]:
         is_of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
-        if number and is_of_kind.any():
+        if is_of_kind.any():
             forces = v["crossing_at"][is_of_kind]
             rows = count_of_total(is_of_kind.any(axis=-1).sum(), computed.sum(), "row")
             lines.append(f"{word}: on {rows}, at {load_range_text(view, forces, np.zeros(len(forces), int))}")

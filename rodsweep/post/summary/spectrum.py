@@ -27,9 +27,8 @@ PROOF_WORDS = {True: "proved by a winding number", False: "not proved"}
 def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
     """Summary of spectra. computed: mask of the computed points, of the shape of the points."""
     if computed.size == 1:
-        return SummaryLines(
-            [unstable_count_line(view)], [], unknowns_lines(view, computed), [], eigenvalue_table(view)
-        )
+        numbers = eigenvalue_table(view)
+        return SummaryLines([unstable_count_line(view)], [], unknowns_lines(view, computed), numbers=numbers)
     lines, location_note, arm_sentences = threshold_lines(view)
     reliability = [*error_lines(view, computed), stability_line(view, computed), *location_note]
     details = [*leading_lines(view, computed), *unknowns_lines(view, computed)]
@@ -38,18 +37,15 @@ def spectrum_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 
 def stable_line(view: ResultView, computed: np.ndarray) -> str:
     """Line on the numbers of points at which the straight rod is stable, unstable, or of unknown stability.
-    computed: mask of the computed points, of the shape of the points.
-    """
+    computed: mask of the computed points, of the shape of the points."""
     unstable = view.variables["unstable_count"]
     masks = {"stable": unstable == 0, "unstable": unstable > 0, "not known": unstable < 0}
     masks_by_word = {word: computed & mask for word, mask in masks.items() if (computed & mask).any()}
     point_count = counted(int(computed.sum()), "point")
     if len(masks_by_word) == 1:
         return f"straight rod: {next(iter(masks_by_word))} at all {point_count}"
-    counts = (
-        f"{word} at {int(mask.sum())}{in_brackets(region_text(view, mask))}"
-        for word, mask in masks_by_word.items()
-    )
+    regions = {word: in_brackets(region_text(view, mask)) for word, mask in masks_by_word.items()}
+    counts = (f"{word} at {int(mask.sum())}{regions[word]}" for word, mask in masks_by_word.items())
     return f"straight rod, of {point_count}: {', '.join(counts)}"
 
 
@@ -59,17 +55,14 @@ def leading_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     v = view.variables
     if not np.isfinite(v["growth_rate"][computed][:, 0]).any():
         return []
-    rate, frequency = (
-        span_text(v[name][computed][:, 0], v["error_estimate"][computed][:, 0])
-        for name in ("growth_rate", "frequency")
-    )
+    error = v["error_estimate"][computed][:, 0]
+    rate, frequency = (span_text(v[n][computed][:, 0], error) for n in ("growth_rate", "frequency"))
     return [f"leading growth rate {rate} 1/tau2, frequency {frequency} rad/tau2"]
 
 
 def threshold_lines(view: ResultView) -> tuple[list[str], list[str], list[str]]:
     """Returns (lines about thresholds along F, line on the method of location, lines in an arm's units);
-    empty lists if F does not vary.
-    """
+    empty lists if F does not vary."""
     lines, arm_sentences = stability_lines(view, "F", StoredThresholds(view, "F").thresholds_on)
     location_note = LOCATION_EXPLANATION if has_standard_rods(view.config) else NOT_LOCATED_NOTE
     return lines, [f"thresholds: {location_note}"] if lines else [], arm_sentences
@@ -99,41 +92,34 @@ def unstable_count_line(view: ResultView) -> str:
 
 def error_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the errors of the eigenvalues; empty if no error is known. computed: mask of the
-    computed points, of the shape of the points.
-    """
+    computed points, of the shape of the points."""
     v = view.variables
     size = np.hypot(v["growth_rate"][computed], v["frequency"][computed])
     relative = v["error_estimate"][computed] / size
     if not np.isfinite(relative).any():
         return []
-    return [
-        f"relative error of the eigenvalues: at most {np.nanmax(relative):.1e}, median "
-        f"{np.nanmedian(relative):.1e}"
-    ]
+    worst, median = (f"{statistic(relative):.1e}" for statistic in (np.nanmax, np.nanmedian))
+    return [f"relative error of the eigenvalues: at most {worst}, median {median}"]
 
 
 def unknowns_lines(view: ResultView, computed: np.ndarray) -> list[str]:
     """List with a line on the number of unknowns per point, and on the number of points without a mesh.
-    computed: mask of the computed points, of the shape of the points.
-    """
+    computed: mask of the computed points, of the shape of the points."""
     v = view.variables
     unknowns = 3 * v["elements"][computed].astype(int) * v["order"][computed]
     if (followed := int((unknowns == 0).sum())) == unknowns.size:
         return ["no mesh was needed: eigenvalues were continued from a neighbouring point, or not found"]
-    followed_clause = (
-        f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
-        if followed
-        else ""
-    )
-    return [f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}{followed_clause}"]
+    text = f"unknowns of the mesh per point: {span_text(unknowns[unknowns > 0])}"
+    if followed:
+        text += f"; none at {counted(followed, 'point')}, continued from a neighbouring point or failed"
+    return [text]
 
 
 def stability_line(view: ResultView, computed: np.ndarray) -> str:
     """Line with three numbers: the largest number of unstable modes at a point; the number of points at which
     the number of unstable modes is proved or, for rods that vary along their length, confirmed by an
-    estimate; the number of points at which it is unknown. computed: mask of the computed points, of the
-    shape of the points.
-    """
+    estimate; the number of points at which it is unknown. computed: mask of the computed points, of the shape
+    of the points."""
     unstable = view.variables["unstable_count"][computed]
     points = int(computed.sum())
     if (unstable < 0).all():

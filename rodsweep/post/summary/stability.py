@@ -59,17 +59,13 @@ def stability_lines(
 
 def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter: str) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
-    thresholds by index of the line. names: description of each line. parameter: parameter along the lines.
-    """
+    thresholds by index of the line."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(errors))})" if errors else ""
-    lines_text = (
-        f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
-        if len(by_line) < len(names)
-        else ""
-    )
+    lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
+    lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency
         rate_text = f", frequency {frequency:.6g} rad/tau2" if np.isfinite(frequency) else ""
@@ -77,26 +73,21 @@ def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], pa
     if len(by_line) <= MAX_LISTED_LINES:
         texts = ((" and ".join(map(_position_text, by_line[i])), names[i]) for i in by_line)
         return f"{', '.join(' for '.join(filter(None, pair)) for pair in texts)}{error}"
+    bracketed = [point for point in points if isinstance(point, UnlocatedThreshold)]
     if not located:
-        ends = [(point.low, point.high) for point in points if isinstance(point, UnlocatedThreshold)]
-        low = min(low for low, _ in ends)
-        high = max(high for _, high in ends)
+        low = min(point.low for point in bracketed)
+        high = max(point.high for point in bracketed)
         return f"between {low:.6g} and {high:.6g}{lines_text}"
-    lowest = min(located, key=lambda point: point.position)
-    highest = max(located, key=lambda point: point.position)
-    unlocated = len(points) - len(located)
-    further = (
-        f"; {counted(unlocated, 'further threshold')} known only to lie between two points"
-        if unlocated
-        else ""
-    )
-    return f"{_position_text(lowest)} to {_position_text(highest)}{error}{lines_text}{further}"
+    ends = (choice(located, key=lambda point: point.position) for choice in (min, max))
+    text = f"{' to '.join(map(_position_text, ends))}{error}{lines_text}"
+    if bracketed:
+        text += f"; {counted(len(bracketed), 'further threshold')} known only to lie between two points"
+    return text
 
 
 def _position_text(threshold: Threshold) -> str:
     """Position of a threshold as text, rounded according to its error; for a bracketed threshold, both
-    ends.
-    """
+    ends."""
     if isinstance(threshold, UnlocatedThreshold):
         return f"between {threshold.low:.6g} and {threshold.high:.6g}"
     return stated_error(threshold.position, threshold.error)[0]

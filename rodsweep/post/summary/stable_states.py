@@ -1,4 +1,5 @@
-"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both."""
+"""Stable states of a phase diagram with cycles in `rodsweep show`: straight rod, cycle, or both. line:
+parameter that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
 
@@ -30,20 +31,15 @@ NO_CYCLE_CHANGE = tuple(map(SPECIAL_KINDS.index, ("none", "hopf")))
 
 def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
     """Lines about the fraction of the grid with each stable state, the ranges of some states, and the special
-    points of cycles. computed: mask of the computed rows, (...,). line: parameter along a row. row: parameter
-    constant on a row.
-    """
+    points of cycles. computed: mask of the computed rows, (...,)."""
     v = view.variables
     row_values = view.point_columns[row].reshape(computed.shape)
     states = v["stable_states"]
     kinds = v["cycle_special_kind"]
     positions = v[f"cycle_special_{line}"]
-    percents = ((100 * float((states[computed] == value).mean()), word) for value, word in STABLE_STATES)
-    texts = ", ".join(
-        f"{percent:.1f} % {STABLE_STATE_WORDS.get(word, word)}" for percent, word in percents if percent
-    )
+    shares = ((float((states[computed] == n).mean()), STABLE_STATE_WORDS.get(w, w)) for n, w in STABLE_STATES)
+    texts = ", ".join(f"{100 * share:.1f} % {phrase}" for share, phrase in shares if share)
     lines = [f"stable states, in % of the grid points: {texts}"]
-    located = {}
     for phrase, state in LISTED_STATES.items():
         in_state = (states == flag_number(state, STABLE_STATES)) & computed[..., np.newaxis]
         if in_state.any():
@@ -60,23 +56,19 @@ def state_lines(view: ResultView, computed: np.ndarray, line: str, row: str) -> 
             lines.append(f"{phrase}: only between grid points on {rows}, {row} = {hidden_values}")
     for kind, phrase in CYCLE_CHANGE_WORDS.items():
         is_of_kind = (kinds == SPECIAL_KINDS.index(kind)) & computed[..., np.newaxis]
-        located[phrase] = is_of_kind.any(axis=-1), positions[is_of_kind]
-    for phrase, (rows, values) in located.items():
-        if rows.any():
-            lines.append(
-                f"{phrase}: on {count_of_total(rows.sum(), computed.sum(), 'row')}, "
-                f"{line} = {span_text(values)}, {row} = {axis_values_text(row_values[rows])}"
-            )
+        has_kind = is_of_kind.any(axis=-1)
+        if has_kind.any():
+            on_rows = f"on {count_of_total(has_kind.sum(), computed.sum(), 'row')}"
+            rows = axis_values_text(row_values[has_kind])
+            lines.append(f"{phrase}: {on_rows}, {line} = {span_text(positions[is_of_kind])}, {row} = {rows}")
     return lines
 
 
 def _both_between_grid_points(view: ResultView, line: str) -> np.ndarray:
     """Mask of rows, (...,), with two neighbouring grid points between which straight rod and cycle are both
     stable though not at these points: one stable state at each, and between them first the beginning of one
-    and then the end of the other. line: parameter along a row.
-
-    Only intervals with one change of the straight rod and one change of cycles are decided.
-    """
+    and then the end of the other. Only intervals with one change of the straight rod and one change of cycles
+    are decided."""
     v = view.variables
     x = v[line]
     straight, cycle = (flag_number(state, STABLE_STATES) for state in ("straight", "cycle"))
@@ -86,9 +78,7 @@ def _both_between_grid_points(view: ResultView, line: str) -> np.ndarray:
         hopfs = v["crossing_at"][row][np.isin(v["crossing_kind"][row], HOPF_CROSSING_CODES)]
         specials = v[f"cycle_special_{line}"][row][~np.isin(v["cycle_special_kind"][row], NO_CYCLE_CHANGE)]
         for i in np.flatnonzero(states[:-1] + states[1:] == straight + cycle):
-            positions_between = [
-                positions[(positions > x[i]) & (positions < x[i + 1])] for positions in (hopfs, specials)
-            ]
+            positions_between = [p[(p > x[i]) & (p < x[i + 1])] for p in (hopfs, specials)]
             if {states[i], states[i + 1]} != {straight, cycle} or list(map(len, positions_between)) != [1, 1]:
                 continue
             (change_of_straight,), (change_of_cycle,) = positions_between

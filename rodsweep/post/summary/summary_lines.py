@@ -67,25 +67,20 @@ def varied_parameters_at_points(view: ResultView) -> dict[str, np.ndarray]:
 
 def region_text(view: ResultView, mask: np.ndarray) -> str:
     """Ranges of the varied parameters over the points in `mask`, (...,), as text; empty if no parameter
-    varies.
-    """
-    range_texts = []
-    for name, column in varied_parameters_at_points(view).items():
-        range_texts.append(f"{name} = {axis_values_text(column[mask.ravel()])}")
-    return ", ".join(range_texts)
+    varies."""
+    columns = varied_parameters_at_points(view)
+    return ", ".join(f"{name} = {axis_values_text(column[mask.ravel()])}" for name, column in columns.items())
 
 
 def point_text(view: ResultView, index: int) -> str:
     """Varied parameters at the point with the given index, as text."""
-    return ", ".join(
-        f"{name} = {column[index]:.6g}" for name, column in varied_parameters_at_points(view).items()
-    )
+    columns = varied_parameters_at_points(view)
+    return ", ".join(f"{name} = {column[index]:.6g}" for name, column in columns.items())
 
 
 def first_lines(lines: Sequence[str], noun: str) -> Iterator[str]:
     """Yields the first MAX_LISTED_ITEMS of `lines`, indented, and a line with the number of further lines.
-    noun: noun for the subject of a line.
-    """
+    noun: noun for the subject of a line."""
     yield from (f"  {line}" for line in lines[:MAX_LISTED_ITEMS])
     if len(lines) > MAX_LISTED_ITEMS:
         yield f"  and {counted(len(lines) - MAX_LISTED_ITEMS, noun)} more"
@@ -98,8 +93,6 @@ def in_brackets(text: str) -> str:
 
 def proof_clause(view: ResultView) -> str:
     """Predicate for the list of crossings in a file: "is proved complete" for uniform rods of linear
-    material, else "is confirmed by counts of unstable modes".
-    """
-    return (
-        "is proved complete" if has_standard_rods(view.config) else "is confirmed by counts of unstable modes"
-    )
+    material, else "is confirmed by counts of unstable modes"."""
+    is_proved = has_standard_rods(view.config)
+    return "is proved complete" if is_proved else "is confirmed by counts of unstable modes"

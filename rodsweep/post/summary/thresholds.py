@@ -36,8 +36,7 @@ LATER_CROSSING_WORDS = {"hopf": "flutter again from", "restabilization": "stable
 
 def later_flutter_changes(kinds: Sequence[str]) -> list[int]:
     """Places, in a list of crossings, of the starts and ends of all windows of flutter after the first
-    window. kinds: kinds of the crossings, in the order of the force.
-    """
+    window. kinds: kinds of the crossings, in the order of the force."""
     indices = []
     expected = "restabilization"
     for index, kind in enumerate(kinds):
@@ -66,8 +65,7 @@ def thresholds_summary(view: ResultView, computed: np.ndarray) -> SummaryLines:
 def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> str:
     """Line on the forces and rates at the first threshold of the kind `event`, and on the numbers of rods
     with this threshold and with an unknown result. computed: mask of the computed points, of the shape of the
-    points.
-    """
+    points."""
     phrase = FORCE_THRESHOLD_WORDS[event]
     rate_name, noun, unit = FIRST_THRESHOLD_RATES[event]
     v = view.variables
@@ -79,23 +77,19 @@ def first_threshold_line(view: ResultView, computed: np.ndarray, event: str) -> 
     unknown = unknown_clause(int((computed.ravel() & ~mask & ~decided).sum()))
     if not mask.any():
         return f"{phrase}: at none of {counted(rods, 'rod')}{unknown}"
-    low = int(np.nanargmin(F))
-    high = int(np.nanargmax(F))
     errors = crossing_errors(view, F, "crossing_F")
-    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in (low, high)]
+    ends = (int(np.nanargmin(F)), int(np.nanargmax(F)))
+    extremes = [f"{rounded_text(F[i], errors[i])}{in_brackets(point_text(view, i))}" for i in ends]
     forces = " to ".join(extremes if extremes[0] != extremes[1] else extremes[:1])
-    rods_text = (
-        f"all {counted(rods, 'rod')}" if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
-    )
-    return (
-        f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {span_text(v[rate_name][computed])} {unit}"
-    )
+    every_rod = f"all {counted(rods, 'rod')}"
+    rods_text = every_rod if mask.sum() == rods else count_of_total(int(mask.sum()), rods, "rod")
+    rates = span_text(v[rate_name][computed])
+    return f"{phrase}: F = {forces}, at {rods_text}{unknown}; {noun} {rates} {unit}"
 
 
 def unknown_beyond_clause(view: ResultView, F: float) -> str:
     """Clause that says that the search for a single rod ended early at the force F; empty for a complete
-    search.
-    """
+    search."""
     clause = f"; not known beyond F = {F:.6g}, where the search ended early"
     return clause if view.has_status(ENDED_EARLY).all() else ""
 
@@ -103,8 +97,7 @@ def unknown_beyond_clause(view: ResultView, F: float) -> str:
 def crossing_errors(view: ResultView, F: np.ndarray, force_name: str) -> np.ndarray:
     """Absolute errors of one crossing per point, (points,), from the list of crossings; 0 for a force that is
     not in the list of its point. F: force of the crossing, (points,); NaN for a point without this crossing.
-    force_name: variable with the forces of the list.
-    """
+    force_name: variable with the forces of the list."""
     table, errors = map(view.by_point, (force_name, "crossing_error"))
     return np.where(table == F[:, None], errors, 0.0).max(axis=1)
 
@@ -117,10 +110,9 @@ def crossing_lines(view: ResultView) -> list[str]:
     if kinds := [CROSSING_KINDS[int(kind)] for kind in v["crossing_kind"][v["crossing_kind"] > 0]]:
         first_forces = {word: v[f"F_{event}"] for event, word in FIRST_CROSSING_WORDS.items()}
         changes = [f"{word} F = {F:.6g}" for word, F in first_forces.items() if np.isfinite(F)]
-        later_changes = (
-            (LATER_CROSSING_WORDS[kinds[i]], v["crossing_F"][i]) for i in later_flutter_changes(kinds)
-        )
-        text = ", ".join([*changes, *(f"{word} F = {F:.6g}" for word, F in later_changes)])
+        for i in later_flutter_changes(kinds):
+            changes.append(f"{LATER_CROSSING_WORDS[kinds[i]]} F = {v['crossing_F'][i]:.6g}")
+        text = ", ".join(changes)
         count = f"{counted(int(v['crossing_count']), 'crossing')} up to {end}"
         meanings = (f"{kind}: {CROSSING_MEANINGS[kind]}" for kind in dict.fromkeys(kinds))
         return ["; ".join(filter(None, (text, count))), *meanings]
@@ -141,21 +133,13 @@ def crossing_table(view: ResultView) -> TextTable | None:
         kind = CROSSING_KINDS[int(v["crossing_kind"][i])]
         rows.append((kind, *F, *rates, str(unstable_count) if unstable_count >= 0 else "not known"))
     unit = PARAMETERS["F"].unit
-    headings = (
-        "kind",
-        f"F\n{unit}",
-        "+-",
-        "growth rate\n1/tau2",
-        f"frequency\n{ANGULAR_UNIT}",
-        "unstable\nabove",
-    )
-    return TextTable(headings, tuple(rows)) if rows else None
+    rate_headings = ("growth rate\n1/tau2", f"frequency\n{ANGULAR_UNIT}", "unstable\nabove")
+    return TextTable(("kind", f"F\n{unit}", "+-", *rate_headings), tuple(rows)) if rows else None
 
 
 def completeness_lines(view: ResultView) -> list[str]:
     """Lines on the searched range, the completeness of the list of crossings, and the undecided range, for
-    the only rod in a file.
-    """
+    the only rod in a file."""
     v = view.point_values(0)
     unlisted = int(v["crossing_count"]) - int((v["crossing_kind"] > 0).sum())
     proof = "proved complete" if has_standard_rods(view.config) else "confirmed by counts of unstable modes"
@@ -177,15 +161,13 @@ def unknown_clause(count: int) -> str:
 
 def unstored_clause(count: int) -> str:
     """Clause on the number `count` of crossings that are not stored because the list was full; empty for
-    0.
-    """
+    0."""
     verb = "is" if count == 1 else "are"
     return f"; {count} more {verb} not stored, raise the option crossings" if count > 0 else ""
 
 
 def search_lines(view: ResultView, computed: np.ndarray, noun: str) -> list[str]:
     """Lines about completeness, undecided ranges, numbers of stored crossings and errors of the searches.
-    noun: noun for a point.
 
     computed: mask of the computed points, of the shape of the points.
     """
@@ -226,6 +208,6 @@ def cost_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 
 def count_range(values: np.ndarray, noun: str) -> str:
-    """Range of the integer counts `values`, (n,), as text. noun: noun for the counted items."""
+    """Range of the integer counts `values`, (n,), as text."""
     text = span_text(values)
     return f"{text} {noun if text == '1' else plural(noun)}"

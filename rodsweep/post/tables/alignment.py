@@ -24,8 +24,7 @@ RowCells = tuple[str, ...]
 
 def wrap_cell_text(text: str, indent: str = "  ", width: int = LINE_WIDTH) -> str:
     """`text` wrapped to lines of at most `width` characters; all lines except the first start with
-    `indent`.
-    """
+    `indent`."""
     return textwrap.fill(text, width, subsequent_indent=indent, break_on_hyphens=False)
 
 
@@ -44,8 +43,7 @@ def rewrap_line(line: str, width: int = LINE_WIDTH) -> str:
 
 def point_aligned(cells: Sequence[str]) -> list[str]:
     """Cells of a column padded to equal length. Numbers are aligned at their decimal points; if a cell is not
-    a number, all cells are aligned at the left.
-    """
+    a number, all cells are aligned at the left."""
     if not all(NUMBER_PATTERN.fullmatch(cell) for cell in cells if cell):
         width = max(map(len, cells), default=0)
         return [f"{cell:{width}}" for cell in cells]
@@ -61,8 +59,7 @@ def point_aligned(cells: Sequence[str]) -> list[str]:
 
 def column_cells(heading_lines: Sequence[str], cells: Sequence[str]) -> list[str]:
     """Heading lines and cells of a column, padded to equal length. The cells are aligned as in
-    `point_aligned`. heading_lines: texts of the heading lines.
-    """
+    `point_aligned`."""
     aligned_cells = point_aligned(cells)
     width = max(map(len, (*heading_lines, *aligned_cells)))
     return [f"{cell:{width}}" for cell in (*heading_lines, *aligned_cells)]
@@ -92,15 +89,12 @@ def _table_lines(columns: Sequence[Sequence[str]]) -> list[str]:
 
 def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[str]:
     """Lines of a table whose last column is prose. The prose is wrapped to the right of the other columns, or
-    below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line.
-    """
+    below the row if less than MIN_PROSE_WIDTH remains. width: largest length of a line."""
     if not rows:
         return []
     *columns, proses = zip(*rows, strict=True)
-    aligned_columns = zip(
-        *(point_aligned(column) if any(column) else column for column in columns), strict=True
-    )
-    row_starts = [COLUMN_GAP.join(cells) for cells in aligned_columns]
+    aligned = (point_aligned(column) if any(column) else column for column in columns)
+    row_starts = [COLUMN_GAP.join(cells) for cells in zip(*aligned, strict=True)]
     prose_width = width - max(map(len, row_starts)) - len(COLUMN_GAP)
     lines = []
     for row_start, text in zip(row_starts, proses, strict=True):
@@ -109,9 +103,5 @@ def rows_with_prose(rows: Sequence[RowCells], width: int = LINE_WIDTH) -> list[s
             lines.append(f"{row_start}{COLUMN_GAP}{first_line}".rstrip())
             lines += [" " * (width - prose_width) + line for line in other_lines]
         else:
-            lines += (
-                [row_start.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
-                if text
-                else [row_start.rstrip()]
-            )
+            lines += [row_start.rstrip(), *textwrap.wrap(text, width - 4, initial_indent=" " * 4)]
     return lines

@@ -25,8 +25,7 @@ range."""
 @dataclass(frozen=True, slots=True)
 class Column:
     """Column of a table, with its name, unit and meaning. values: (rows,). absent: mask of missing values,
-    (rows,).
-    """
+    (rows,)."""
 
     name: str
     unit: str
@@ -58,8 +57,7 @@ class Column:
 
     def rows(self, indices: NDArray[np.int64] | slice) -> "Column":
         """Column with the rows `indices`: indices, in the order of the new column, or a slice. The index -1
-        gives a missing value.
-        """
+        gives a missing value."""
         if isinstance(indices, slice):
             return replace(self, values=self.values[indices], absent=self.absent[indices])
         # An appended row makes index -1 a missing value.
@@ -68,8 +66,7 @@ class Column:
 
     def texts(self) -> list[str]:
         """Values as text for CSV: words, or the shortest decimal number from which the value can be
-        recovered.
-        """
+        recovered."""
         if self.is_boolean:
             texts = [BOOLEAN_TEXTS[int(value)] for value in self.values]
         elif self.flag_meanings:
@@ -82,8 +79,7 @@ class Column:
 
     def _numbers(self) -> list[str]:
         """Real numbers as text: estimates with ERROR_DIGITS digits, coordinates without rounding error, other
-        numbers with all digits.
-        """
+        numbers with all digits."""
         if self.is_estimate:
             return [f"{value:.{ERROR_DIGITS}g}" for value in self.values]
         values = self.values + self.values.dtype.type(0)  # -0.0 + 0 is 0.0, which needs no sign
@@ -95,8 +91,7 @@ class Column:
 
 def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, str] | None = None) -> Column:
     """Column of a variable. values: (rows,). flag_meanings: words by value, used instead of the flags of the
-    variable if given.
-    """
+    variable if given."""
     meanings = dict(variable.flags) if flag_meanings is None else flag_meanings
     meaning = variable.long_name.removesuffix(NOT_KNOWN_SUFFIX)
     is_absent = missing_values_mask(variable, values)
@@ -106,15 +101,13 @@ def column_of(variable: Variable, values: NDArray, flag_meanings: Mapping[int, s
 
 def coordinate_column(name: str, unit: str, meaning: str, values: NDArray) -> Column:
     """Column of a parameter or another coordinate, with its name, unit and meaning. values: (rows,); NaN, a
-    missing value, stands for an arm outside the rod model.
-    """
+    missing value, stands for an arm outside the rod model."""
     return Column(name, unit, meaning, values, np.isnan(values.astype(float)), is_input=True)
 
 
 def _without_rounding_error(value: float, text: str) -> str:
     """Text of a coordinate, without rounding error if this text is much shorter: 2500 for 2500.0000000000005.
-    text: the value with all digits.
-    """
+    text: the value with all digits."""
     if not np.isfinite(value):
         return text
     rounded = f"{value:.15g}"
@@ -124,8 +117,7 @@ def _without_rounding_error(value: float, text: str) -> str:
 
 def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_]:
     """Mask of missing values of a variable, of the shape of `values`. A missing value is NaN, the fill value
-    -1, or a flag with a word in UNUSED_WORDS.
-    """
+    -1, or a flag with a word in UNUSED_WORDS."""
     if values.dtype.kind == "f":
         return np.isnan(values)
     if variable.flags:
@@ -135,6 +127,5 @@ def missing_values_mask(variable: Variable, values: NDArray) -> NDArray[np.bool_
 
 def marks_missing_items(variable: Variable) -> bool:
     """Whether the fill value of the variable marks a missing item, because no valid value equals the fill
-    value.
-    """
+    value."""
     return variable.dtype.startswith("<f") or bool(variable.flags) or variable.fill == -1

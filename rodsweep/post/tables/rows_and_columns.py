@@ -1,6 +1,5 @@
 """Rows and columns of the tables of a result: one row for each item of a list, with the parameters of the
-point of the item.
-"""
+point of the item."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -22,8 +21,8 @@ list."""
 
 
 def item_rows(view: ResultView, variables: Sequence[Variable], is_sweep_wide: bool) -> Rows:
-    """Indices of all items of a list that are not missing. variables: variables of the list. is_sweep_wide:
-    whether the list belongs to the whole file, not to single points."""
+    """Indices of all items of a list that are not missing. is_sweep_wide: whether the list belongs to the
+    whole file, not to single points."""
     points = 1 if is_sweep_wide else view.variables["status"].size
     is_present: NDArray[np.bool_] = np.zeros((), bool)
     for variable in variables:
@@ -39,8 +38,7 @@ def point_columns(
     view: ResultView, variables: Sequence[Variable], points: NDArray[np.int64]
 ) -> Iterator[Column]:
     """Yields the columns of points: parameters, quantities of an arm, then the variables `variables`. points:
-    index of the point of each row, (rows,).
-    """
+    index of the point of each row, (rows,)."""
     for name, values in view.point_columns.items():
         yield coordinate_column(name, *DIMENSIONS[name], values[points])
     for name, values in quantities_at_points(view).items():
@@ -58,9 +56,7 @@ def point_columns(
 def list_columns(
     view: ResultView, variables: Sequence[Variable], rows: Rows, is_sweep_wide: bool
 ) -> Iterator[Column]:
-    """Yields the columns of a list: coordinates of the items, then the variables. rows: indices of the items.
-    is_sweep_wide: whether the list belongs to the whole file, not to single points.
-    """
+    """Yields the columns of a list: coordinates of the items, then the variables."""
     names = variables[0].extra
     for name, item_indices in zip(names, rows[1:], strict=True):
         yield coordinate_column(name, *DIMENSIONS[name], view.variables[name][item_indices])
@@ -88,8 +84,8 @@ def si_columns(
     """Yields columns in SI units for the `variables` of a list (such as the crossings) that the file stores
     only in dimensionless form; nothing for a rod.
 
-    columns: columns of `variables`. points: index of the point of each row, (rows,); None if the list belongs
-    to the whole file: then only quantities that are equal at all points are used.
+    points: index of the point of each row, (rows,); None if the list belongs to the whole file: then only
+    quantities that are equal at all points are used.
     """
     if not view.quantities:
         return
@@ -114,8 +110,7 @@ def si_columns(
 
 def line_columns(view: ResultView, rows: Rows) -> Iterator[Column]:
     """Yields columns of the quantities of an arm that vary along a row of a diagram, such as the pressure if
-    F varies. rows: indices of the grid points.
-    """
+    F varies."""
     for name, values in view.quantities.items():
         if values.size > 1 and view.is_grid and PARAMETER_STORED_ALONG.get(name, "") not in view.parameters:
             yield quantity_column(name, values[rows[1]])
@@ -129,8 +124,7 @@ def quantity_column(name: str, values: NDArray) -> Column:
 
 def _is_of_points(view: ResultView, variable: Variable) -> bool:
     """Whether a variable of a list is stored for each point. The declaration of such a variable omits the
-    dimensions of the points.
-    """
+    dimensions of the points."""
     return variable.extra[0] not in ("point", *view.parameters)
 
 
@@ -141,8 +135,7 @@ def _axis_indices(view: ResultView, parameter: str) -> NDArray[np.int64]:
 
 def quantities_at_points(view: ResultView) -> dict[str, NDArray]:
     """Quantities of an arm at all points, (points,) each, by name, except quantities that vary along a row of
-    a diagram.
-    """
+    a diagram."""
     count = view.variables["status"].size
     columns = {}
     for name, values in view.quantities.items():

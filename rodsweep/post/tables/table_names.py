@@ -144,8 +144,7 @@ def refuse_unknown_columns(
     path: object, columns: tuple[str, ...], allowed: tuple[str, ...], table: str
 ) -> None:
     """Raises InputError for the first name in `columns` that is not in `allowed` or occurs twice. table: name
-    of the table, for the message; empty for all tables.
-    """
+    of the table, for the message; empty for all tables."""
     for index, name in enumerate(columns):
         if name not in allowed:
             subject = f"the table {table} has" if table else "its tables have"

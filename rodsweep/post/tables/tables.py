@@ -19,8 +19,7 @@ from .rows_and_columns import Rows, item_rows, line_columns, list_columns, point
 @dataclass(frozen=True, slots=True)
 class Table:
     """Table of results. name: name of the table. columns: columns of equal length. empty_points: number of
-    points without a row.
-    """
+    points without a row."""
 
     name: str
     columns: tuple[Column, ...]
@@ -58,18 +57,16 @@ class Tables:
         """
         name = table_names.chosen_table(self.view, self.contents, name, tuple(columns))
         points, listed = self._rows(name)
-        columns_beside = (
-            [] if points is None else list(point_columns(self.view, self.contents.point_variables, points))
-        )
-        if (
-            name == table_names.GRID
-        ):  # move the first column, a parameter, to its place among the other parameters
+        variables = self.contents.point_variables
+        columns_beside = [] if points is None else list(point_columns(self.view, variables, points))
+        if name == table_names.GRID:
+            # Move the first column, a parameter, to its place among the other parameters.
             earlier = list(PARAMETERS)[: list(PARAMETERS).index(listed[0].name)]
             columns_beside.insert(sum(column.name in earlier for column in columns_beside), listed.pop(0))
         by_name = {column.name: column for column in (*columns_beside, *listed)}
         table_names.refuse_unknown_columns(self.view.path, tuple(columns), tuple(by_name), name)
         if not columns:
-            hidden = {v.name for v in self.contents.point_variables if v.name != "status"}
+            hidden = {variable.name for variable in variables if variable.name != "status"}
             columns = [each for each in by_name if name == table_names.POINTS or each not in hidden]
         empty = 0 if points is None else self.view.variables["status"].size - len(np.unique(points))
         others = tuple(choice for choice in self.contents.tables if choice != name)
@@ -81,8 +78,7 @@ class Tables:
 
     def _rows(self, name: str) -> tuple[NDArray[np.int64] | None, list[Column]]:
         """Returns (point_indices, columns) for the table `name`. point_indices: index of the point of each
-        row, (rows,); None if the rows belong to no point. columns: columns of the items.
-        """
+        row, (rows,); None if the rows belong to no point. columns: columns of the items."""
         if name == table_names.POINTS:
             return np.arange(self.view.variables["status"].size), []
         if name == table_names.BRANCHES:
@@ -92,8 +88,7 @@ class Tables:
 
     def _list(self, name: str) -> tuple[Rows, list[Column]]:
         """Returns (rows, columns) of the list `name`. rows: indices of the items. columns: columns, including
-        columns in SI units.
-        """
+        columns in SI units."""
         is_sweep_wide = name in self.contents.sweep_wide_lists
         variables = self.contents.lists[name]
         rows = item_rows(self.view, variables, is_sweep_wide)
@@ -104,8 +99,7 @@ class Tables:
 
     def _branches(self) -> tuple[NDArray[np.int64], list[Column]]:
         """Returns (point_indices, columns) of the table `branches`: cycles, with special points between the
-        cycles. point_indices: index of the point of each row, (rows,).
-        """
+        cycles. point_indices: index of the point of each row, (rows,)."""
         cycles, of_cycles = self._list("cycles")
         special_rows, special_columns = self._list("special_points")
         points, cycle_indices, at_special = merged_rows(self.view, cycles, special_rows)
@@ -119,21 +113,18 @@ def merged_rows(view: ResultView, cycles: Rows, special_points: Rows) -> tuple[N
     points: index of the point. of_cycle, of_special: row in `cycles` and in `special_points`; -1 if the row
     is not a cycle, or not a special point. A special point follows the cycle that precedes it on the branch.
     """
-    shape = view.variables["status"].size
-    branch = np.concatenate(
-        [
-            _values_at_items(view, "branch", shape, cycles),
-            _values_at_items(view, "special_branch", shape, special_points),
-        ]
+    branch_of_cycle = view.by_point("branch")[cycles]
+    branch_of_special, position_of_special = (
+        view.by_point(name)[special_points] for name in ("special_branch", "special_point")
     )
-    position = np.concatenate([cycles[1] + 1, _values_at_items(view, "special_point", shape, special_points)])
-    point = np.concatenate([cycles[0], special_points[0]])
+    branch = np.concatenate([branch_of_cycle, branch_of_special])
+    position = np.concatenate([cycles[1] + 1, position_of_special])
+    point, number = (np.concatenate(pair) for pair in zip(cycles, special_points, strict=True))
     kind = np.repeat([0, 1], [len(cycles[0]), len(special_points[0])])
-    order = np.lexsort((np.concatenate([cycles[1], special_points[1]]), kind, position, branch, point))
+    order = np.lexsort((number, kind, position, branch, point))
     row = np.concatenate([np.arange(len(cycles[0])), np.arange(len(special_points[0]))])
-    cycle_indices = np.where(kind == 0, row, -1)
-    special_indices = np.where(kind == 1, row, -1)
-    return point[order], cycle_indices[order], special_indices[order]
+    cycle_indices, special_indices = (np.where(kind == own_kind, row, -1)[order] for own_kind in (0, 1))
+    return point[order], cycle_indices, special_indices
 
 
 def merged_columns(
@@ -146,7 +137,7 @@ def merged_columns(
     """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
     special points, and the kind of special point.
 
-    cycle_rows, special_rows: as from `merged_rows`, (rows,). parameter: followed parameter.
+    cycle_rows, special_rows: as from `merged_rows`, (rows,).
     """
     by_name = {column.name: column for column in special_columns}
     result = []
@@ -162,18 +153,9 @@ def merged_columns(
 
 
 def _special_point_variable(cycle_variable: str, parameter: str) -> str:
-    """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles.
-    parameter: followed parameter.
-    """
+    """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles."""
     if cycle_variable == f"branch_{parameter}":
         return "special_at"
     if parameter == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
         return "special_at_si"
     return f"special_{cycle_variable}"
-
-
-def _values_at_items(view: ResultView, name: str, count: int, rows: Rows) -> NDArray:
-    """Values of the variable `name` at the items of a list, (rows,). count: number of points. rows: indices
-    of the items.
-    """
-    return view.variables[name].reshape(count, -1)[rows]

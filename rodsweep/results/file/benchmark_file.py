@@ -18,7 +18,7 @@ def write_measurements(path: Path, tables: Mapping[str, Table], attributes: Mapp
     """Writes the table of every benchmark study to `path`, a group for each study with a dataset for each
     column, (measurements,) each, and `attributes` as attributes of the file.
 
-    Raises EnvironmentIncomplete if writing fails. tables: table of each study, by name of the study.
+    Raises EnvironmentIncomplete if writing fails.
     """
     try:
         with h5py.File(path, "w") as file:

@@ -53,8 +53,7 @@ def variable_digest(
     blocks: Iterable[Any],
 ) -> str:
     """Digest of a variable of the NumPy type `kind` and the shape `shape`. dimensions: names of its
-    dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order.
-    """
+    dimensions. attributes: its attributes by name. blocks: its numbers as buffers in row-major order."""
     described = [kind.newbyteorder("<").str, list(shape), list(dimensions), _plain_attributes(attributes)]
     digest = sha256(json.dumps(described, sort_keys=True).encode())
     for block in blocks:
@@ -64,24 +63,19 @@ def variable_digest(
 
 def attribute_digests(attributes: Mapping[str, Any]) -> dict[str, str]:
     """Digest of every attribute of a file by name, except attributes of HDF5, netCDF and the user."""
-    values = _plain_attributes(attributes)
-    return {
-        name: sha256(json.dumps(value).encode()).hexdigest()[:DIGEST_DIGITS] for name, value in values.items()
-    }
+    texts = {name: json.dumps(value) for name, value in _plain_attributes(attributes).items()}
+    return {name: sha256(text.encode()).hexdigest()[:DIGEST_DIGITS] for name, text in texts.items()}
 
 
 def digests_of(file: h5py.File) -> Digests:
     """Digests of an open file. Raises ValueError, with a clause as message, for content that rodsweep does
-    not write.
-    """
+    not write."""
     variables = {}
     for name, data in _variables(file):
         if data.dtype.kind not in NUMBER_KINDS or data.shape is None:
             raise ValueError(f"its variable {printable_name(name, 40)} has no numbers")
-        dimensions = _dimensions(name, data)
-        variables[name] = variable_digest(
-            data.dtype, data.shape, dimensions, data.attrs, _number_buffers(data)
-        )
+        described = data.dtype, data.shape, _dimensions(name, data), data.attrs
+        variables[name] = variable_digest(*described, _number_buffers(data))
     return {"attributes": attribute_digests(file.attrs), "variables": variables}
 
 
@@ -107,10 +101,8 @@ def refuse_changed(file: h5py.File) -> None:
 
 
 def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
-    """Yields (name, variable) of an open file, without the user's variables.
-
-    Raises ValueError for links and for data stored in another file.
-    """
+    """Yields (name, variable) of an open file, without the user's variables. Raises ValueError for links and
+    for data stored in another file."""
     offsets = set()
     for name in file:
         name_text = printable_name(name, 40)
@@ -133,22 +125,15 @@ def _variables(file: h5py.File) -> Iterator[tuple[str, h5py.Dataset]]:
 
 def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
     """Names of a variable's dimensions, read from its attributes. The only dimension of a coordinate has the
-    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged.
-
-    HDF5's own functions for dimensions are not used, because they crash on damaged attributes.
-    """
+    name of the coordinate. A scalar has no dimensions. ValueError if the attributes are damaged. HDF5's own
+    functions for dimensions are not used, because they crash on damaged attributes."""
     attributes = data.attrs
-    changed = ValueError(
-        f"the dimensions of {printable_name(name, 40)} were changed after rodsweep wrote them"
-    )
+    text = printable_name(name, 40)
+    changed = ValueError(f"the dimensions of {text} were changed after rodsweep wrote them")
     if "CLASS" in attributes:
         number = attributes.get("_Netcdf4Dimid", 0)  # number of the dimension, in files that xarray wrote
         stored = [attributes["CLASS"], attributes.get("NAME"), attributes.get("_Netcdf4Coordinates", number)]
-        if [_attribute_as_list(value) for value in stored] != [
-            ["DIMENSION_SCALE"],
-            [name],
-            _attribute_as_list(number),
-        ]:
+        if list(map(_attribute_as_list, stored)) != [["DIMENSION_SCALE"], [name], _attribute_as_list(number)]:
             raise changed
         return [name]
     if "DIMENSION_LIST" not in attributes:
@@ -158,9 +143,8 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
         raise changed
     file = data.file.id
     try:  # by low-level handles, because `data.file[place]` takes half the time of opening a file
-        scales = [
-            h5py.h5r.dereference(r, file) for references in attributes["DIMENSION_LIST"] for r in references
-        ]
+        references = (each for references in attributes["DIMENSION_LIST"] for each in references)
+        scales = [h5py.h5r.dereference(reference, file) for reference in references]
         names = [h5py.h5i.get_name(scale) if scale else None for scale in scales]
     except (ValueError, RuntimeError, OSError, LookupError):
         raise changed from None
@@ -172,8 +156,7 @@ def _dimensions(name: str, data: h5py.Dataset) -> list[str]:
 
 def _number_buffers(data: h5py.Dataset) -> Iterator[Any]:
     """Yields the numbers of a variable as buffers. Contiguous numbers are read from the file without HDF5;
-    other numbers, and big-endian numbers, come as one buffer of little-endian numbers.
-    """
+    other numbers, and big-endian numbers, come as one buffer of little-endian numbers."""
     start = data.id.get_offset()
     size = data.id.get_storage_size()
     if start is None or data.dtype.byteorder == ">":

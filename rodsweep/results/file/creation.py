@@ -30,8 +30,7 @@ from .validation import FORMAT, PROGRAM
 @dataclass(frozen=True, slots=True)
 class FilePlan:
     """Plan of a result file: points, layout, resolved config, and the variables that do not belong to single
-    points.
-    """
+    points."""
 
     points: Points
     layout: Layout
@@ -104,8 +103,7 @@ def create_file(path: Path, plan: FilePlan) -> None:
 
 def add_variables(file: h5py.File, variables: Sequence[FilledVariable]) -> None:
     """Adds variables with their values to an open file, and coordinates 1, 2, ... of new dimensions.
-    variables: (variable, values) pairs.
-    """
+    variables: (variable, values) pairs."""
     for variable, values in variables:
         for name, length in zip(variable.extra, values.shape, strict=True):
             if name not in file:
@@ -143,10 +141,8 @@ def is_axis(variable: Variable) -> bool:
 
 
 def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Variable | None = None) -> None:
-    """Writes the coordinate `values`, (n,), of the dimension `name`.
-
-    variable: description of a dimension that is not in DIMENSIONS.
-    """
+    """Writes the coordinate `values`, (n,), of the dimension `name`. variable: description of a dimension
+    that is not in DIMENSIONS."""
     data = file.create_dataset(name, data=values)
     data.make_scale(name)
     data.attrs.update(dimension_attributes(name) if variable is None else variable.attributes)
@@ -154,8 +150,7 @@ def _write_scale(file: h5py.File, name: str, values: NDArray[Any], variable: Var
 
 def _new_dataset(file: h5py.File, variable: Variable, shape: tuple[int, ...]) -> h5py.Dataset:
     """New contiguous dataset, allocated and filled when it is created, so that its offset in the file is
-    final: `rodsweep.results.file.points` reads and writes points at this offset.
-    """
+    final: `rodsweep.results.file.points` reads and writes points at this offset."""
     creation = h5py.h5p.create(h5py.h5p.DATASET_CREATE)
     creation.set_layout(h5py.h5d.CONTIGUOUS)
     creation.set_alloc_time(h5py.h5d.ALLOC_TIME_EARLY)

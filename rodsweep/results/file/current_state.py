@@ -63,8 +63,7 @@ def journalled_points(header: ResultHeader, status: np.ndarray) -> np.ndarray:
 
 def journalled_reasons(header: ResultHeader) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE, including failed points in the journals; empty if no
-    point failed.
-    """
+    point failed."""
     directory = journal_directory(header.path)
     lines = read_reasons(directory, header.layout, header.fingerprint) if directory.is_dir() else ()
     return with_failure_reasons(lines, header.attributes)
@@ -72,8 +71,7 @@ def journalled_reasons(header: ResultHeader) -> dict[str, str]:
 
 def insert_records(values: np.ndarray, name: str, records: np.ndarray) -> None:
     """Copies the variable `name` of records, (n,), into `values`, the array of this variable at all points,
-    in place, at the flat indices in the field `index` of the records.
-    """
+    in place, at the flat indices in the field `index` of the records."""
     values.reshape(-1, *records[name].shape[1:])[records["index"]] = records[name]
 
 
@@ -98,10 +96,8 @@ def write_snapshot(path: Path, output: Path) -> tuple[int, int]:
 
 
 def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, int]:
-    """Replaces the snapshot by a copy of the file at `path` with the points of its journals.
-
-    Returns (number of computed points, number of all points).
-    """
+    """Replaces the snapshot by a copy of the file at `path` with the points of its journals. Returns (number
+    of computed points, number of all points)."""
     header = read_header(path)
     with disk_refusals(replacement.path), replacement.replacing(path) as copy:
         blocks = read_journals(journal_directory(path), header.layout, header.fingerprint, header.points)
@@ -114,8 +110,7 @@ def _write_new_snapshot(path: Path, replacement: FileReplacement) -> tuple[int, 
 
 def _is_snapshot(path: Path) -> bool:
     """Whether a file is a snapshot. A run that continues a snapshot turns the snapshot into an ordinary
-    result file.
-    """
+    result file."""
     if not is_rodsweep_file(path):
         return False
     with damage_refusals(path), h5py.File(path, "r") as file:

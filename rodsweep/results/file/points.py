@@ -56,22 +56,16 @@ def records_to_add(path: Path, other_path: Path, layout: Layout) -> Iterator[np.
     """Yields records, (n,), of points that the file `other_path` has and the file `path` lacks."""
     block_size = _block_points(layout)
     pairs = zip(iterate_statuses(path, block_size), iterate_statuses(other_path, block_size), strict=True)
-    yield from _selected_records(
-        other_path,
-        layout,
-        (
-            (start, (own_status == MISSING_STATUS) & (other_status != MISSING_STATUS))
-            for (start, own_status), (_, other_status) in pairs
-        ),
-    )
+    masks = ((start, own == MISSING_STATUS, other != MISSING_STATUS) for (start, own), (_, other) in pairs)
+    blocks = ((start, is_missing & is_in_other) for start, is_missing, is_in_other in masks)
+    yield from _selected_records(other_path, layout, blocks)
 
 
 def stored_records(path: Path, layout: Layout) -> Iterator[np.ndarray]:
     """Yields records, (n,), of all computed points of a file with the given layout."""
-    blocks = iterate_statuses(path, _block_points(layout))
-    yield from _selected_records(
-        path, layout, ((start, status != MISSING_STATUS) for start, status in blocks)
-    )
+    statuses = iterate_statuses(path, _block_points(layout))
+    blocks = ((start, status != MISSING_STATUS) for start, status in statuses)
+    yield from _selected_records(path, layout, blocks)
 
 
 def _block_points(layout: Layout) -> int:
@@ -136,23 +130,12 @@ def points_of_open_file(file: h5py.File, layout: Layout) -> Points:
     axes = {name: file[name][...] for name in layout.arm_axes}
     if not axes:
         return Points(names, tuple(file[name][...] for name in names), is_grid="point" not in file)
-    columns = tuple(
-        np.broadcast_to(table, file["status"].shape).ravel() for table in grid_parameter_values(file, layout)
-    )
-    return Points(names, columns, is_grid=False, arm_axes=axes)
-
-
-def grid_parameter_values(variables: Mapping[str, Any], layout: Layout) -> Iterator[np.ndarray]:
-    """Yields the values of each parameter on a grid over an arm's quantities, shaped to broadcast over the
-    grid.
-
-    variables: variables of the file by name. A parameter has the shape of the grid or, if it is an axis,
-    varies along this axis only.
-    """
-    for name in layout.parameters:
+    columns = []
+    for name in names:  # a parameter has the shape of the grid or, if it is an axis, varies along it only
         shape = [-1 if axis == name else 1 for axis in layout.arm_axes]
-        table = variables[name][...]
-        yield table.reshape(shape) if name in layout.arm_axes else table
+        table = file[name][...].reshape(shape) if name in layout.arm_axes else file[name][...]
+        columns.append(np.broadcast_to(table, file["status"].shape).ravel())
+    return Points(names, tuple(columns), is_grid=False, arm_axes=axes)
 
 
 def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> bool:
@@ -166,9 +149,8 @@ def write_records(path: Path, blocks: Iterable[np.ndarray], layout: Layout) -> b
     with path.open("r+b") as stream:
         for records in filter(len, blocks):
             any_written = True
-            sorted_records = records[
-                np.argsort(records["index"], kind="stable")
-            ]  # stable: the last record of a point wins
+            # Stable: the last record of a point wins.
+            sorted_records = records[np.argsort(records["index"], kind="stable")]
             index = sorted_records["index"]
             edges = [0, *map(int, np.flatnonzero(np.diff(index) != 1) + 1), len(index)]
             runs = [(run_start, run_end, int(index[run_start])) for run_start, run_end in pairwise(edges)]

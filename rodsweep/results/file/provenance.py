@@ -43,8 +43,7 @@ def utc_time() -> str:
 
 def provenance() -> dict[str, str]:
     """Versions of rodsweep, Python and libraries (except PETSc and SLEPc), the git commit, and the system, by
-    name of the attribute.
-    """
+    name of the attribute."""
     return {
         "rodsweep_version": __version__,
         "git_commit": git_commit(),
@@ -102,7 +101,7 @@ def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
 def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) -> dict[str, str]:
     """Dict with the attribute FAILURE_REASONS_ATTRIBUTE after new failures.
 
-    lines: lines of the new failures. attributes: attributes of the file, with the reasons of earlier runs.
+    attributes: attributes of the file, with the reasons of earlier runs.
     """
     # The newest examples first: an earlier one may be a point that has been computed anew.
     return joined_failure_reasons(*lines, str(attributes.get(FAILURE_REASONS_ATTRIBUTE, "")))
@@ -110,8 +109,7 @@ def with_failure_reasons(lines: Iterable[str], attributes: Mapping[str, Any]) ->
 
 def kernels_sentence(attribute: str) -> str:
     """Warning that several BLAS kernels computed the points of a file; empty for a single kernel. attribute:
-    value of KERNELS_ATTRIBUTE.
-    """
+    value of KERNELS_ATTRIBUTE."""
     kernels = attribute.splitlines()
     if len(kernels) < 2:
         return ""
@@ -122,16 +120,13 @@ def kernels_sentence(attribute: str) -> str:
 
 
 def merged_history(attribute_sets: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
-    """Attributes of a merged file that describe the runs that computed its points. attribute_sets: attributes
-    of each source.
-    """
+    """Attributes of a merged file that describe the runs that computed its points."""
     history: dict[str, Any] = {
         "shard": "",
         KERNELS_ATTRIBUTE: merged_blas_kernels(*map(blas_kernels_in, attribute_sets))[:MAX_ATTRIBUTE_LENGTH],
     }
-    history |= joined_failure_reasons(
-        *(str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
-    )
+    reasons = (str(each.get(FAILURE_REASONS_ATTRIBUTE, "")) for each in attribute_sets)
+    history |= joined_failure_reasons(*reasons)
     runs = [attributes for attributes in attribute_sets if "ranks" in attributes]
     if not runs:
         return history
@@ -154,14 +149,9 @@ def git_commit() -> str:
     root = Path(__file__).resolve().parents[3]
     if not (root / ".git").exists():
         return "unknown"
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--match="]
     try:
-        run = subprocess.run(
-            ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--match="],
-            capture_output=True,
-            text=True,
-            timeout=10,
-            check=False,
-        )
+        run = subprocess.run(command, capture_output=True, text=True, timeout=10, check=False)
     except (OSError, subprocess.TimeoutExpired):
         return "unknown"
     return run.stdout.strip() or "unknown"

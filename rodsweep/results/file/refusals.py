@@ -31,7 +31,7 @@ def require_room(path: Path, plan: FilePlan) -> None:
 def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> ResultHeader:
     """Header of the existing file at `path`, where the file of a plan belongs.
 
-    Raises InputError unless the existing file is a complete result. journals: journal directory of the file.
+    Raises InputError unless the existing file is a complete result.
     """
     if not path.is_file():
         raise InputError(f"{path} is not a file; choose another file with -o")
@@ -46,8 +46,7 @@ def header_of_existing_file(path: Path, plan: FilePlan, journals: Path) -> Resul
 
 def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) -> None:
     """Raises InputError for an existing file, described by `header`, whose config differs from the config of
-    the plan. journals: journal directory of the file.
-    """
+    the plan."""
     change = config_change_text(header.config, plan.config)
     remedies = _remedies_clause(plan, journals)
     try:
@@ -59,9 +58,7 @@ def require_same_config(header: ResultHeader, plan: FilePlan, journals: Path) ->
 
 
 def _remedies_clause(plan: FilePlan, journals: Path) -> str:
-    """Clause that tells the user what to do with a file that is in the way of the result file. journals:
-    journal directory of the file.
-    """
+    """Clause that tells the user what to do with a file that is in the way of the result file."""
     if journals_with_fingerprint(journals, plan.fingerprint):
         return f"move it away, and the same command will use the points in {journals}"
     return "choose another file with -o, or replace it with --fresh"

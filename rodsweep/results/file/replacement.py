@@ -37,8 +37,7 @@ def file_identity(path: Path) -> FileIdentity:
 def disk_refusals(path: Path, kept_clause: Callable[[], str] = str) -> Iterator[None]:
     """Context that turns disk errors (OSError, or RuntimeError from HDF5) into EnvironmentIncomplete.
 
-    path: file that is written. kept_clause: function that returns a clause, for the message, on the data that
-    are saved.
+    kept_clause: function that returns a clause, for the message, on the data that are saved.
     """
     try:
         yield

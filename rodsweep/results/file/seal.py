@@ -41,8 +41,7 @@ class ChecksumMismatch(ValueError):
 
 def seal(path: Path) -> None:
     """Adds digests and a checksum to a closed file that rodsweep has just written; replaces earlier digests
-    and checksums.
-    """
+    and checksums."""
     with h5py.File(path, "r+") as file:
         file.attrs[SEAL_ATTRIBUTE] = json.dumps(digests_of(file))
     with h5py.File(path, "r") as file:

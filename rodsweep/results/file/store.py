@@ -49,10 +49,8 @@ class ResultFileWriter:
 
     def __init__(self, path: Path, plan: FilePlan, replaces: bool = False, extends: bool = False):
         """Opens the file of a plan or creates the file; raises InputError for a file of another plan.
-
         replaces: whether to replace an existing result file of any plan. extends: whether to extend the file
-        of a smaller config to the plan, reusing its points where possible.
-        """
+        of a smaller config to the plan, reusing its points where possible."""
         self.path = path
         self.plan = plan
         self.notes: list[str] = []
@@ -132,7 +130,7 @@ class ResultFileWriter:
         return copy
 
     def _set_aside(self, paths: Sequence[Path], noun: str) -> None:
-        """Moves `paths` out of the journal directory, and notes the new place. noun: noun for the files."""
+        """Moves `paths` out of the journal directory, and notes the new place."""
         if paths:
             self.notes.append(f"{noun} are kept in {move_journals_aside(self.journal_directory, paths)}")
 
@@ -161,19 +159,16 @@ class ResultFileWriter:
         """Adds journalled points and attributes by one replacement; deletes the journals. additions: as for
         `finish`; None if points are missing."""
         plan = self.plan
-        self.restore_missing_file()
+        with disk_refusals(self.path, self._kept_points_clause):
+            self._restore_missing_file()
         blocks = read_journals(self.journal_directory, plan.layout, plan.fingerprint, plan.points.count)
         self._add_blocks(blocks, plan.layout, plan.fingerprint, attributes, additions)
         if not self.missing():
             for pattern in (CHECKPOINT_GLOB, BACKUP_GLOB):
                 delete_matching_files(self.journal_directory, pattern)
 
-    def restore_missing_file(self) -> None:
-        """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
-        with disk_refusals(self.path, self._kept_points_clause):
-            self._restore_missing_file()
-
     def _restore_missing_file(self) -> None:
+        """Creates a moved or deleted file again; EnvironmentIncomplete if another file is in its place."""
         if file_identity(self.path) == self.replacement.last_identity:
             return
         if not self.path.exists():
@@ -186,9 +181,8 @@ class ResultFileWriter:
             if header.fingerprint != self.plan.fingerprint:
                 require_same_config(header, self.plan, self.journal_directory)
         except InputError as error:
-            raise EnvironmentIncomplete(
-                f"the result file was changed or replaced during the run: {error}"
-            ) from None
+            message = f"the result file was changed or replaced during the run: {error}"
+            raise EnvironmentIncomplete(message) from None
 
     def _add_blocks(
         self,
@@ -199,10 +193,7 @@ class ResultFileWriter:
         additions: FinalVariables | None = None,
     ) -> None:
         """Writes the records in `blocks`, (n,) each, of journals with the fingerprint into the file; deletes
-        the journals.
-
-        additions: variables that end the file; None if points are missing.
-        """
+        the journals. additions: variables that end the file; None if points are missing."""
         with disk_refusals(self.path, self._kept_points_clause):
             journals = journals_with_fingerprint(self.journal_directory, fingerprint)
             first_block = next(blocks, None)

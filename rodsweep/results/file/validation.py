@@ -139,7 +139,7 @@ def escape_control_characters(value: Any) -> Any:
 
 
 def _refuse_other_format(path: Path, attributes: Mapping[str, Any]) -> None:
-    """Raises InputError for a file whose format differs from FORMAT. attributes: attributes of the file."""
+    """Raises InputError for a file whose format differs from FORMAT."""
     format_number = int(np.atleast_1d(attributes.get("format", 0))[0])  # netCDF stores a list of one number
     version, commit = (str(attributes.get(name, "unknown")) for name in ("rodsweep_version", "git_commit"))
     writer = f"{version}, commit {commit[:12]}"

@@ -57,8 +57,7 @@ class FileVariables(Mapping[str, np.ndarray]):
 @dataclass(frozen=True, slots=True)
 class ResultView:
     """Contents of a result file and its journals. path: the file. attributes: its attributes. variables: its
-    variables as NumPy arrays, by name.
-    """
+    variables as NumPy arrays, by name."""
 
     path: Path
     attributes: dict[str, Any]
@@ -113,8 +112,7 @@ class ResultView:
     @property
     def as_list(self) -> "ResultView":
         """This view with a grid over an arm's quantities turned into a list of points; for all other points,
-        this view unchanged.
-        """
+        this view unchanged."""
         if not self.arm_axes:
             return self
         shape = self.variables["status"].shape
@@ -124,9 +122,7 @@ class ResultView:
 
     def _listed(self, name: str, shape: tuple[int, ...]) -> np.ndarray:
         """Variable `name` with the axes of a grid, of the shape `shape`, flattened to the list of points.
-
-        Variables without these axes are unchanged.
-        """
+        Variables without these axes are unchanged."""
         values = self.variables[name]
         if name in self.arm_axes:
             axes_shape = [-1 if axis == name else 1 for axis in self.arm_axes]
@@ -156,8 +152,7 @@ class ResultView:
 
     def point_values(self, index: int) -> dict[str, np.ndarray]:
         """Values of every variable of points at a flat index, by name, with the shape of the variable's extra
-        dimensions.
-        """
+        dimensions."""
         shape = self.variables["status"].shape
         names = (name for name, values in self.variables.items() if values.shape[: len(shape)] == shape)
         return {name: self.by_point(name)[index] for name in names}
@@ -165,8 +160,7 @@ class ResultView:
     @property
     def point_columns(self) -> dict[str, np.ndarray]:
         """Value of each parameter at every point, by name, (points,) each; in a grid the last axis is
-        fastest.
-        """
+        fastest."""
         columns = [self.variables[name] for name in self.parameters]
         if self.is_grid:
             columns = [table.ravel() for table in np.meshgrid(*columns, indexing="ij")]
@@ -200,8 +194,6 @@ def _view(path: Path) -> ResultView:
         variables = FileVariables(path, file, recent)
         stored = (name for name in ALL_QUANTITIES if name in file)
         units = {name: str(file[name].attrs[TYPED_UNIT]) for name in stored if TYPED_UNIT in file[name].attrs}
-    layout = header.layout
+    names, axes = header.layout.parameters, header.layout.arm_axes
     attributes = header.attributes | journalled_reasons(header)
-    return ResultView(
-        path, attributes, variables, layout.parameters, flags, len(recent), layout.arm_axes, units
-    )
+    return ResultView(path, attributes, variables, names, flags, len(recent), axes, units)

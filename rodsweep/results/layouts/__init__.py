@@ -19,13 +19,11 @@ LAYOUT_MODULES = {
     "criticality": criticality,
     "branch": branch,
 }
-LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]] = {
-    task: module.layout for task, module in LAYOUT_MODULES.items()
-}
+LAYOUT_MAKERS: dict[str, Callable[[dict[str, Any]], Layout]]
+LAYOUT_MAKERS = {task: module.layout for task, module in LAYOUT_MODULES.items()}
 """Function from a resolved config to the layout of the file, by task."""
-EXTENSION_RULES: dict[str, dict[str, ExtensionRule]] = {
-    task: module.OPTION_EXTENSION_RULES for task, module in LAYOUT_MODULES.items()
-}
+EXTENSION_RULES: dict[str, dict[str, ExtensionRule]]
+EXTENSION_RULES = {task: module.OPTION_EXTENSION_RULES for task, module in LAYOUT_MODULES.items()}
 """Rules for the options of which a larger value requests more data of a point, by task and option. A file
 cannot be extended if any other option changes."""
 SWEEP_WIDE_VARIABLE_MAKERS: dict[str, Callable[[dict[str, Any], bool], tuple[Variable, ...]]] = {
@@ -44,9 +42,8 @@ def layout_of(config: dict[str, Any]) -> Layout:
     if task not in LAYOUT_MAKERS:
         raise KeyError(f"unknown task {task}")
     layout = LAYOUT_MAKERS[task](config)
-    return with_si_variables(
-        replace(layout, parameters=(*layout.parameters, *optional_parameters_in(config))), config
-    )
+    parameters = (*layout.parameters, *optional_parameters_in(config))
+    return with_si_variables(replace(layout, parameters=parameters), config)
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:

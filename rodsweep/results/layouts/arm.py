@@ -80,8 +80,7 @@ def with_si_variables(layout: Layout, config: Mapping[str, Any]) -> Layout:
 
 def si_variables_of(layout: Layout, config: Mapping[str, Any]) -> dict[str, Variable]:
     """SI variables for the variables of a layout and a resolved config, by name of the dimensionless
-    variable.
-    """
+    variable."""
     is_force = load_kind_of(config["parameters"]["arm"]) == "force"
     units = ((variable, _stored_si_unit(variable, is_force).unit) for variable in layout.variables)
     return {v.name: real(si_name_of(v.name, si), si, _si_meaning(v, si), *v.extra) for v, si in units if si}
@@ -109,7 +108,7 @@ def _si_meaning(variable: Variable, unit: str) -> str:
 
 
 def _stored_si_unit(variable: Variable, is_force: bool) -> SIUnit:
-    """SI unit in which a variable is also stored, or NO_UNIT. is_force: whether the load is a force."""
+    """SI unit in which a variable is also stored, or NO_UNIT."""
     return si_unit_of(variable, is_force) if variable.extra in SI_DIMENSIONS else NO_UNIT
 
 
@@ -128,7 +127,7 @@ def si_variable(
     variable: Variable, values: Array, quantities: Mapping[str, Array], is_force: bool
 ) -> tuple[Variable, Array]:
     """Returns (SI variable, its values, (n,)) for a dimensionless variable with the values `values`, (n,).
-    quantities: the arm's quantities by name, () or (n,) each. is_force: whether the load is a force."""
+    quantities: the arm's quantities by name, () or (n,) each."""
     si = si_unit_of(variable, is_force)
     converted = real(si_name_of(variable.name, si.unit), si.unit, _si_meaning(variable, si.unit))
     return converted, values * si.scale(quantities)
@@ -138,8 +137,8 @@ def arm_axis_names(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Names of the axes of a grid over an arm's quantities in a resolved config; else empty."""
     parameters = config["parameters"]
     axes = parameters["arm"] | {name: axis for name, axis in parameters.items() if name in PARAMETERS}
-    multi_valued = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
-    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in multi_valued.items()}
+    ranges = {name: axis for name, axis in axes.items() if isinstance(axis, Mapping)}
+    sizes = {name: len(axis.get("values") or ()) or int(axis["num"]) for name, axis in ranges.items()}
     return grid_axis_names(sizes, makes_diagram(config["task"]))
 
 
@@ -152,10 +151,9 @@ def arm_variables(parameters: ParametersSection, points: Points) -> tuple[Filled
     if arm is None:
         return ()
     if not points.arm_axes:
-        return tuple(
-            _si_variable(arm, name, values, (PARAMETER_STORED_ALONG[name],) if np.ndim(values) else ())
-            for name, values in arm.grid_quantities().items()
-        )
+        quantities = arm.grid_quantities()
+        along = {n: (PARAMETER_STORED_ALONG[n],) if np.ndim(v) else () for n, v in quantities.items()}
+        return tuple(_si_variable(arm, n, values, along[n]) for n, values in quantities.items())
     axes = points.arm_axes
     numbers = {name: axis.array()[0] for name, axis in arm.quantity_axes.items() if name not in axes}
     columns = points.units | {n: column for n, column in points.columns_by_name.items() if n not in axes}
@@ -185,11 +183,9 @@ def quantities_at_points(quantities: Iterable[FilledVariable], points: Points) -
     dimensions = tuple(points.arm_axes)
     result = {}
     for variable, values in quantities:
-        index = [slice(None) if name in variable.extra else None for name in dimensions]
-        values_at_points = (
-            np.broadcast_to(values[tuple(index)], points.shape).ravel() if variable.extra else values
-        )
-        result[variable.name] = values_at_points
+        index = tuple(slice(None) if name in variable.extra else None for name in dimensions)
+        is_axis = bool(variable.extra)
+        result[variable.name] = np.broadcast_to(values[index], points.shape).ravel() if is_axis else values
     return result
 
 
@@ -203,8 +199,7 @@ def si_values(
     """Values of the SI variables, by name, of one point or of n points.
 
     record: dimensionless variables by name, of one point, or (n, ...). index: flat index of the point, or
-    (n,). quantities: the arm's quantities by name, () or (points,) each. is_force: whether the load is a
-    force.
+    (n,). quantities: the arm's quantities by name, () or (points,) each.
     """
     values = {}
     for variable in layout.variables:

@@ -49,10 +49,7 @@ ERROR_VARIABLES = (
 
 
 def followed_variables(parameter: str) -> tuple[Variable, ...]:
-    """Variables of the cycles on all branches, branch by branch.
-
-    parameter: name of the continuation parameter.
-    """
+    """Variables of the cycles on all branches, branch by branch."""
     unit = PARAMETERS[parameter].unit
     return along_dimension(
         CYCLE_DIMENSION,
@@ -82,7 +79,7 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
 
 def followed_range_variables(parameter: str, prefix: str = "") -> tuple[Variable, Variable]:
     """Variables of the range of the parameter in which branches are followed, whose names begin with
-    `prefix`. parameter: the continuation parameter's name."""
+    `prefix`."""
     unit = PARAMETERS[parameter].unit
     words = f"{parameter} up to which branches are followed beyond the range, if they may enter it again"
     return (
@@ -129,10 +126,8 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
 
 
 def _list_length_rule(name: str) -> ExtensionRule:
-    """Rule for the maximum length of a list; the variable `name` is the number of its items.
-
-    A stored list that is not full already has all items.
-    """
+    """Rule for the maximum length of a list; the variable `name` is the number of its items. A stored list
+    that is not full already has all items."""
     return ExtensionRule(lambda records, old: records[name] < old)
 
 
@@ -165,6 +160,5 @@ def layout(config: dict[str, Any]) -> Layout:
     )
     parameters = parameter_names_except(parameter, NONLINEAR_PARAMETERS)
     variables = with_certified_meaning(variables, config, "Hopf points")
-    return Layout(
-        variables, {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}, parameters
-    )
+    extents = {CYCLE_DIMENSION: options["cycles"], SPECIAL_DIMENSION: options["special"]}
+    return Layout(variables, extents, parameters)

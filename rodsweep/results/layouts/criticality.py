@@ -24,8 +24,7 @@ c."""
 
 def criticality_variable(name: str, decided_by: str) -> Variable:
     """Variable for the criticality of Hopf points. decided_by: name of the number whose sign is the
-    criticality.
-    """
+    criticality."""
     meaning = (
         "supercritical: cycles exist where the pair is unstable, and are stable unless other modes are "
         "unstable; subcritical: cycles exist where the pair is stable; "
@@ -68,13 +67,7 @@ def layout(config: dict[str, Any]) -> Layout:
     """Layout of the result file of the task criticality, for a resolved config."""
     search = [v for v in search_variables("F", "crossing_F") if v.name not in ABSENT_FROM_HOPF_SEARCH]
     position = [v.name for v in search].index("unstable_after") + 1
-    variables = with_certified_meaning(
-        (*search[:position], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[position:]),
-        config,
-        "Hopf points",
-    )
-    return Layout(
-        variables,
-        {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]},
-        parameter_names_except("F", NONLINEAR_PARAMETERS),
-    )
+    variables = (*search[:position], *NORMAL_FORM_VARIABLES, *SEARCH_END_VARIABLES, *search[position:])
+    variables = with_certified_meaning(variables, config, "Hopf points")
+    extents = {HOPF_POINT_DIMENSION: config["criticality"]["crossings"]}
+    return Layout(variables, extents, parameter_names_except("F", NONLINEAR_PARAMETERS))

@@ -4,13 +4,11 @@ from .variables import along_dimension, integer
 
 DETACHED_ROW = "cycle_detached_row"
 """Name of the variable with the numbers of the rows that have detached branches of cycles."""
-DETACHED_BRANCH_VARIABLES = {
-    variable.name: variable
-    for variable in along_dimension(
-        "cycle_detached",
-        integer(DETACHED_ROW, "number, from 1, of a row with branches that no Hopf point leads to"),
-        integer("cycle_detached_count", "number of special points on these branches of the row"),
-    )
-}
+VARIABLES = along_dimension(
+    "cycle_detached",
+    integer(DETACHED_ROW, "number, from 1, of a row with branches that no Hopf point leads to"),
+    integer("cycle_detached_count", "number of special points on these branches of the row"),
+)
+DETACHED_BRANCH_VARIABLES = {variable.name: variable for variable in VARIABLES}
 """Variables, by name, of the rows whose stable states contain cycles on branches that were found only because
 a curve of folds or torus points crosses the row; a file without such rows does not have them."""

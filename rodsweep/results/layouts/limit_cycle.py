@@ -1,6 +1,5 @@
 """Layout of the task limit_cycle: the cycle at each point, and Hopf points located between neighbouring
-points.
-"""
+points."""
 
 from collections.abc import Collection
 from typing import Any
@@ -94,9 +93,7 @@ CYCLE_VARIABLES = (
 PERIOD_TAU1 = real("period_tau1", "tau1", "period of the limit cycle in units of tau1: period k2/gamma3")
 TIP_UNITS = {"x": "L", "y": "L", "theta": "rad"}
 """Units of the position and the angle of the tip."""
-TIP_VARIABLES = tuple(
-    real(f"tip_{name}", units, f"{name} of the tip", "sample") for name, units in TIP_UNITS.items()
-)
+TIP_VARIABLES = tuple(real(f"tip_{n}", unit, f"{n} of the tip", "sample") for n, unit in TIP_UNITS.items())
 ENERGY_VARIABLES = (
     real("energy", "k3/L", "elastic energy", "sample"),
     real("injection", POWER_UNIT, "power of the follower force", "sample"),
@@ -105,12 +102,10 @@ ENERGY_VARIABLES = (
 SHAPE_VARIABLES = tuple(
     real(f"shape_{name}", units, f"{name} along the rod", "shape", "u") for name, units in TIP_UNITS.items()
 )
-TRANSIENT_VARIABLES = (
-    real("transient_time", "tau2", "time since the start of the motion", "transient"),
-    *(
-        real(f"transient_{name}", units, f"{name} of the tip during the transient", "transient")
-        for name, units in TIP_UNITS.items()
-    ),
+TRANSIENT_VARIABLES = along_dimension(
+    "transient",
+    real("transient_time", "tau2", "time since the start of the motion"),
+    *(real(f"transient_{n}", unit, f"{n} of the tip during the transient") for n, unit in TIP_UNITS.items()),
 )
 HOPF_DIMENSION = "hopf"
 """Dimension of the Hopf points on the lines of points of a file."""
@@ -119,8 +114,9 @@ HOPF_CROSSING_KINDS = ("none", "hopf", "hopf_reverse", "restabilization")
 
 
 def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
-    """Variables of the Hopf points of the straight rod on lines of points. names: parameters of the file."""
+    """Variables of the Hopf points of the straight rod on lines of points."""
     place_clause = "at the Hopf point"
+    parameters = [PARAMETERS[name] for name in TRANSVERSE_PARAMETERS if name in names]
     kinds = ((CROSSING_KINDS.index(kind), kind) for kind in HOPF_CROSSING_KINDS)
     return (
         *along_dimension(
@@ -131,15 +127,11 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
                 TRANSVERSE_PARAMETERS,
             ),
             word("hopf_kind", f"change of stability {place_clause} as the parameter hopf_along grows", kinds),
-            *(
-                real(f"hopf_{p}", PARAMETERS[p].unit, f"{p} {place_clause}")
-                for p in TRANSVERSE_PARAMETERS
-                if p in names
-            ),
+            *(real(f"hopf_{p.name}", p.unit, f"{p.name} {place_clause}") for p in parameters),
             real(
                 "hopf_error",
                 "1",
-                f"estimate of the relative error of the parameter hopf_along {place_clause}",
+                "estimate of the relative error of the parameter hopf_along at the Hopf point",
             ),
             real("hopf_frequency", ANGULAR_UNIT, "angular frequency of the pair that crosses"),
             real("hopf_frequency_error", ANGULAR_UNIT, "estimate of the absolute error of hopf_frequency"),
@@ -159,9 +151,8 @@ def hopf_point_variables(names: Collection[str]) -> tuple[Variable, ...]:
 NEEDS_NEW_SOLVE_OF_CYCLES = ExtensionRule(lambda records, before: np.isnan(records["period"]))
 """Rule for the options that set the stored data of a cycle: after an increase, every point with a cycle is
 solved again."""
-OPTION_EXTENSION_RULES = dict.fromkeys(
-    ("harmonics", "samples", "shapes", "nodes"), NEEDS_NEW_SOLVE_OF_CYCLES
-) | {
+OPTION_EXTENSION_RULES = {
+    **dict.fromkeys(("harmonics", "samples", "shapes", "nodes"), NEEDS_NEW_SOLVE_OF_CYCLES),
     "transient": NEEDS_NEW_SOLVE,
     "time": ExtensionRule(NEEDS_NEW_SOLVE_OF_CYCLES.has_data, ("tau2", "tau1")),
 }

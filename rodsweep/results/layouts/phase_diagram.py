@@ -79,7 +79,7 @@ def plane_of(config: dict[str, Any]) -> tuple[tuple[str, str], dict[str, int]]:
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
     """Variables computed from all rows of a phase diagram together: all variables of curves and of
     criticality, requested by the config or not, and variables of Bautin curves along the parameters in
-    `phase_diagram.bautin_along` only. config: the resolved config. is_grid: not used."""
+    `phase_diagram.bautin_along` only. is_grid: not used."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
     variables |= cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES
@@ -108,8 +108,8 @@ def layout(config: dict[str, Any]) -> Layout:
 
 
 def cycle_variables(line: str) -> tuple[Variable, ...]:
-    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of cycles.
-    line: parameter along the row."""
+    """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of
+    cycles."""
     unit = PARAMETERS[line].unit
     place_clause = "at the special point"
     error = "estimate of the relative error of cycle_special_"
@@ -156,7 +156,7 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
 def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[Variable, Variable]:
     """Variables with the reasons why curves begin and end, along the points of the curves.
 
-    curve: prefix of the names. dimension: dimension of the points.
+    curve: prefix of the names.
     """
     reasons = tuple(reasons)
     return (

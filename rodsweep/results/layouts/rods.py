@@ -28,8 +28,7 @@ def estimates_counts(config: Mapping[str, Any]) -> bool:
 
 def has_standard_rods(config: Mapping[str, Any]) -> bool:
     """Whether all rods are uniform and of linear material. Only then can a covering prove that the list of
-    crossings is complete.
-    """
+    crossings is complete."""
     return has_linear_law(config) and not estimates_counts(config)
 
 

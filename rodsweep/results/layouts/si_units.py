@@ -28,11 +28,9 @@ class SIUnit(NamedTuple):
 
     def scale(self, quantities: Mapping[str, Any]) -> NDArray[Any]:
         """The dimensionless unit in SI units, () or (n,). quantities: the quantities of the arm by name, ()
-        or (n,) each.
-        """
-        numerator, denominator = (
-            prod(quantities[name] for name in names) for names in (self.factors, self.divisors)
-        )
+        or (n,) each."""
+        numerator = prod(quantities[name] for name in self.factors)
+        denominator = prod(quantities[name] for name in self.divisors)
         return np.asarray(numerator / (2 * np.pi * denominator if self.unit == HERTZ else denominator))
 
 
@@ -52,7 +50,6 @@ FORCE_UNITS = {load: SIUnit(UNITS[load][0], (SCALE_NAME[load],)) for load in LOA
 
 
 def load_kind_of(arm: Mapping[str, Any]) -> str:
-    """Kind of the loads in the results of an arm: "force" or "pressure". arm: section `parameters.arm` of a
-    resolved config."""
+    """Kind of the loads in the results of an arm: "force" or "pressure"."""
     load = next((LOAD_OF_RATIO.get(name, name) for name in arm if name in LOAD_KEYS), "pressure")
     return str(arm.get("load_kind") or load)

@@ -26,9 +26,8 @@ from .variables import (
 
 
 def complex_pair(name: str, units: str, long_name: str) -> tuple[Variable, Variable]:
-    """Variables for the real and the imaginary part of a complex field of every mode, along the rod. name:
-    name of the field. units, long_name: unit and long name of the field.
-    """
+    """Variables for the real and the imaginary part of a complex field of every mode, along the rod. units,
+    long_name: unit and long name of the field."""
     return (
         real(f"{name}_real", units, f"real part of {long_name}", "mode", "u"),
         real(f"{name}_imag", units, f"imaginary part of {long_name}", "mode", "u"),
@@ -56,16 +55,10 @@ ESTIMATED_MEANING = (
 """Long name of the variable `certified` in a file of arms that vary along their length."""
 POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *MESH_VARIABLES, SECONDS, STATUS)
 SHARED_TIME = "time spent on the point; for points solved together, an equal share of their time"
-FOLLOWED_POINT_VARIABLES = (
-    UNSTABLE_COUNT,
-    CERTIFIED,
-    *(
-        replace(v, long_name=f"{v.long_name}; 0: eigenvalues continued from a neighbouring point")
-        for v in MESH_VARIABLES
-    ),
-    replace(SECONDS, long_name=SHARED_TIME),
-    STATUS,
-)
+NO_MESH_SUFFIX = "; 0: eigenvalues continued from a neighbouring point"
+FOLLOWED_MESH_VARIABLES = (replace(v, long_name=v.long_name + NO_MESH_SUFFIX) for v in MESH_VARIABLES)
+FOLLOWED_SECONDS = replace(SECONDS, long_name=SHARED_TIME)
+FOLLOWED_POINT_VARIABLES = (UNSTABLE_COUNT, CERTIFIED, *FOLLOWED_MESH_VARIABLES, FOLLOWED_SECONDS, STATUS)
 """Variables of a point of the task spectrum, whose eigenvalues may be followed from a neighbouring point."""
 EIGENVECTOR_VARIABLES = (
     *complex_pair("Y", "1", "the eigenmode's deflection, scaled to Y(1) = 1"),
@@ -78,8 +71,7 @@ def longitudinal_variables(
 ) -> tuple[Variable, ...]:
     """Variables of the longitudinal eigenvalues, with an error estimate unless `is_closed_form`: the
     eigenvalues then have a closed form. gamma1: axial drag of all rods. dimensions: dimensions of the
-    parameters on which the rates depend, or the dimension of all points.
-    """
+    parameters on which the rates depend, or the dimension of all points."""
     meaning = f"longitudinal eigenvalue, real, for gamma1 = {gamma1:g}"
     rate = real("longitudinal_rate", "1/tau2", meaning, *dimensions, "mode")
     error = "estimate of the relative error of longitudinal_rate"
@@ -124,9 +116,7 @@ OPTION_EXTENSION_RULES = dict.fromkeys(OPTIONS_THAT_NEED_NEW_SOLVE, NEEDS_NEW_SO
 
 
 def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variable, ...]:
-    """Variables of a file of the task spectrum that belong to all points together. config: the resolved
-    config. is_grid: whether the points are a grid.
-    """
+    """Variables of a file of the task spectrum that belong to all points together."""
     gamma1 = config["parameters"].get("gamma1")
     if gamma1 is None:
         return FORCE_CHANGE_VARIABLES

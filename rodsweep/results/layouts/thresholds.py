@@ -53,8 +53,7 @@ may change."""
 
 def crossing_variables(line: str, position_name: str) -> tuple[Variable, ...]:
     """Variables of the crossings along the parameter `line`. position_name: name of the variable with the
-    value of this parameter at a crossing.
-    """
+    value of this parameter at a crossing."""
     units = PARAMETERS[line].unit
     return (
         real(position_name, units, f"{line} at the crossing", "crossing"),

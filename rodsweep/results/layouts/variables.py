@@ -95,8 +95,7 @@ def flag_attributes(flags: Iterable[tuple[int, str]], dtype: str = "|i1") -> dic
 
 def real(name: str, units: str, long_name: str, *dimensions: str) -> Variable:
     """Description of a variable of floating-point numbers; nan stands for a missing number. dimensions:
-    dimensions after those of the points.
-    """
+    dimensions after those of the points."""
     return Variable(name, "<f8", np.nan, units, long_name, dimensions)
 
 
@@ -113,8 +112,7 @@ def integer(name: str, long_name: str, *dimensions: str) -> Variable:
 def word(name: str, long_name: str, words: Iterable[str | tuple[int, str]], *dimensions: str) -> Variable:
     """Description of a variable whose numbers stand for words. words: words, numbered from 0, or pairs
     (stored number, word). dimensions: dimensions after those of the points. The fill value is -1 if a word
-    has the number -1, which means a missing value; otherwise 0.
-    """
+    has the number -1, which means a missing value; otherwise 0."""
     flags = tuple(entry if isinstance(entry, tuple) else (index, entry) for index, entry in enumerate(words))
     fill_value = -1 if any(value == -1 for value, _ in flags) else 0
     return Variable(name, "|i1", fill_value, "1", long_name, dimensions, flags)

@@ -42,14 +42,12 @@ class StateWithArrays(Protocol):
 
 class ArrayStore:
     """Store of sets of named arrays in the journal directory of a run, with one file per set. A set is
-    identified by a number. pattern: pattern of the names of the files.
-    """
+    identified by a number. pattern: pattern of the names of the files."""
 
     pattern: ClassVar[str]
 
     def __init__(self, directory: Path, fingerprint: str, first_line: bytes):
-        """directory: journal directory. fingerprint: digest of config and points. first_line: first line of
-        each file."""
+        """directory: journal directory. fingerprint: digest of config and points."""
         self.directory = directory
         self.header = first_line + fingerprint.encode() + b"\n"
 
@@ -88,9 +86,8 @@ class Checkpoints(ArrayStore):
     pattern = CHECKPOINT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str, state_of: Callable[[Arrays], StateWithArrays]):
-        """directory: journal directory. fingerprint: digest of config and points. state_of: makes a solver
-        state from its arrays (the result of the state's method `arrays`).
-        """
+        """directory: journal directory. state_of: makes a solver state from its arrays (the result of the
+        state's method `arrays`)."""
         super().__init__(directory, fingerprint, CHECKPOINT_HEAD)
         self._state_of = state_of
 
@@ -117,13 +114,12 @@ class Checkpoints(ArrayStore):
 
 class ItemResults(ArrayStore):
     """Store of the results of finished work items, until the variables that depend on all points are
-    computed.
-    """
+    computed."""
 
     pattern = ITEM_RESULT_GLOB
 
     def __init__(self, directory: Path, fingerprint: str):
-        """directory: journal directory. fingerprint: digest of config and points."""
+        """directory: journal directory."""
         super().__init__(directory, fingerprint, RESULT_HEAD)
 
     def write(self, item: int, arrays: Arrays) -> None:

@@ -65,8 +65,7 @@ class Journal:
         self, index: np.ndarray, values: dict[str, np.ndarray], reasons: Sequence[str] = ()
     ) -> None:
         """Writes the records of finished points: flat indices `index`, (n,), and `values` of all variables by
-        name, (n, ...). reasons: lines that say why points failed, for `read_reasons`.
-        """
+        name, (n, ...)."""
         records = np.zeros(len(index), self.record.dtype)
         records["index"] = index
         for name in self.variable_names:
@@ -149,8 +148,7 @@ def journals_without_fingerprint(directory: Path, fingerprint: str) -> list[Path
 
 def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
     """Moves the files `paths` from the journal directory into a new directory next to the journal directory;
-    returns the new directory.
-    """
+    returns the new directory."""
     number = 1
     while os.path.lexists(new_directory := directory.with_name(f"{directory.name}-{number}")):
         number += 1
@@ -162,8 +160,7 @@ def move_journals_aside(directory: Path, paths: Iterable[Path]) -> Path:
 
 def kept_points_clause(directory: Path, fingerprint: str) -> str:
     """Clause for messages with the directory of finished points in journals; empty if the journals have no
-    points. fingerprint: digest of config and points.
-    """
+    points."""
     has_points = journals_with_fingerprint(directory, fingerprint)
     return f"; finished points are kept in {directory}" if has_points else ""
 
@@ -211,10 +208,8 @@ def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]
 
 
 def _complete_text_lines(blocks: Iterable[np.ndarray]) -> bytes:
-    """The complete lines of text stored in a journal; a line with a damaged record is left out.
-
-    blocks: records with their checksums, as rows of bytes, (records, bytes).
-    """
+    """The complete lines of text stored in a journal; a line with a damaged record is left out. blocks:
+    records with their checksums, as rows of bytes, (records, bytes)."""
     lines = []
     line = b""
     for rows in blocks:
@@ -242,8 +237,7 @@ def _record_rows(path: Path, layout: Layout, fingerprint: str) -> Iterator[np.nd
 
 def _has_valid_checksum(rows: np.ndarray) -> np.ndarray:
     """Whether the checksum at the end of each record is correct, (records,). rows: records as bytes,
-    (records, bytes).
-    """
+    (records, bytes)."""
     sums = np.ascontiguousarray(rows[:, -CHECKSUM_BYTES:]).view("<u4").ravel()
     checksums = np.array([zlib.crc32(row[:-CHECKSUM_BYTES].data) for row in rows], dtype=np.uint32)
     is_valid: np.ndarray = checksums == sums

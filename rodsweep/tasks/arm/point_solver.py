@@ -1,6 +1,5 @@
 """Points of an arm: points to which the rod model does not apply get a status, and each rank solves equal
-rods only once.
-"""
+rods only once."""
 
 from collections import OrderedDict
 from collections.abc import Callable, Hashable, Mapping
@@ -60,8 +59,7 @@ class OutsideModelStatus(PointStatus):
 @dataclass(frozen=True, slots=True)
 class OutcomeOutsideModel:
     """Outcome of a point of an arm to which the rod model does not apply. status: reason. message: further
-    text on the reason, or empty.
-    """
+    text on the reason, or empty."""
 
     status: OutsideModelStatus
     message: str = ""
@@ -70,8 +68,7 @@ class OutcomeOutsideModel:
 @dataclass(frozen=True, slots=True)
 class RepeatedOutcome:
     """Outcome of a point whose rod was already solved at an earlier point. outcome: outcome of the earlier
-    solve.
-    """
+    solve."""
 
     outcome: Any
 
@@ -132,16 +129,14 @@ def solver_with_outcome_cache(solver: Solver, points: Points, layout: Layout) ->
 @dataclass(slots=True)
 class _OutcomeCache:
     """Cache of the outcomes of a rank's latest solves. max_outcomes: maximum number of outcomes. outcomes:
-    cached outcomes by key, the least recently used first.
-    """
+    cached outcomes by key, the least recently used first."""
 
     max_outcomes: int
     outcomes: OrderedDict[Hashable, Any] = field(default_factory=OrderedDict)
 
     def get_or_solve(self, key: Hashable, solve: Callable[[], Any]) -> tuple[Any, bool]:
         """Returns (result, was_cached). result: outcome with the key `key`, from the cache or else from
-        calling `solve`.
-        """
+        calling `solve`."""
         if key in self.outcomes:
             self.outcomes.move_to_end(key)
             return self.outcomes[key], True
@@ -169,19 +164,14 @@ class SkippingSolver:
     def solver_of_all_points(self) -> Solver:
         """The solver of all points. It solves the points to which the rod model applies, and gives fill
         values to the other points."""
-        statuses = (*self.rod_solver.statuses, *OutsideModelStatus)
-        return self.rod_solver.with_wrapper(
-            self._solve, self._solve_group, record=self._record, statuses=statuses
-        )
+        changed = {"record": self._record, "statuses": (*self.rod_solver.statuses, *OutsideModelStatus)}
+        return self.rod_solver.with_wrapper(self._solve, self._solve_group, **changed)
 
     def _solve(self, index: int, start: State, solve: Callable[[], tuple[Any, State]]) -> tuple[Any, State]:
         if self.arm_statuses[index] == SLENDER:
             return solve()
-        return OutcomeOutsideModel(self._status(index), self.failures.get(index, "")), None
-
-    def _status(self, index: int) -> OutsideModelStatus:
-        """Status of a point to which the rod model does not apply."""
-        return next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
+        status = next(status for status in OutsideModelStatus if status == self.arm_statuses[index])
+        return OutcomeOutsideModel(status, self.failures.get(index, "")), None
 
     def _record(self, index: int, outcome: Any) -> dict[str, Any]:
         if not isinstance(outcome, OutcomeOutsideModel):

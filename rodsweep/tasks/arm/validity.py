@@ -65,8 +65,7 @@ class ArmMotion:
 
 def _motion_of_modes(record: Record) -> ArmMotion:
     """Motion of the oscillating mode with the largest growth rate. The frequency is NaN if no mode
-    oscillates.
-    """
+    oscillates."""
     frequency = np.abs(record["frequency"])
     first_oscillating = np.argmax(frequency > 0, axis=-1, keepdims=True)  # 0 if no mode oscillates
     leading = np.take_along_axis(frequency, first_oscillating, axis=-1)[..., 0]
@@ -75,8 +74,7 @@ def _motion_of_modes(record: Record) -> ArmMotion:
 
 def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
     """Function from a record to the motion at the first Hopf point; frequency and F are NaN without Hopf
-    point. F_name: name of the variable with the force at crossings.
-    """
+    point."""
 
     def motion(record: Record) -> ArmMotion:
         is_hopf = np.isin(record["crossing_kind"], HOPF_CROSSING_CODES)
@@ -91,16 +89,14 @@ def _motion_at_hopf_point(F_name: str) -> Callable[[Record], ArmMotion]:
 
 def _motion_of_row(record: Record) -> ArmMotion:
     """Motion at the first Hopf point of a row. `may_be_missed` is True if rods of the row flutter or may
-    flutter.
-    """
+    flutter."""
     has_flutter = np.isin(record["class"], CLASSES_WITH_FLUTTER).any(axis=-1)
     return replace(_motion_at_hopf_point("crossing_at")(record), may_be_missed=has_flutter)
 
 
 def _motion_at_flutter(record: Record) -> ArmMotion:
     """Motion at the first Hopf point, read from F_hopf, because a full list of crossings may lack this
-    point.
-    """
+    point."""
     frequency, F = (np.asarray(record[name], float) for name in ("hopf_frequency", "F_hopf"))
     return ArmMotion(np.abs(frequency), F)
 
@@ -180,9 +176,8 @@ class ArmValidity:
         drag = arm.chosen_drag if "drag" in self.points.arm_axes else smallest_drag(arm)
         rate = motion.frequency / arm.tau2_with(drag)
         F = self._force_of_points(arm, motion, index)
-        effects = neglected_effects(
-            arm, rate, self._equivalent_base_force(F, index), drag=drag, amplitude=motion.amplitude
-        )
+        base_force = self._equivalent_base_force(F, index)
+        effects = neglected_effects(arm, rate, base_force, drag=drag, amplitude=motion.amplitude)
         relevant = [effect for effect in effects if motion.is_cycle or not effect.of_cycles_only]
         excesses = np.array([effect.value_over_limit for effect in relevant])  # (effects, n, ...)
         validity = worst_validity(effects, of_cycles=motion.is_cycle)
@@ -205,8 +200,7 @@ class ArmValidity:
 
     def _force_of_points(self, arm: SlenderArm, motion: ArmMotion, index: int | NDArray[np.int64]) -> Array:
         """F, multiplied by (arm's k1)/(k1 in the config) if the config gives k1 in addition to the arm; NaN
-        if the arm has no load. index: index of the point, or indices, (n,).
-        """
+        if the arm has no load. index: index of the point, or indices, (n,)."""
         k1 = self._parameter_values("k1", index)
         F = self._parameter_values("F", index) if "F" in self.points.names else motion.F
         if F is None or k1 is None:
@@ -217,8 +211,7 @@ class ArmValidity:
     def _equivalent_base_force(self, F: Array, index: int | NDArray[np.int64]) -> Array:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
-        in `variables_of_points`.
-        """
+        in `variables_of_points`."""
         build = self.points.build_of(int(np.ravel(index)[0]))
         if build.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
@@ -228,19 +221,16 @@ class ArmValidity:
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:
         """Value of the parameter `name` at a point, shape (), or at n points, (n,); None if the points do not
-        have this parameter. index: index of the point, or indices, (n,).
-        """
+        have this parameter. index: index of the point, or indices, (n,)."""
         if name not in self.points.names:
             return None
         return np.asarray(self.points.values_of(np.asarray(index))[name])
 
 
 def _arm_of_number(section: ArmConfig) -> Callable[[int], SlenderArm]:
-    """Function from a number to the arm with this number, without load.
-
-    Arms are numbered in row-major order of the axes of the config's section `arm`. The axes are evaluated
-    once, because their evaluation takes longer than a point.
-    """
+    """Function from a number to the arm with this number, without load. Arms are numbered in row-major order
+    of the axes of the config's section `arm`. The axes are evaluated once, because their evaluation takes
+    longer than a point."""
     axes = {name: axis.array() for name, axis in section.quantity_axes.items() if name in NON_LOAD_KEYS}
 
     def arm(number: int) -> SlenderArm:

@@ -55,19 +55,15 @@ def force_change_variables(points: Points, values: Mapping[str, Any]) -> tuple[F
         return ()
     lines = _force_lines_of_grid(points, values) if points.is_grid else _force_lines_of_list(points, values)
     kind = np.dtype([(v.name, v.dtype) for v in FORCE_CHANGE_VARIABLES])
-    rows = (
-        tuple(row[v.name] for v in FORCE_CHANGE_VARIABLES)
-        for lines_with_changes in lines
-        for row in _thresholds_on_lines(lines_with_changes)
-    )
-    table = np.fromiter(rows, kind)
+    changes = (change for some_lines in lines for change in _thresholds_on_lines(some_lines))
+    names = [variable.name for variable in FORCE_CHANGE_VARIABLES]
+    table = np.fromiter((tuple(change[name] for name in names) for change in changes), kind)
     return tuple((v, table[v.name]) for v in FORCE_CHANGE_VARIABLES)
 
 
 def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
     """Yields the lines of points along F in a grid, in groups of about MAX_POINTS_IN_MEMORY points. values:
-    variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets.
-    """
+    variables of the points by name, shape (points, own dimensions), arrays or HDF5 datasets."""
     F_axis = points.names.index("F")
     others = [axis for axis in range(len(points.names)) if axis != F_axis]
     longest_axis = max(others, key=lambda axis: points.shape[axis])
@@ -88,9 +84,8 @@ def _force_lines_of_grid(points: Points, values: Mapping[str, Any]) -> Iterator[
 
 
 def _force_lines_of_list(points: Points, values: Mapping[str, Any]) -> Iterator[ForceLines]:
-    """For a list of points, yields each set of points that differ only in F. values: variables of the
-    points by name, shape (points, own dimensions), arrays or HDF5 datasets.
-    """
+    """For a list of points, yields each set of points that differ only in F. values: variables of the points
+    by name, shape (points, own dimensions), arrays or HDF5 datasets."""
     eigenvalues = (values["growth_rate"][...] + 1j * values["frequency"][...]).reshape(points.count, -1)
     unstable = values["unstable_count"][...].ravel()
     for line in lines_along(points.columns_by_name, "F"):
@@ -129,11 +124,8 @@ def _thresholds_on_lines(lines: ForceLines) -> Iterator[dict[str, float]]:
             counts = lines.unstable_counts[number, [i, j]]
             stored_counts = np.count_nonzero(eigenvalues_here[[i, j]].real > 0, axis=-1)
             unstable = int(np.where(counts >= 0, counts, stored_counts).max())
-            located.append(
-                stability_change_between(
-                    rods, (F[i], F[j]), eigenvalues_here[i], eigenvalues_here[j], unstable
-                )
-            )
+            pair = eigenvalues_here[i], eigenvalues_here[j]
+            located.append(stability_change_between(rods, (F[i], F[j]), *pair, unstable))
         for change in filter(None, located):
             values = {"kind": CROSSING_KINDS.index(change.kind), "F": change.F, **fixed}
             values |= {"error": change.error / abs(change.F) if change.F else change.error}
@@ -147,10 +139,8 @@ point)."""
 
 
 def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
-    """Pairs of neighbouring points between which the leading growth rate changes its sign.
-
-    eigenvalues: eigenvalues, (lines, n, modes).
-    """
+    """Pairs of neighbouring points between which the leading growth rate changes its sign. eigenvalues:
+    eigenvalues, (lines, n, modes)."""
     growing = eigenvalues[..., 0].real > 0
     line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., 0].real))
     differ = growing[line, lower] != growing[line, upper]
@@ -159,29 +149,23 @@ def _sign_changes(eigenvalues: Complex) -> NeighbourPairs:
 
 def _pairs_at_onset(F: Array, eigenvalues: Complex) -> NeighbourPairs:
     """Pairs of neighbouring points between which two leading real eigenvalues can become a complex pair: the
-    leading eigenvalue is real at the first point and complex at the second.
-
-    Between forces that are close to each other, the second eigenvalue at the first point is real too;
-    otherwise a complex pair overtakes a real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines,
-    n, modes).
-    """
+    leading eigenvalue is real at the first point and complex at the second. Between forces that are close to
+    each other, the second eigenvalue at the first point is real too; otherwise a complex pair overtakes a
+    real eigenvalue. F: forces, (n,). eigenvalues: eigenvalues, (lines, n, modes)."""
     if eigenvalues.shape[-1] < 2:
         return np.empty((0, 3), np.int64)
     is_real = eigenvalues[..., :2].imag == 0
     line, lower, upper = _neighbouring_points(np.isfinite(eigenvalues[..., :2].real).all(axis=-1))
     is_far = F[upper] - F[lower] > MAX_FORCE_SPACING * np.ptp(F)
-    is_onset = (
-        is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & (eigenvalues[line, upper, 0].imag > 0)
-    )
+    is_complex = eigenvalues[line, upper, 0].imag > 0
+    is_onset = is_real[line, lower, 0] & (is_real[line, lower, 1] | is_far) & is_complex
     return np.stack([line, lower, upper], axis=-1)[is_onset]
 
 
 def _neighbouring_points(has_eigenvalues: NDArray[np.bool_]) -> tuple[NDArray[np.int64], ...]:
     """Returns three index arrays, (pairs,), for pairs of neighbouring points with eigenvalues: line, first
-    point, second point.
-
-    Points without eigenvalues are skipped. has_eigenvalues: whether a point has eigenvalues, (lines, n).
-    """
+    point, second point. Points without eigenvalues are skipped. has_eigenvalues: whether a point has
+    eigenvalues, (lines, n)."""
     line, point = np.nonzero(has_eigenvalues)
     same_line = line[1:] == line[:-1]
     return line[1:][same_line], point[:-1][same_line], point[1:][same_line]

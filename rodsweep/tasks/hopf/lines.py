@@ -39,8 +39,7 @@ class HopfLine:
 
     def hopf_points(self) -> "ThresholdSearchResult | None":
         """Hopf points on the line. The search leaves out crushed rods on lines along F and along k1; None if
-        all rods on such a line are crushed, or if the search fails.
-        """
+        all rods on such a line are crushed, or if the search fails."""
         from ...determinant.arm.determinant import forget_arm_determinants
         from ...determinant.parameter_path import ParameterPath
         from ...solve.changes.search_range import CRUSHING_END_SETTINGS
@@ -48,35 +47,23 @@ class HopfLine:
         from ...solve.point_outcome import FAILURES
 
         forget_arm_determinants()
+        fixed = self.fixed_parameters
+        ratio = self.build.relative_crushing_force(fixed.get("taper", 1.0))
+        margin = 1 - CRUSHING_END_SETTINGS.crushing_margin
         start = self.start
         end = self.stop
         if self.varied_parameter == "F":
-            end = min(
-                end,
-                self._crushing_force_ratio
-                * self.fixed_parameters["k1"]
-                * (1 - CRUSHING_END_SETTINGS.crushing_margin),
-            )
+            end = min(end, ratio * fixed["k1"] * margin)
         if self.varied_parameter == "k1":
-            start = max(
-                start,
-                self.fixed_parameters["F"]
-                / (self._crushing_force_ratio * (1 - CRUSHING_END_SETTINGS.crushing_margin)),
-            )
+            start = max(start, fixed["F"] / (ratio * margin))
         if not start < end:
             return None
-        start_values: dict[str, Any] = self.fixed_parameters | {self.varied_parameter: start}
+        start_values: dict[str, Any] = fixed | {self.varied_parameter: start}
         try:
-            return find_axis_crossings(
-                ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter), start, end
-            )
+            path = ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter)
+            return find_axis_crossings(path, start, end)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
-
-    @property
-    def _crushing_force_ratio(self) -> float:
-        """The the crushing force (zero stretch), in units of k1."""
-        return self.build.relative_crushing_force(self.fixed_parameters.get("taper", 1.0))
 
 
 def hopf_lines_of(points: Points) -> list[HopfLine]:
@@ -86,12 +73,9 @@ def hopf_lines_of(points: Points) -> list[HopfLine]:
 
 
 def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterator[HopfLine]:
-    """Yields the lines along the parameter `name`, if at least two of its values are finite.
-
-    names: all parameters of the lines. Lines along F begin at 0, because the Hopf point may lie below the
-    smallest force of the points. Arms with equal parameters and different profiles have no line, because a
-    file cannot distinguish such arms.
-    """
+    """Yields the lines along the parameter `name`, if at least two of its values are finite. Lines along F
+    begin at 0, because the Hopf point may lie below the smallest force of the points. Arms with equal
+    parameters and different profiles have no line, because a file cannot distinguish such arms."""
     columns = {n: points.rod_values[n] for n in names}
     others = [n for n in names if n != name]
     if points.is_grid:
@@ -123,10 +107,7 @@ def _finite_range(values: np.ndarray) -> tuple[float, float]:
 def hopf_variables(
     names: Collection[str], lines: Sequence[HopfLine], results: "Sequence[ThresholdSearchResult | None]"
 ) -> tuple[FilledVariable, ...]:
-    """Hopf points of all lines, one line after another, as variables of a file.
-
-    names: parameters of the file. results: result of the search on each line.
-    """
+    """Hopf points of all lines, one line after another, as variables of a file."""
     solved = [(line, result) for line, result in zip(lines, results, strict=True) if result is not None]
     rows = [_hopf_point_values(line, crossing) for line, result in solved for crossing in result.thresholds]
     proved = sum(result.proved_to_the_end for _, result in solved)

@@ -14,7 +14,7 @@ from ..protocol import SweepWideResult
 
 
 def parameters_text(values: Mapping[str, float]) -> str:
-    """Text with the parameters of a point: `F=40.0, k1=200.0`. values: parameters by name."""
+    """Text with the parameters of a point: `F=40.0, k1=200.0`."""
     return ", ".join(f"{name}={value!r}" for name, value in values.items())
 
 
@@ -52,9 +52,8 @@ class FailureReasons:
 def reasons_of_changed_points(
     result: SweepWideResult, statuses: Sequence[PointStatus], point_text: Callable[[int], str]
 ) -> list[str]:
-    """Distinct reasons why points that have changed since they were solved failed.
-    statuses: all statuses that a point can have. point_text: function from the flat index of a point to a
-    text with its parameters."""
+    """Distinct reasons why points that have changed since they were solved failed. point_text: function from
+    the flat index of a point to a text with its parameters."""
     status_by_value = {int(status): status for status in statuses}
     reasons = FailureReasons(point_text)
     for index, values in result.changed_points.items():

@@ -46,9 +46,8 @@ def solved_view(job: Job) -> ResultView:
                 array[index] = record[name]
     values = {name: array.reshape(*job.points.shape, *array.shape[1:]) for name, array in columns.items()}
     view = view_in_memory(job, plan, values)
-    return replace(
-        view, attributes=view.attributes | plan.attributes | {"started": start, "finished": utc_time()}
-    )
+    times = {"started": start, "finished": utc_time()}
+    return replace(view, attributes=view.attributes | plan.attributes | times)
 
 
 def view_in_memory(
@@ -68,9 +67,7 @@ def view_in_memory(
         {MISSING_STATUS: "missing", **dict(plan.flags)},
         journalled_count=0,
         arm_axes=plan.layout.arm_axes,
-        typed_units={
-            variable.name: variable.typed_unit for variable, _ in plan.quantities if variable.typed_unit
-        },
+        typed_units={v.name: v.typed_unit for v, _ in plan.quantities if v.typed_unit},
     )
 
 
@@ -78,9 +75,7 @@ def stored_variables(
     plan: FilePlan, values: Mapping[str, np.ndarray], sweep_wide: Sequence[FilledVariable]
 ) -> tuple[dict[str, StoredVariable], dict[str, StoredVariable]]:
     """Returns (coordinates, variables) of the file of a plan, by name. values: variables of the layout by
-    name, shape (points, own dimensions). sweep_wide: variables that do not belong to single points, with
-    values.
-    """
+    name, shape (points, own dimensions)."""
     coordinates = _coordinates(plan)
     variables: dict[str, StoredVariable] = {}
     for variable in plan.layout.variables:

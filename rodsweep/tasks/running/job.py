@@ -71,8 +71,7 @@ class Job:
 
     def solver(self) -> Solver:
         """The solver of the task; for an arm, the results also contain values in SI units and the validity of
-        the model. Starts PETSc.
-        """
+        the model. Starts PETSc."""
         solver = self.task.solver()
         if self.config.parameters.arm is None:
             return solver
@@ -80,25 +79,20 @@ class Job:
         arm_statuses = self.points.arm_statuses
         if arm_statuses is None or not arm_statuses.any():
             return cached_solver
-        return SkippingSolver(
-            cached_solver, arm_statuses, self.points.failures, self.layout
-        ).solver_of_all_points()
+        skipping = SkippingSolver(cached_solver, arm_statuses, self.points.failures, self.layout)
+        return skipping.solver_of_all_points()
 
     def _with_arm_results(self, solver: Solver) -> Solver:
         """The solver, with values in SI units and the validity of the model added to the results of a
-        point.
-        """
+        point."""
         layout = LAYOUT_MAKERS[self.config.task](self.resolved)
         quantities = quantities_at_points(self.quantities, self.points)
         is_force = load_kind_of(self.resolved["parameters"]["arm"]) == "force"
         validity = ArmValidity(self.config, self.points, solver.statuses)
 
         def complete(values: dict[str, Any], index: int | NDArray[np.int64]) -> dict[str, Any]:
-            return (
-                values
-                | si_values(values, index, layout, quantities, is_force)
-                | validity.variables_of_points(values, index)
-            )
+            in_si = si_values(values, index, layout, quantities, is_force)
+            return values | in_si | validity.variables_of_points(values, index)
 
         def together(indices: NDArray[np.int64]) -> GroupResult:
             assert solver.grouped is not None
@@ -141,8 +135,7 @@ def job_of_config(
         raise InputError(
             f"the grid has {grid_size(config):.6g} points; the {values:.6g} values on its axes take "
             f"{values * BYTES_PER_VALUE / 1e9:.3g} GB, more than the {machine_memory() / 1e9:.3g} GB of "
-            "memory of this "
-            "machine; use fewer values"
+            "memory of this machine; use fewer values"
         )
     count = grid_size(config)
     document = resolved_config(config)
@@ -188,28 +181,22 @@ def _plan(task: Task, document: dict[str, Any], layout: Layout) -> FilePlan:
 
 def plan_in_memory(job: Job, statuses: Sequence[PointStatus]) -> FilePlan:
     """Plan of the results of a job with these statuses, without the attributes of a file."""
-    return replace(
-        _plan(job.task, job.resolved, job.layout),
-        quantities=job.quantities,
-        flags=tuple((int(status), status.name) for status in statuses),
-    )
+    flags = tuple((int(status), status.name) for status in statuses)
+    return replace(_plan(job.task, job.resolved, job.layout), quantities=job.quantities, flags=flags)
 
 
 def plan_of(job: Job, solver: Solver, shard: Shard, kernels: str) -> FilePlan:
     """Plan of the result file that a run of the job creates or continues.
 
-    shard: part of the points that the run solves. kernels: BLAS kernels of all ranks.
+    shard: part of the points that the run solves.
     """
-    attributes = file_attributes(job, solver.statuses, kernels) | {
-        "shard": str(shard) if shard.shard_count > 1 else ""
-    }
+    shard_text = str(shard) if shard.shard_count > 1 else ""
+    attributes = file_attributes(job, solver.statuses, kernels) | {"shard": shard_text}
     return replace(plan_in_memory(job, solver.statuses), attributes=attributes)
 
 
 def file_attributes(job: Job, statuses: Sequence[PointStatus], kernels: str) -> dict[str, Any]:
-    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points.
-    statuses: all statuses that a point can have.
-    """
+    """Attributes of a result file with all points of a job; kernels: BLAS kernels that compute the points."""
     from ...solve.backend import petsc
 
     attributes = {

@@ -43,8 +43,7 @@ the solver."""
 @dataclass(frozen=True, slots=True)
 class RecordedOutcome:
     """Outcome of a point that is ready to be stored. status, message: as in the solver's outcome. values: all
-    variables of the layout by name.
-    """
+    variables of the layout by name."""
 
     status: PointStatus
     message: str
@@ -57,31 +56,24 @@ def guarded_solver(solver: Solver, layout: Layout, note: PointExceptionNote) -> 
     After an exception in a group, each of its points is solved alone. Only points that fail again get fill
     values.
     """
-    return _GuardedSolver(solver, layout, note).guarded_solver()
+    guard = _GuardedSolver(solver, layout, note)
+    return solver.with_wrapper(guard.outcome, guard.solve_group, record=lambda _, outcome: outcome.values)
 
 
 @dataclass(frozen=True, slots=True)
 class _GuardedSolver:
     """Implementation of `guarded_solver`. guarded: the solver whose exceptions are caught. layout: variables
-    of a point. note_exception: function called with every exception that is caught.
-    """
+    of a point. note_exception: function called with every exception that is caught."""
 
     guarded: Solver
     layout: Layout
     note_exception: PointExceptionNote
 
-    def guarded_solver(self) -> Solver:
-        """The guarded solver."""
-        return self.guarded.with_wrapper(
-            self._outcome, self._solve_group, record=lambda index, outcome: outcome.values
-        )
-
-    def _outcome(
+    def outcome(
         self, index: int, start: State, solve: Callable[[], tuple[Any, State]]
     ) -> tuple[RecordedOutcome, State]:
         """Returns (outcome, initial state for the next point) of a point. An unforeseen exception of the
-        solve or the record gives a failed outcome and no state.
-        """
+        solve or the record gives a failed outcome and no state."""
         began = time.perf_counter()
         try:
             outcome, state = solve()
@@ -95,15 +87,13 @@ class _GuardedSolver:
             return self._failed(error, time.perf_counter() - began), None
 
     def _failed(self, error: Exception, seconds: float) -> RecordedOutcome:
-        """Outcome of a failed point, with the fill value of every variable. seconds: time spent on the
-        point.
-        """
+        """Outcome of a failed point, with the fill value of every variable."""
         status = next(status for status in self.guarded.statuses if status.name == FAILED_STATUS)
         values = {SECONDS.name: seconds, STATUS.name: int(status)}
         return RecordedOutcome(status, describe_exception(error), self.layout.empty_point | values)
 
-    def _solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
-        """Result of a group of points, at `indices`. After an unforeseen exception the result has fill
+    def solve_group(self, indices: NDArray[np.int64]) -> GroupResult:
+        """Result of a group of points, at `indices`, (n,). After an unforeseen exception the result has fill
         values, and states of every point that the point must be solved alone."""
         assert self.guarded.grouped is not None
         try:
@@ -113,10 +103,9 @@ class _GuardedSolver:
         except Exception as error:
             destroy_pooled_solvers()
             self.note_exception(indices.tolist(), error)
-            empty = {
-                name: np.stack([value] * len(indices)) for name, value in self.layout.empty_point.items()
-            }
-            return GroupResult(empty, np.zeros(len(indices), np.bool_))
+            count = len(indices)
+            empty = {name: np.stack([value] * count) for name, value in self.layout.empty_point.items()}
+            return GroupResult(empty, np.zeros(count, np.bool_))
 
 
 def describe_exception(error: Exception) -> str:
@@ -134,14 +123,10 @@ def log_file(output: Path) -> Path:
 
 class TracebackLog:
     """Log of unforeseen exceptions: a file in the folder of the result file, to which all ranks append
-    tracebacks.
-    """
+    tracebacks."""
 
     def __init__(self, output: Path, rank: int, point_text: Callable[[int], str], is_strict: bool = False):
-        """output: the result file. rank: number of this rank. point_text: function from the flat index of a
-        point to a text with its parameters. is_strict: whether every exception is raised again after it is
-        logged.
-        """
+        """output: the result file. is_strict: whether every exception is raised again after it is logged."""
         self.strict = is_strict
         self.path = log_file(output)
         self.rank = rank
@@ -151,9 +136,7 @@ class TracebackLog:
         self._known: set[str] = set()
 
     def __call__(self, indices: Sequence[int], error: Exception) -> None:
-        """Appends the exception of points to the log, with their parameters. indices: flat indices of the
-        points.
-        """
+        """Appends the exception of points to the log, with their parameters."""
         points = self.point_text(indices[0])
         if len(indices) > 1:
             points = f"{len(indices)} points together, from {points} to {self.point_text(indices[-1])}"
@@ -174,9 +157,8 @@ class TracebackLog:
             raise error
 
     def _write(self, place: str, error: Exception) -> None:
-        heading = (
-            f"{utc_time()} rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}: {place}\n"
-        )
+        program = f"rodsweep {__version__}, rank {self.rank} on {socket.gethostname()}"
+        heading = f"{utc_time()} {program}: {place}\n"
         lines = traceback.format_exception(error)
         text = "".join(lines)
         body = f"{lines[-1]}as above\n" if text in self._known else text

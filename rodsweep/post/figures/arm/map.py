@@ -56,8 +56,7 @@ MAP_HATCH_COLOUR = "0.35"
 def draw_arm_map(request: FigureRequest) -> str:
     """Draws the main results of a task over one or two quantities of an arm, with a panel of lines or a map
     for each result; returns a sentence. Raises InputError for options that the task does not have, and if
-    nothing can be drawn.
-    """
+    nothing can be drawn."""
     view = replace(request, what=None).only_view()
     long = [name for name in view.arm_axes if len(view.variables[name]) > 1]
     if DRAG_AXIS in long and long[1:]:  # drawn as a band, or for the likeliest drag
@@ -73,29 +72,26 @@ def draw_arm_map(request: FigureRequest) -> str:
     style.require_content(view, any(np.isfinite(panel.values[index]).any() for panel in panels), "number")
     figure, plots = _new_panels(len(panels), request.look.is_narrow, bool(y))
     handles: list[Artist] = []
+    covers = []
     for subplot, panel in zip(plots, panels, strict=True):
         if y:
-            handles = [*handles, *_draw_map(subplot, panel, view, (x, y), index)]
+            handles += _draw_map(subplot, panel, view, (x, y), index)
         else:
-            handles = [*handles, *_draw_curves(subplot, panel, view, x, index)]
-    cover_texts = [
-        _cover_invalid_cells(plot, view, panel, (x, y), index)
-        for plot, panel in zip(plots, panels, strict=True)
-    ]
+            handles += _draw_curves(subplot, panel, view, x, index)
+        covers.append(_cover_invalid_cells(subplot, view, panel, (x, y), index))
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
-    style.legend_below(figure, [*reversed(entries.values()), *cover_texts[0]], columns=3)
+    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
     band_axes = [DRAG_AXIS] if not y and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
     figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + band_axes)))
     labels = " and ".join(panel.label for panel in panels)
-    constants_text = _section_text(
-        view, {name: place for name, place in indices.items() if name not in band_axes}
-    )
+    constants = {name: place for name, place in indices.items() if name not in band_axes}
+    constants_text = _section_text(view, constants)
     return request.write(figure, f"{labels} over {' and '.join(map(quantity_words, axes))}{constants_text}")
 
 
 def _section_text(view: ResultView, indices: dict[str, int]) -> str:
     """Clause on the values at which a map is drawn of axes with several values, which it does not show; empty
-    if there is no such axis. indices: index of the drawn value, by name of the axis."""
+    if there is no such axis."""
     texts = []
     for name, index in indices.items():
         values = view.variables[name]
@@ -106,8 +102,7 @@ def _section_text(view: ResultView, indices: dict[str, int]) -> str:
 
 def can_draw_arm_map(request: FigureRequest) -> bool:
     """Whether `draw_arm_map` draws the requested figure: quantities of the arm vary in the only file, and the
-    user has not chosen another kind of figure.
-    """
+    user has not chosen another kind of figure."""
     view = request.views[0]
     has_other_options = request.what not in (None, *MAP_KINDS) or request.points or request.roots
     has_map = any(len(view.variables[name]) > 1 for name in view.arm_axes)
@@ -135,9 +130,7 @@ def _new_panels(count: int, is_narrow: bool, maps: bool) -> tuple[Figure, list[A
 
 
 def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str], index: Any) -> list[Artist]:
-    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y.
-    index: index of the drawn points in the grid.
-    """
+    """Draws a panel as a map over two quantities; returns legend entries. names: quantities on x and y."""
     (x, x_label), (y, y_label) = (_axis_values_and_label(view, name) for name in names)
     values = np.ma.masked_invalid(panel.values[index].T)
     style.draw_coloured_cells(axes, (cell_edges(x), cell_edges(y)), panel.values[index].T, panel.label)
@@ -152,15 +145,12 @@ def _draw_map(axes: Axes, panel: Panel, view: ResultView, names: tuple[str, str]
 
 
 def _draw_curves(axes: Axes, panel: Panel, view: ResultView, name: str, index: Any) -> list[Artist]:
-    """Draws a panel as curves against the quantity `name`; returns legend entries. index: index of the drawn
-    points in the grid.
-    """
+    """Draws a panel as curves against the quantity `name`; returns legend entries."""
     x, label = _axis_values_and_label(view, name)
     colours = (style.VERMILION, style.BLUE, style.GREEN)
     handles: list[Artist] = []
-    for colour, (line, values) in zip(
-        colours, (panel.threshold_lines or {"": panel.values}).items(), strict=False
-    ):
+    lines = panel.threshold_lines or {"": panel.values}
+    for colour, (line, values) in zip(colours, lines.items(), strict=False):
         line_format = "o" if name == DRAG_AXIS else "-o"
         axes.plot(x, values[index], line_format, ms=2.5, lw=1.2, color=colour)
         handles += _draw_drag_band(axes, view, name, values, index, colour)
@@ -178,20 +168,15 @@ def _draw_drag_band(
     axes: Axes, view: ResultView, x: str, values: Array, index: Any, colour: str
 ) -> list[Artist]:
     """Draws the range of a result over the drags as a band of the colour `colour`; returns the legend entry
-    as a list. x: name of the quantity on the horizontal axis. values: the result at all points. index: index
-    of the drawn points in the grid. The list is empty if the drag does not vary, or is the quantity on the
-    horizontal axis.
-    """
+    as a list. x: name of the quantity on the horizontal axis. The list is empty if the drag does not vary, or
+    is the quantity on the horizontal axis."""
     if DRAG_AXIS not in view.arm_axes or x == DRAG_AXIS or len(view.variables[DRAG_AXIS]) < 2:
         return []
     drag = view.arm_axes.index(DRAG_AXIS)
-    values_by_drag = np.moveaxis(values, drag, -1)[
-        tuple(axis_index for i, axis_index in enumerate(index) if i != drag)
-    ]
-    low, high = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
-    axes.fill_between(
-        _axis_values_and_label(view, x)[0], low, high, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1
-    )
+    values_by_drag = np.moveaxis(values, drag, -1)[(*index[:drag], *index[drag + 1 :])]
+    bounds = (bound.reduce(values_by_drag, axis=-1) for bound in (np.fmin, np.fmax))
+    x_values, _ = _axis_values_and_label(view, x)
+    axes.fill_between(x_values, *bounds, color=colour, alpha=BAND_OPACITY, lw=0, zorder=1)
     line = DRAG_NAMES[int(view.variables[DRAG_AXIS].min())].replace("_", " ")
     return [Patch(color="0.3", alpha=BAND_OPACITY, lw=0, label=f"range of drag (line: {line})")]
 
@@ -200,9 +185,7 @@ def _cover_invalid_cells(
     axes: Axes, view: ResultView, panel: Panel, names: tuple[str, str], index: Any
 ) -> list[Artist]:
     """Hatches the cells where the model does not apply, and fills the cells outside the rod model or without
-    a value; returns legend entries. names: quantities on x and y. index: index of the drawn points in the
-    grid.
-    """
+    a value; returns legend entries. names: quantities on x and y."""
     x, y = names
     rods = view.variables["status"][index] < NOT_SLENDER
     empty = [(rods & np.isnan(panel.values[index]), panel.empty_label, EMPTY_CELL_LOOK)] if y else []

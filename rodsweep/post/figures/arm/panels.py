@@ -18,8 +18,7 @@ class Panel:
     """Content of one panel. label: name and unit of the result. values: result at all points of the file.
     threshold_lines: several results that are drawn against one quantity in one panel, by legend entry; empty
     if only `values` are drawn. zero_label: legend entry of the contour of zero in a map; empty if no contour
-    is drawn.
-    """
+    is drawn."""
 
     label: str
     values: Array
@@ -33,17 +32,14 @@ class Panel:
 
 def _threshold_panels(view: ResultView) -> list[Panel]:
     """Panels of the task `thresholds`: load at flutter (as lines, also at onset of oscillation and
-    restabilization), and frequency at flutter.
-    """
+    restabilization), and frequency at flutter."""
     # A threshold pressure is shown in the unit in which the user typed Young's modulus.
-    load, si, unit_quantity = (
-        ("force", "N", "force") if view.load_kind == "force" else ("pressure", "Pa", "young")
-    )
+    load = view.load_kind
+    si, unit_quantity = ("N", "force") if load == "force" else ("Pa", "young")
     lines = {}
     for event in ("hopf", "onset", "restabilization"):
-        lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(
-            view, unit_quantity, view.variables[f"{load}_{event}"], si
-        )
+        loads = view.variables[f"{load}_{event}"]
+        lines[THRESHOLD_KIND_WORDS[event]], unit = in_typed_unit(view, unit_quantity, loads, si)
     flutter = lines[THRESHOLD_KIND_WORDS["hopf"]]
     return [
         Panel(f"{load} at flutter ({unit})", flutter, lines, "", f"{load} ({unit})", "no flutter"),
@@ -53,11 +49,10 @@ def _threshold_panels(view: ResultView) -> list[Panel]:
 
 def _mode_panels(view: ResultView) -> list[Panel]:
     """Panels of the tasks `spectrum` and `modes`: growth rate and frequency of the leading mode."""
+    rates, frequencies = (view.variables[name][..., 0] for name in ("growth_rate_si", "frequency_hz"))
     return [
-        Panel(
-            "leading growth rate (1/s)", view.variables["growth_rate_si"][..., 0], zero_label="growth rate 0"
-        ),
-        Panel("leading frequency (Hz)", np.abs(view.variables["frequency_hz"][..., 0])),
+        Panel("leading growth rate (1/s)", rates, zero_label="growth rate 0"),
+        Panel("leading frequency (Hz)", np.abs(frequencies)),
     ]
 
 

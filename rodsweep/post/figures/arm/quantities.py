@@ -5,6 +5,7 @@ from math import isclose
 from typing import Any
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from ....arrays import Array
 from ....config.arm.axes import NON_LOAD_KEYS, PARAMETER_STORED_ALONG
@@ -15,6 +16,7 @@ from ....model.arm.quantities import ALL_QUANTITIES, ARM_SCALES, LOAD_OF_RATIO
 from ....model.units import value_in_unit
 from ....results.file.view import ResultView
 from ...summary.arm.arm import quantity_words
+from ..style import heading_text
 
 NO_BREAK = "\N{NO-BREAK SPACE}"
 """No-break space, used between a number and its unit; a line is never broken at this character."""
@@ -25,8 +27,7 @@ number."""
 
 def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> tuple[Array, str]:
     """Returns (values, unit) of the quantity `name` in the unit typed by the user. values: in the SI unit
-    `si` (by default the unit of the quantity), of any shape.
-    """
+    `si` (by default the unit of the quantity), of any shape."""
     si = si or ALL_QUANTITIES[name].unit
     unit = view.typed_units.get(name, si)
     return (values, "") if si == "1" else (values * value_in_unit(1.0, unit, si), unit)
@@ -34,8 +35,7 @@ def in_typed_unit(view: ResultView, name: str, values: Array, si: str = "") -> t
 
 def quantity_text(view: ResultView, name: str, value: float) -> str:
     """Name and value of the quantity `name` in the unit typed by the user, such as "length 12 cm". value: in
-    SI units; for a drag, index in DRAG_NAMES.
-    """
+    SI units; for a drag, index in DRAG_NAMES."""
     if name == "drag":
         return f"{name}{NO_BREAK}{DRAG_NAMES[int(value)].replace('_', NO_BREAK)}"
     converted, unit = in_typed_unit(view, name, np.array([value]))
@@ -49,19 +49,22 @@ def given_quantities(view: ResultView) -> list[str]:
 
 
 def constant_quantities_text(view: ResultView, drawn_names: Sequence[str] = ()) -> str:
-    """Constant quantities of the arm with their values, as text; empty without an arm. drawn_names: names of
-    the quantities on axes."""
+    """Constant quantities of the arm with their values, as text; empty without an arm."""
     texts = []
     for name, values in view.quantities.items():
         if name in drawn_names or name in ARM_SCALES:
             continue
-        if (
-            np.size(values) > 1 and name not in view.arm_axes
-        ):  # varies with another quantity, as a relative load
+        # A relative load varies with another quantity.
+        if np.size(values) > 1 and name not in view.arm_axes:
             continue
         count_clause = f" (of {len(values)} values)" if np.size(values) > 1 else ""
         texts.append(quantity_text(view, name, float(np.min(values))) + count_clause)
     return ", ".join(texts)
+
+
+def set_heading(figure: Figure, view: ResultView, *lines: str) -> None:
+    """Writes the heading of a figure: see `heading_text`, with the constant quantities of an arm."""
+    figure.suptitle(heading_text(view, constant_quantities_text(view), *lines))
 
 
 def quantity_at_point(view: ResultView, name: str, number: int) -> float:
@@ -70,10 +73,8 @@ def quantity_at_point(view: ResultView, name: str, number: int) -> float:
     if values.size == 1:
         return float(values.ravel()[0])
     if view.is_grid:  # the quantity is stored along the parameter that depends on it
-        shape = view.variables["status"].shape
-        return float(
-            values[np.unravel_index(number - 1, shape)[view.parameters.index(PARAMETER_STORED_ALONG[name])]]
-        )
+        position = np.unravel_index(number - 1, view.variables["status"].shape)
+        return float(values[position[view.parameters.index(PARAMETER_STORED_ALONG[name])]])
     return float(values.ravel()[number - 1])
 
 
@@ -90,18 +91,15 @@ def shear_stiffness(view: ResultView, poisson: float) -> float:
 def _arm_of(view: ResultView, quantities: Mapping[str, Any]) -> SlenderArm:
     """The arm of a file with the quantities `quantities`, in SI units."""
     arm = view.config.get("parameters", {}).get("arm") or {}
-    return SlenderArm(
-        **quantities, **{name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None}
-    )
+    material = {name: arm[name] for name in MATERIAL_KEYS if arm.get(name) is not None}
+    return SlenderArm(**quantities, **material)
 
 
 def replaced_parameters(view: ResultView, number: int) -> dict[str, float]:
     """Parameters at a point, by name, that differ from the parameters computed from the arm, because the
     config gives them. F is included if the arm has no load, and otherwise left out. number: number of the
     point, from 1."""
-    quantities: dict[str, Any] = {
-        name: quantity_at_point(view, name, number) for name in given_quantities(view)
-    }
+    quantities: dict[str, Any] = {n: quantity_at_point(view, n, number) for n in given_quantities(view)}
     if "drag" in quantities:
         quantities["drag"] = DRAG_NAMES[int(quantities["drag"])]
     arm = _arm_of(view, quantities)

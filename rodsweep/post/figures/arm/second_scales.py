@@ -7,6 +7,7 @@ of the panel.
 
 from collections.abc import Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -68,8 +69,8 @@ def _add_poisson_scales(figure: Figure, view: ResultView) -> None:
             positions = np.array([shear_stiffness(view, float(ratio)) for ratio in ticks])
             # The ends of the range are drawn, whatever the rounding error.
             is_visible = (positions >= limits[0] * (1 - ROUNDING)) & (positions <= limits[1] * (1 + ROUNDING))
-            poisson_axis = panel.secondary_xaxis("top") if letter == "x" else panel.secondary_yaxis("right")
-            getattr(poisson_axis, f"set_{letter}label")("Poisson's ratio")
+            poisson_axis = _opposite_axis(panel, letter)
+            poisson_axis.set(**{f"{letter}label": "Poisson's ratio"})
             texts = [f"{ratio:.4g}" for ratio in ticks[is_visible]]
             getattr(poisson_axis, f"set_{letter}ticks")(positions[is_visible], texts)
             getattr(poisson_axis, f"{letter}axis").set_minor_locator(NullLocator())
@@ -92,8 +93,7 @@ def _outermost_panel(axes: Axes, letter: str) -> Axes:
 
 def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
     """Adds a second scale to a panel, opposite to the axis `letter` ("x" or "y"). unit: load at F = 1, in SI
-    units. load: kind of load.
-    """
+    units."""
     symbol = UNITS[load][0]
     word = LOAD_WORDS[load]
     largest_value = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
@@ -102,10 +102,13 @@ def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
     unit *= 10.0**-power
     symbol = EngFormatter.ENG_PREFIXES[power] + symbol
     functions = partial(np.multiply, unit), partial(np.multiply, 1 / unit)
-    if letter == "x":
-        si_axis = axes.secondary_xaxis("top", functions=functions)
-        si_axis.set_xlabel(f"{word} ({symbol})")
-    else:
-        si_axis = axes.secondary_yaxis("right", functions=functions)
-        si_axis.set_ylabel(f"{word} ({symbol})")
+    si_axis = _opposite_axis(axes, letter, functions=functions)
+    si_axis.set(**{f"{letter}label": f"{word} ({symbol})"})
     getattr(si_axis, f"{letter}axis").set_major_locator(MaxNLocator(MAX_TICK_INTERVALS))
+
+
+def _opposite_axis(panel: Axes, letter: str, **keywords: Any) -> Any:
+    """New axis of a panel, opposite to the axis `letter`. keywords: keywords for matplotlib."""
+    if letter == "x":
+        return panel.secondary_xaxis("top", **keywords)
+    return panel.secondary_yaxis("right", **keywords)

@@ -1,6 +1,5 @@
-"""Hatches where the model does not apply and dots where it is doubtful, with notes, in figures of an arm
-over dimensionless parameters.
-"""
+"""Hatches where the model does not apply and dots where it is doubtful, with notes, in figures of an arm over
+dimensionless parameters."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -32,8 +31,7 @@ NOTES = {
 def hatch_invalid_points(figure: Figure, views: Sequence[ResultView]) -> None:
     """Hatches a figure where the model does not apply to the arm, and dots it where the model is doubtful, if
     the axes are parameters of the file; adds notes to the title. Without such points, the figure is
-    unchanged.
-    """
+    unchanged."""
     validities = [view.variables["model_applies"] for view in views if "model_applies" in view.variables]
     notes = [_hatched_note(figure, views, validities, validity) for validity in HATCHES]
     figure.suptitle("\n".join(filter(None, (figure.get_suptitle(), *notes))))
@@ -49,9 +47,8 @@ def _hatched_note(
     if not number:
         return ""
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
-    names = (
-        [name for name in views[0].parameters if len(views[0].parameter_values[name]) > 1] if is_alone else []
-    )
+    values = views[0].parameter_values if is_alone else {}
+    names = [name for name in values if len(values[name]) > 1]
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
         judged = ", judged at each row's first Hopf point or at rest"
@@ -63,8 +60,7 @@ def _hatch_points(
     figure: Figure, view: ResultView, names: list[str], outside: np.ndarray, hatch: str
 ) -> bool:
     """Hatches the cells of points in the mask `outside`, in all panels whose axes are the one or two
-    parameters `names`; returns whether any panel has these axes. hatch: matplotlib's pattern.
-    """
+    parameters `names`; returns whether any panel has these axes."""
     keywords = HATCH_LOOK | {"hatch": hatch}
     cells = np.squeeze(outside)
     edges = [cell_edges(view.parameter_values[name]) for name in names]
@@ -107,9 +103,7 @@ def _axis_label(axes: Axes, letter: str) -> str:
 def _hatch_intervals(
     axes: Axes, letter: str, edges: Array, mask: np.ndarray, keywords: dict[str, Any]
 ) -> None:
-    """Hatches intervals of the axis `letter` over the whole panel. edges: edges of the intervals. mask: mask
-    of the hatched intervals. keywords: matplotlib's keywords of the hatches.
-    """
+    """Hatches intervals of the axis `letter` over the whole panel."""
     limits = axes.get_xlim() if letter == "x" else axes.get_ylim()
     hatch = axes.axvspan if letter == "x" else axes.axhspan
     low, high = sorted(limits)
@@ -120,11 +114,8 @@ def _hatch_intervals(
 
 
 def _hatch_map_cells(axes: Axes, edges: list[Array], mask: np.ndarray, keywords: dict[str, Any]) -> None:
-    """Hatches cells of a map. edges: edges of the cells along x and along y. mask: mask of the hatched
-    cells, (nx, ny). keywords: matplotlib's keywords of the hatches.
-    """
+    """Hatches cells of a map. mask: mask of the hatched cells, (nx, ny)."""
     limits = axes.get_xlim(), axes.get_ylim()
     for i, j in np.argwhere(mask):
         axes.fill_between(edges[0][[i, i + 1]], *edges[1][[j, j + 1]], zorder=3, **keywords)
-    axes.set_xlim(limits[0])
-    axes.set_ylim(limits[1])
+    axes.set(xlim=limits[0], ylim=limits[1])

@@ -37,15 +37,12 @@ MAX_GHOST_AGE = 0.2
 
 def write_animation(view: ResultView, points: Sequence[int], output: Path) -> str:
     """Writes an animation of one period of up to three cycles, side by side and with equal durations; returns
-    a description. points: numbers of the chosen points. Raises InputError for too few shapes.
-    """
+    a description. Raises InputError for too few shapes."""
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     frames = len(selection.cycles[0].values["shape_x"])
     if frames < MIN_SHAPES:
-        raise InputError(
-            f"{view.path} holds {frames} shapes of a cycle, too few for an animation; "
-            "run with limit_cycle.shapes: 48"
-        )
+        remedy = "too few for an animation; run with limit_cycle.shapes: 48"
+        raise InputError(f"{view.path} holds {frames} shapes of a cycle, {remedy}")
     writer = _film_writer(output, max(1, round(frames / PERIOD_SECONDS)))
     figure, arms = prepared_animation(selection)
     with replaced_file(output) as partial, writer.saving(figure, str(partial), dpi=100):
@@ -76,14 +73,12 @@ def prepared_animation(selection: CycleSelection) -> tuple[Figure, list["MovingA
 
 def _film_writer(output: Path, rate: int) -> AbstractMovieWriter:
     """Matplotlib writer for the suffix of `output`, with `rate` frames per second. Raises
-    EnvironmentIncomplete for an MP4 without ffmpeg.
-    """
+    EnvironmentIncomplete for an MP4 without ffmpeg."""
     if output.suffix == ".gif":
         return PillowWriter(fps=rate)
     if not matplotlib.animation.writers.is_available("ffmpeg"):
-        raise EnvironmentIncomplete(
-            f"{output}: an .mp4 needs ffmpeg, which is not installed; a .gif does not"
-        )
+        problem = "an .mp4 needs ffmpeg, which is not installed; a .gif does not"
+        raise EnvironmentIncomplete(f"{output}: {problem}")
     return FFMpegWriter(fps=rate)
 
 
@@ -107,10 +102,8 @@ class MovingArm:
     def show_frame(self, k: int) -> None:
         """Moves the arm to the shape with index `k`."""
         shapes = [self.cycle.values[name] for name in SHAPE_VARIABLES]
-        steps_back = (
-            np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False).round().astype(int)
-        )
-        for ghost, steps in zip(self.ghosts, steps_back, strict=True):
+        ages = np.linspace(MAX_GHOST_AGE * self.frames, 0, GHOST_COUNT, endpoint=False)
+        for ghost, steps in zip(self.ghosts, ages.round().astype(int), strict=True):
             ghost.set_data(shapes[0][k - steps], shapes[1][k - steps])
         x, y, theta = (values[k] for values in shapes)
         self.rod.set_data(x, y)

@@ -23,14 +23,13 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     injection minus dissipation with marks of dU/dt.
 
     The marks are derivatives of the stored energy U, computed independently of the curve, and must lie on the
-    curve. points: numbers of the chosen points. is_narrow: whether the page is narrow.
+    curve.
     """
     selection = chosen_cycles(view, points, ENERGY_BUDGET_VARIABLES)
     cycles = selection.cycles
     figure = Figure(figsize=(3.6 * len(cycles) + 1.0, 6.4), layout="constrained")
-    rows = figure.subplots(
-        3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=(1, 1.6, 1)
-    )
+    heights = (1, 1.6, 1)
+    rows = figure.subplots(3, len(cycles), squeeze=False, sharex="col", sharey="row", height_ratios=heights)
     for column, cycle in zip(rows.T, cycles, strict=True):
         _draw_budget(column, cycle)
         column[0].set_title(cycle.heading(cycle.period_text, *_budget_words(cycle)))
@@ -46,8 +45,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
 
 def _budget_words(cycle: StoredCycle) -> tuple[str, str]:
     """Returns (mean power of the force, relative energy imbalance) as text, the power in the unit of the
-    panels, rounded according to its error.
-    """
+    panels, rounded according to its error."""
     v = {name: float(cycle.values[name]) for name in ("injection_mean", "energy_imbalance")}
     error = relative_power_error(cycle.values)
     mean_text = power_in_tex(rounded_text(v["injection_mean"], abs(v["injection_mean"]) * float(error)))
@@ -67,9 +65,8 @@ def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     top, middle, bottom = column
     phase = np.linspace(0, 1, 401, dtype=np.float64)
     time = phase * cycle.period
-    energy, injection, dissipation = (
-        interpolate_samples(cycle.values[name], phase) for name in ENERGY_BUDGET_VARIABLES
-    )
+    samples = (cycle.values[name] for name in ENERGY_BUDGET_VARIABLES)
+    energy, injection, dissipation = (interpolate_samples(values, phase) for values in samples)
     top.plot(time, energy, color="k", lw=1.5)
     mean_power = float(cycle.values["injection_mean"])
     middle.axhline(mean_power, color="0.6", lw=0.9, ls=":", label="mean injection", zorder=1)
@@ -78,11 +75,8 @@ def _draw_budget(column: Sequence[Axes], cycle: StoredCycle) -> None:
     bottom.axhline(0, color="0.8", lw=0.6, zorder=0)
     bottom.plot(time, injection - dissipation, color=GREEN, lw=1.5, label=r"injection $-$ dissipation")
     marks = np.arange(RATE_MARK_COUNT) / RATE_MARK_COUNT
-    rate = (
-        interpolate_samples(time_derivative(cycle.values["energy"]), marks)
-        / cycle.period
-        * cycle.units.power_of_rate
-    )
+    rate = interpolate_samples(time_derivative(cycle.values["energy"]), marks) / cycle.period
+    rate = rate * cycle.units.power_of_rate
     bottom.plot(marks * cycle.period, rate, "o", color="k", mfc="none", ms=3.5, label="derivative of $U$")
     bottom.set_xlabel(cycle.units.time_label)
     bottom.set_xlim(0, cycle.period)

@@ -57,9 +57,8 @@ panel."""
 
 def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure has maps of the period and of the largest y of the tip, with
-    Hopf points, unstable cycles, and the statuses of cells without a cycle. is_narrow: whether the panels are
-    stacked. Raises InputError if no point has a cycle.
-    """
+    Hopf points, unstable cycles, and the statuses of cells without a cycle. Raises InputError if no point has
+    a cycle."""
     points = point_map(view)
     statuses = view.status_names[points.point_indices]
     cycles = np.isin(statuses, CYCLE_STATUSES)
@@ -86,24 +85,19 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
 
 def _common_parameters_text(view: ResultView, points: PointMap, is_in_si: bool) -> str:
     """Text of the parameters that are equal at all points; for an arm (`is_in_si`), of the quantities that
-    are equal at all points.
-    """
+    are equal at all points."""
     if not is_in_si:
         return style.parameter_text(points.common_parameters)
-    varied_quantities = {
-        quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name in points.names
-    }
-    numbers = [int(points.point_indices[0, 0]) + 1, int(points.point_indices[-1, -1]) + 1]
-    return shared_and_own_of_arms(view, numbers, {*points.names, *varied_quantities})[0]
+    varied = (quantity for quantity, name in CHANGED_PARAMETER.items() if name in points.names)
+    numbers = [int(points.point_indices[place]) + 1 for place in ((0, 0), (-1, -1))]
+    return shared_and_own_of_arms(view, numbers, {*points.names, *varied})[0]
 
 
 def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
     """Returns (figure, panels) with `count` panels that share axes, stacked if `is_narrow`, else side by
-    side.
-    """
-    layout = ConstrainedLayoutEngine(
-        wspace=0.0 if is_narrow else 0.06
-    )  # room for the first colour bar's label
+    side."""
+    # Side by side, the first colour bar's label needs room.
+    layout = ConstrainedLayoutEngine(wspace=0.0 if is_narrow else 0.06)
     figure = Figure(figsize=(4.2, 3.2 * count) if is_narrow else (4.8 * count, 4.5), layout=layout)
     shape = (count, 1) if is_narrow else (1, count)
     return figure, list(figure.subplots(*shape, sharex=True, sharey=True, squeeze=False).ravel())
@@ -111,8 +105,7 @@ def map_panels(count: int, is_narrow: bool) -> tuple[Figure, list[Axes]]:
 
 def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
     """Sets scales and labels of panels that share axes. Only panels at the left and at the bottom have
-    labels.
-    """
+    labels."""
     for axes in panels:
         style.scale_axis(axes, "x", points.x)
         style.scale_axis(axes, "y", points.y)
@@ -121,8 +114,7 @@ def label_maps(panels: Sequence[Axes], points: PointMap) -> None:
 
 def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> list[Artist]:
     """Fills the cells without a cycle with colours and hatches by status; returns legend entries. statuses:
-    status of each cell, (ny, nx).
-    """
+    status of each cell, (ny, nx)."""
     unlisted_looks = cycle(UNLISTED_STATUS_LOOKS)
     handles: list[Artist] = []
     for word in dict.fromkeys([*STATUS_LOOKS, *np.unique(statuses).tolist()]):
@@ -132,17 +124,15 @@ def _draw_statuses(axes: Axes, points: PointMap, statuses: NDArray[np.str_]) -> 
         colour, hatch = STATUS_LOOKS.get(word) or next(unlisted_looks)
         keywords: dict[str, Any] = {"facecolor": colour, "hatch": hatch, "edgecolor": CYCLE_HATCH_COLOUR}
         for row, (bottom, top) in zip(cells, pairwise(cell_edges(points.y).tolist()), strict=True):
-            axes.broken_barh(
-                _runs_of_cells(row, cell_edges(points.x)), (bottom, top - bottom), lw=0, **keywords
-            )
+            runs = _runs_of_cells(row, cell_edges(points.x))
+            axes.broken_barh(runs, (bottom, top - bottom), lw=0, **keywords)
         handles.append(Patch(label=word.replace("_", " "), lw=0.5, **keywords))
     return handles
 
 
 def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) -> list[Artist]:
     """Draws an open marker in each cell of the mask `unstable`, (ny, nx); returns a list with the legend
-    entry. The list is empty if no cell is marked.
-    """
+    entry. The list is empty if no cell is marked."""
     if not unstable.any():
         return []
     look: dict[str, Any] = {"marker": "o", "mfc": "white", "mec": CYCLE_HATCH_COLOUR, "ls": "", "mew": 0.6}
@@ -154,8 +144,7 @@ def _mark_unstable(axes: Axes, points: PointMap, unstable: NDArray[np.bool_]) ->
 
 def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, float]]:
     """(left edge, width) of each run of neighbouring chosen cells in a row. mask: mask of the cells, (n,).
-    edges: edges of the cells, (n + 1,).
-    """
+    edges: edges of the cells, (n + 1,)."""
     steps = np.diff(np.concatenate(([0], mask.astype(int), [0])))
     starts = edges[np.flatnonzero(steps > 0)]
     ends = edges[np.flatnonzero(steps < 0)]
@@ -164,10 +153,8 @@ def _runs_of_cells(mask: NDArray[np.bool_], edges: Array) -> list[tuple[float, f
 
 def _draw_hopf_lines(axes: Axes, points: PointMap, lines: Sequence[Array]) -> list[Artist]:
     """Draws lines of Hopf points; returns a list with the legend entry. lines: (x, y) of each line, (2, n).
-
     On these lines the leading growth rate is zero. Every zero is a Hopf point: no eigenvalue can pass through
-    0, because the characteristic determinant is D(0) = 1.
-    """
+    0, because the characteristic determinant is D(0) = 1."""
     keywords: dict[str, Any] = {"color": "k", "lw": 1.4}
     path_effects = [withStroke(linewidth=3.0, foreground="white")]
     for line in lines:
@@ -205,10 +192,7 @@ def _hopf_points(points: PointMap, view: ResultView) -> Iterator[Array]:
     name, row_parameter = points.names
     stored_thresholds = StoredThresholds(view, name)
     for value, row_indices in zip(points.y, points.point_indices, strict=True):
-        row = ParameterLine(
-            name, points.common_parameters | {row_parameter: float(value)}, points.x, row_indices
-        )
-        located = (
-            change for change in stored_thresholds.thresholds_on(row) if isinstance(change, LocatedThreshold)
-        )
+        parameters = points.common_parameters | {row_parameter: float(value)}
+        changes = stored_thresholds.thresholds_on(ParameterLine(name, parameters, points.x, row_indices))
+        located = (change for change in changes if isinstance(change, LocatedThreshold))
         yield np.array([change.position for change in located if change.changes_stability])

@@ -1,6 +1,5 @@
 """Points of a file as a map over two parameters: values on the axes, edges of cells, and the index of the
-point in each cell.
-"""
+point in each cell."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -36,13 +35,11 @@ class PointMap:
 
 def point_map(view: ResultView) -> PointMap:
     """Points of a file as a map, without infinite values of the parameters. Raises InputError if the points
-    do not form a grid over two parameters with at least two finite values each.
-    """
+    do not form a grid over two parameters with at least two finite values each."""
     names = list(varied_parameters_at_points(view))
     if len(names) != 2:
-        raise InputError(
-            f"{view.path}: a map is drawn over two parameters, and {_varied_parameters_clause(names)}"
-        )
+        clause = _varied_parameters_clause(names)
+        raise InputError(f"{view.path}: a map is drawn over two parameters, and {clause}")
     columns = view.point_columns
     (x, column), (y, row) = (np.unique(columns[name], return_inverse=True) for name in names)
     indices = np.full((len(y), len(x)), -1)
@@ -82,8 +79,7 @@ def _varied_parameters_clause(names: list[str]) -> str:
 
 def axis_coordinates(values: Array) -> tuple[Array, Callable[[Array], Array]]:
     """Returns (coordinates, inverse): the values, (n,), on the linear or logarithmic scale of their axis, and
-    the function that converts coordinates to values.
-    """
+    the function that converts coordinates to values."""
     return (np.log(values), np.exp) if is_logarithmic(values) else (values, np.asarray)
 
 
@@ -91,15 +87,13 @@ def cell_edges(values: Array) -> Array:
     """Edges, (n + 1,), of the cells around increasing `values`, (n,): midpoints on the scale of the axis."""
     centres, from_coordinates = axis_coordinates(values)
     midpoints = (centres[1:] + centres[:-1]) / 2
-    return from_coordinates(
-        np.concatenate(([2 * centres[0] - midpoints[0]], midpoints, [2 * centres[-1] - midpoints[-1]]))
-    )
+    ends = (2 * centres[0] - midpoints[0], 2 * centres[-1] - midpoints[-1])
+    return from_coordinates(np.array([ends[0], *midpoints, ends[1]]))
 
 
 def cell_centres(edges: Array) -> Array:
     """Values, (n,), whose cells have the edges `edges`, (n + 1,): the inverse of `cell_edges` for a linear
-    scale.
-    """
+    scale."""
     centres = np.empty(len(edges) - 1)
     centres[0] = (edges[0] + edges[1]) / 2
     for i in range(1, len(centres)):

@@ -58,7 +58,7 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     """Returns (figure, description). The figure shows, for each cycle, the shapes over a period, later shapes
     darker, and x and y of the tip against time.
 
-    points: numbers of the chosen points. is_narrow: whether the page is too narrow for panels side by side.
+    is_narrow: whether the page is too narrow for panels side by side.
     """
     selection = chosen_cycles(view, points, SHAPE_VARIABLES)
     cycles = selection.cycles
@@ -67,9 +67,8 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
     end = DRAWN_TIP_PERIODS * max(cycle.period for cycle in cycles)
     shape_indices, step = drawn_shape_indices(len(cycles[0].values["shape_x"]))
     # Light to dark, so that colour-blind readers see the order.
-    colours = ListedColormap(
-        matplotlib.colormaps["viridis_r"](np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices)))
-    )
+    darkness = np.linspace(UNUSED_COLOUR_FRACTION, 1, len(shape_indices))
+    colours = ListedColormap(matplotlib.colormaps["viridis_r"](darkness))
     for axes, (upper, lower), cycle in zip(shapes, tips, cycles, strict=True):
         draw_tip_path(axes, cycle)
         draw_clamp(axes, cycle.units.length)
@@ -95,19 +94,15 @@ def draw_portrait(view: ResultView, points: Sequence[int], is_narrow: bool = Fal
 def _new_panels(
     cycles: Sequence[StoredCycle], is_narrow: bool
 ) -> tuple[Figure, list[Axes], list[tuple[Axes, Axes]]]:
-    """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle).
-
-    The panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
-    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank. is_narrow: whether
-    the page is narrow.
-    """
+    """Returns (figure, one panel for the shapes of each cycle, two panels for the tip of each cycle). The
+    panels of the tip are to the right of the shapes of a single cycle, and below the shapes of several
+    cycles. A panel with shapes has the aspect ratio of its content, so no space is blank."""
     count = len(cycles)
     (left, right), (low, high) = limits_of_shapes(cycles)
     if count == 1 and not is_narrow:
         figure = Figure(figsize=(8.6, 4.4), layout="constrained")
-        table: dict[str, Axes] = figure.subplot_mosaic(
-            [["shapes", "x"], ["shapes", "y"]], width_ratios=(1, 1.25)
-        )
+        places = [["shapes", "x"], ["shapes", "y"]]
+        table: dict[str, Axes] = figure.subplot_mosaic(places, width_ratios=(1, 1.25))
         table["x"].sharex(table["y"])
         return figure, [table["shapes"]], [(table["x"], table["y"])]
     shapes = SHAPES_WIDTH * (high - low) / (right - left)
@@ -123,8 +118,7 @@ def _new_panels(
 
 def drawn_shape_indices(stored: int) -> tuple[range, float]:
     """Returns (indices, step): indices of the drawn shapes, and time between two drawn shapes, in periods.
-    stored: number of stored shapes per period.
-    """
+    stored: number of stored shapes per period."""
     stride = -(-stored // MAX_SHAPES)
     return range(0, stored, stride), stride / stored
 
@@ -133,40 +127,30 @@ def _draw_phase_bar(
     figure: Figure, panels: list[Axes], colours: ListedColormap, step: float, is_below: bool
 ) -> None:
     """Draws the colour bar with the times of the shapes. colours: colours of the shapes. step: time between
-    two shapes, in periods. is_below: whether the bar is below the panels.
-    """
+    two shapes, in periods."""
     n = colours.N
     norm = BoundaryNorm((np.arange(n + 1) - 0.5) * step, n)
     ticks = [k * step for k in range(0, n, max(1, n // 4))]
-    colorbar = figure.colorbar(
-        ScalarMappable(norm, colours),
-        ax=panels,
-        label="time of the shape $t/T$",
-        location="bottom" if is_below else "right",
-        shrink=0.8,
-        ticks=ticks,
-        format=FuncFormatter(lambda tick, _: f"{tick:.3g}"),
-    )
+    look: dict[str, Any] = {"location": "bottom" if is_below else "right", "shrink": 0.8, "ticks": ticks}
+    look["format"] = FuncFormatter(lambda tick, _: f"{tick:.3g}")
+    shades = ScalarMappable(norm, colours)
+    colorbar = figure.colorbar(shades, ax=panels, label="time of the shape $t/T$", **look)
     colorbar.ax.minorticks_off()
 
 
 def draw_tip_path(axes: Axes, cycle: StoredCycle) -> None:
     """Draws the closed path of the tip."""
-    from ....discretization.elements.trigonometric import (
-        interpolate_samples,  # compiled code, which few figures need
-    )
+    from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     phase = np.linspace(0, 1, 401, dtype=np.float64)
-    axes.plot(
-        *(interpolate_samples(v, phase) for v in cycle.tip), color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1
-    )
+    x, y = (interpolate_samples(values, phase) for values in cycle.tip)
+    axes.plot(x, y, color="0.6", lw=0.8, ls=(0, (4, 2)), zorder=1)
 
 
 def force_arrow(axes: Axes, x: Array, y: Array, theta: Array, colour: Any, length: float) -> Quiver:
     """Draws the follower force as an arrow of the colour `colour` that ends at the tip, along -(cos theta,
     sin theta) with theta at the tip; returns the arrow. x, y, theta: shape of the arm, (nodes,) each. length:
-    L, in the unit of the axes.
-    """
+    L, in the unit of the axes."""
     tangent = np.array([np.cos(theta[-1]), np.sin(theta[-1])])
     arrow = -ARROW_LENGTH * length * tangent
     return axes.quiver(
@@ -179,10 +163,8 @@ def draw_clamp(axes: Axes, length: float) -> None:
     """Draws the wall that clamps the rod at u = 0. length: L, in the unit of the axes."""
     depth = WALL_DEPTH * length
     half_height = WALL_HALF_HEIGHT * length
-    wall = Rectangle(
-        (-depth, -half_height), depth, 2 * half_height, fc="white", ec="0.3", hatch="/////", lw=0
-    )
-    axes.add_patch(wall)
+    look: dict[str, Any] = {"fc": "white", "ec": "0.3", "hatch": "/////", "lw": 0}
+    axes.add_patch(Rectangle((-depth, -half_height), depth, 2 * half_height, **look))
     axes.plot([0, 0], [-half_height, half_height], color="k", lw=1.4, zorder=5)
 
 
@@ -216,20 +198,16 @@ def limits_of_shapes(cycles: Sequence[StoredCycle]) -> tuple[tuple[float, float]
 
 def _draw_tip_motion(upper: Axes, lower: Axes, cycle: StoredCycle, end: float) -> None:
     """Draws x and y of the tip against the time from 0 to `end`, with a second time axis in tau1 if the rod
-    has this time scale.
-    """
-    from ....discretization.elements.trigonometric import (
-        interpolate_samples,  # compiled code, which few figures need
-    )
+    has this time scale."""
+    from ....discretization.elements.trigonometric import interpolate_samples  # compiled code
 
     time = np.linspace(0, end, 801, dtype=np.float64)
     for axes, values, colour in zip((upper, lower), cycle.tip, (BLUE, VERMILION), strict=True):
         axes.plot(time, interpolate_samples(values, time / cycle.period), color=colour, lw=1.4)
         if len(values) < MARKED_BELOW_SAMPLES:
             indices = np.arange(int(end / cycle.period * len(values)) + 1)
-            axes.plot(
-                indices * cycle.period / len(values), values[indices % len(values)], "o", color=colour, ms=2.5
-            )
+            sample_times = indices * cycle.period / len(values)
+            axes.plot(sample_times, values[indices % len(values)], "o", color=colour, ms=2.5)
         axes.axvline(cycle.period, color="0.7", lw=0.8, ls=":")
         axes.margins(x=0)
     label_time_axes(upper, lower, cycle)

@@ -52,8 +52,7 @@ class StoredCycle:
     @property
     def tau1(self) -> float:
         """Short time scale tau1 = gamma3/k2, in tau2; 0 for a rod without this time scale, and for an arm in
-        SI units.
-        """
+        SI units."""
         if self.units.in_si:
             return 0.0
         return self.parameters["gamma3"] / self.parameters["k2"]
@@ -72,8 +71,7 @@ class StoredCycle:
 
     def _period(self, value: float, unit: str, symbol: str = "") -> str:
         """A period with its unit as TeX. value: the period in `unit`. symbol: symbol before the equals sign,
-        or empty.
-        """
+        or empty."""
         error = float(self.values["period_error"])
         return rf"${symbol}{{=}}$ ${power_in_tex(rounded_text(value, abs(value) * error))}\,{unit}$"
 
@@ -87,9 +85,8 @@ class StoredCycle:
     @property
     def has_transient(self) -> bool:
         """Whether the motion from the initial state is stored."""
-        return TRANSIENT_VARIABLE_NAMES[0] in self.values and bool(
-            np.isfinite(self.values[TRANSIENT_VARIABLE_NAMES[0]]).all()
-        )
+        times = self.values.get(TRANSIENT_VARIABLE_NAMES[0])
+        return times is not None and bool(np.isfinite(times).all())
 
     def heading(self, *lines: str) -> str:
         """Title of a panel: the label, if not empty, above the given lines."""
@@ -116,9 +113,8 @@ class CycleSelection:
 
 def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Sequence[str]) -> CycleSelection:
     """Cycles at the points with the numbers `points`, or the first cycles, at most MAX_CYCLES, if `points` is
-    empty. variable_names: variables that the figure needs. Raises InputError if a point, a cycle or a
-    variable is missing, or for more than MAX_CYCLES points.
-    """
+    empty. Raises InputError if a point, a cycle or a variable is missing, or for more than MAX_CYCLES
+    points."""
     _refuse_missing(view, variable_names)
     statuses = view.status_names
     _refuse_bad_points(view, points)
@@ -132,23 +128,20 @@ def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Seque
 def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection:
     """Motions from the initial state at the points with the numbers `points`, or the first stored motions, at
     most MAX_CYCLES, if `points` is empty. Raises InputError if a chosen motion, every motion or a variable is
-    missing, if a point does not exist, or if more than MAX_CYCLES points are chosen.
-    """
+    missing, if a point does not exist, or if more than MAX_CYCLES points are chosen."""
     _refuse_missing(view, TRANSIENT_VARIABLE_NAMES)
     _refuse_bad_points(view, points)
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            raise InputError(
-                f"--point {number}: the motion of this point from its initial state is not stored"
-            )
+            problem = "the motion of this point from its initial state is not stored"
+            raise InputError(f"--point {number}: {problem}")
     return _selected_cycles(view, points, is_stored, "transient")
 
 
 def _refuse_missing(view: ResultView, variable_names: Sequence[str]) -> None:
     """Raises InputError if one of the variables `variable_names` is missing; the message names the option
-    with which the variable is stored.
-    """
+    with which the variable is stored."""
     for name in variable_names:
         if name not in view.variables:
             key = f"limit_cycle.{STORING_OPTIONS.get(name, 'samples')}"
@@ -159,15 +152,13 @@ def _selected_cycles(
     view: ResultView, points: Sequence[int], drawable: NDArray[np.bool_], noun: str
 ) -> CycleSelection:
     """Selection of the points with the numbers `points`, or of the first drawable points if `points` is
-    empty. drawable: mask, (points,). noun: noun for messages. Raises InputError if no point is drawable.
-    """
+    empty. drawable: mask, (points,). Raises InputError if no point is drawable."""
     available = np.flatnonzero(drawable)
     statuses = view.status_names
     if not available.size:
         states = ", ".join(sorted({word.replace("_", " ") for word in statuses.tolist()}))
-        raise InputError(
-            f"{view.path} holds no {noun} that could be drawn; the statuses of its points are: {states}"
-        )
+        reason = f"the statuses of its points are: {states}"
+        raise InputError(f"{view.path} holds no {noun} that could be drawn; {reason}")
     numbers = list(points) or [int(index) + 1 for index in available[:MAX_CYCLES]]
     columns = view.point_columns
     parameters = [{name: float(columns[name][n - 1]) for name in columns} for n in numbers]
@@ -188,13 +179,11 @@ def _selected_cycles(
 
 def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
     """Raises InputError if `points` has more than MAX_CYCLES numbers, or the number of a point that does not
-    exist.
-    """
+    exist."""
     count = view.variables["status"].size
     if len(points) > MAX_CYCLES:
-        raise InputError(
-            f"--point is given {len(points)} times; one figure shows at most {MAX_CYCLES} points"
-        )
+        most = f"one figure shows at most {MAX_CYCLES} points"
+        raise InputError(f"--point is given {len(points)} times; {most}")
     for number in points:
         if not 1 <= number <= count:
             raise InputError(f"--point {number}: {view.path} has the points 1 to {count}")
@@ -202,8 +191,7 @@ def _refuse_bad_points(view: ResultView, points: Sequence[int]) -> None:
 
 def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters with equal values in all mappings, and text of the other
-    parameters of each mapping.
-    """
+    parameters of each mapping."""
     common = {n: v for n, v in parameters[0].items() if all(values[n] == v for values in parameters)}
     labels = [parameter_text({n: v for n, v in each.items() if n not in common}) for each in parameters]
     return parameter_text(common), labels
@@ -211,8 +199,7 @@ def shared_and_own_texts(parameters: Sequence[dict[str, float]]) -> tuple[str, l
 
 def shared_and_own_of_points(view: ResultView, numbers: Sequence[int]) -> tuple[str, list[str]]:
     """Returns (shared, own): text of the parameters that are equal at all points, and text of the other
-    parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1.
-    """
+    parameters of each point; for an arm, of the quantities. numbers: numbers of the points, from 1."""
     if all(name in view.quantities for name in REQUIRED_QUANTITIES):
         return shared_and_own_of_arms(view, numbers)
     columns = view.point_columns
@@ -229,14 +216,11 @@ def shared_and_own_of_arms(
     for example because they are on axes.
     """
     texts = []
+    names = given_quantities(view)
     for number in numbers:
-        quantities = {
-            n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in given_quantities(view)
-        }
-        changes = {
-            name: parameter_text({name: value}) for name, value in replaced_parameters(view, number).items()
-        }
-        texts.append({name: text for name, text in (quantities | changes).items() if name not in omitted})
+        entry = {n: quantity_text(view, n, quantity_at_point(view, n, number)) for n in names}
+        entry |= {n: parameter_text({n: value}) for n, value in replaced_parameters(view, number).items()}
+        texts.append({name: text for name, text in entry.items() if name not in omitted})
     common = {name: text for name, text in texts[0].items() if all(entry[name] == text for entry in texts)}
     labels = [", ".join(text for name, text in entry.items() if name not in common) for entry in texts]
     return ", ".join(common.values()), labels

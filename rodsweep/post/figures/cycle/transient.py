@@ -21,8 +21,7 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
     """Returns (figure, description). The figure has a column for each point: x and y of the tip against time,
     with horizontal lines at the extrema of the cycle, if any.
 
-    points: numbers of the chosen points. is_narrow: whether the titles leave out the explanation of these
-    lines.
+    is_narrow: whether the titles leave out the explanation of these lines.
     """
     selection = chosen_transients(view, points)
     count = len(selection.cycles)
@@ -43,8 +42,7 @@ def draw_transients(view: ResultView, points: Sequence[int], is_narrow: bool = F
 
 def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Draws x (upper panel) and y (lower panel) of the tip from the initial state on, with horizontal lines
-    at the extrema of the cycle, if any.
-    """
+    at the extrema of the cycle, if any."""
     time, *tip_values = (cycle.values[name] for name in TRANSIENT_VARIABLE_NAMES)
     v = cycle.values
     levels = (("tip_x_min", 1), ("tip_x_max", 1)), (("tip_y_max", 1), ("tip_y_max", -1))
@@ -58,22 +56,19 @@ def draw_start_of_motion(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
 
 def label_tip_axes(upper: Axes, lower: Axes, units: CycleUnits) -> None:
     """Labels the vertical axes of the panels with x (upper) and y (lower) of the tip, in the colours of the
-    curves.
-    """
+    curves."""
     upper.set_ylabel("tip " + units.axis_label("x"), color=BLUE)
     lower.set_ylabel("tip " + units.axis_label("y"), color=VERMILION)
 
 
 def label_time_axes(upper: Axes, lower: Axes, cycle: StoredCycle) -> None:
     """Labels the time at the bottom of the panel `lower`, in the unit of the cycle. If the rod has the time
-    scale tau1, adds an axis with the time in tau1 at the top of the panel `upper`.
-    """
+    scale tau1, adds an axis with the time in tau1 at the top of the panel `upper`."""
     tau1 = cycle.tau1
     upper.tick_params(labelbottom=False)
     lower.axhline(0, color="0.8", lw=0.6, zorder=0)
     lower.set_xlabel(cycle.units.time_label)
     if 0 < tau1 < np.inf:
-        tau1_axis = upper.secondary_xaxis(
-            "top", functions=(lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
-        )
+        scales = (lambda t: np.asarray(t) / tau1, lambda t: np.asarray(t) * tau1)
+        tau1_axis = upper.secondary_xaxis("top", functions=scales)
         tau1_axis.set_xlabel(r"time $t/\tau_1$")

@@ -65,18 +65,10 @@ class CycleUnits:
         power."""
         if self.in_si:
             length, time, _, power = self.names
-            return (
-                rf"tip $(x_{{\max}} - x_{{\min}})/2$ ({length})",
-                rf"tip $y_{{\max}}$ ({length})",
-                f"period $T$ ({time})",
-                f"mean power ({power})",
-            )
-        return (
-            r"tip $(x_{\max} - x_{\min})/2L$",
-            r"tip $y_{\max}/L$",
-            r"period $T/\tau_2$",
-            r"mean power $\times\,L\tau_2/k_3$",
-        )
+            tip = rf"tip $(x_{{\max}} - x_{{\min}})/2$ ({length})", rf"tip $y_{{\max}}$ ({length})"
+            return *tip, f"period $T$ ({time})", f"mean power ({power})"
+        tip = r"tip $(x_{\max} - x_{\min})/2L$", r"tip $y_{\max}/L$"
+        return *tip, r"period $T/\tau_2$", r"mean power $\times\,L\tau_2/k_3$"
 
     @property
     def energy_and_power_labels(self) -> tuple[str, str, str]:
@@ -89,8 +81,7 @@ class CycleUnits:
     @property
     def power_of_rate(self) -> float:
         """Ratio of the figure's units of energy and time, (energy unit)/(time unit), in the figure's unit of
-        power.
-        """
+        power."""
         return self.power * self.time / self.energy
 
     def time_text(self, time: float) -> str:
@@ -114,8 +105,7 @@ PLAIN_UNITS = CycleUnits()
 
 def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits]:
     """Units at each point, with equal names of the units at all points; dimensionless if the file has no arm.
-    numbers: numbers of the points, from 1.
-    """
+    numbers: numbers of the points, from 1."""
     (units,) = units_of_files([view], [np.array(numbers, int) - 1])
     if not units.in_si:
         return [units] * len(numbers)
@@ -125,8 +115,7 @@ def units_at_points(view: ResultView, numbers: Sequence[int]) -> list[CycleUnits
 
 def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int64]]) -> list[CycleUnits]:
     """Units for the points of each file, with factors of shape (n,); dimensionless if a file has no arm.
-    indices: indices of the points of each file, (n,).
-    """
+    indices: indices of the points of each file, (n,)."""
     if not all(name in view.quantities for view in views for name in REQUIRED_QUANTITIES):
         return [PLAIN_UNITS] * len(views)
     lengths, times, forces = (
@@ -137,9 +126,7 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
     energies = [force * length for force, length in zip(forces, lengths, strict=True)]
     cycles = list(zip(views, indices, times, power_units, strict=True))
     period = max(_largest_in_units(view, "period", chosen, time) for view, chosen, time, _ in cycles)
-    mean_power = max(
-        _largest_in_units(view, "injection_mean", chosen, power) for view, chosen, _, power in cycles
-    )
+    mean_power = max(_largest_in_units(view, "injection_mean", chosen, p) for view, chosen, _, p in cycles)
     length = views[0].typed_units.get("length", "m")
     time_unit = with_si_prefix(period, "s")[1] if 0 < period < PREFIXED_BELOW_SECONDS else "s"
     joule = with_si_prefix(max(float(np.nanmax(energy)) for energy in energies), "J")[1]
@@ -153,6 +140,5 @@ def units_of_files(views: Sequence[ResultView], indices: Sequence[NDArray[np.int
 
 def _largest_in_units(view: ResultView, name: str, indices: NDArray[np.int64], factors: Array) -> float:
     """Maximum of |v| f over the points with the indices `indices`, (n,); 0 if no value is finite. v: variable
-    `name`. f: `factors`, (n,).
-    """
+    `name`. f: `factors`, (n,)."""
     return float(np.nanmax(np.abs(view.variables[name].ravel()[indices]) * factors, initial=0.0))

@@ -20,8 +20,7 @@ used."""
 def cached_ticks(figure: Figure) -> Iterator[None]:
     """Context in which an axis of the figure computes its ticks again only after the panel or its limits have
     changed. Nothing except positions and limits of panels may change in this context. Without effect if
-    matplotlib lacks a method in CACHED_METHODS.
-    """
+    matplotlib lacks a method in CACHED_METHODS."""
     panels = [panel for axes in figure.axes for panel in (axes, *axes.child_axes)]
     has_methods = all(hasattr(Axis, name) for name in CACHED_METHODS)
     cached_axes = [axis for panel in panels for axis in (panel.xaxis, panel.yaxis)] if has_methods else []

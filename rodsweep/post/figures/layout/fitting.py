@@ -134,8 +134,7 @@ def _break_texts(figure: Figure) -> bool:
 
 def _column_distance(axes: Axes, figure: Figure) -> float:
     """Distance, in pixels, between the centres of a panel and of the nearest panel in another column; the
-    width of the figure if there is only one column.
-    """
+    width of the figure if there is only one column."""
     grid_cell = axes.get_subplotspec()
     if grid_cell is None:
         return float(figure.bbox.width)
@@ -152,8 +151,7 @@ def _column_distance(axes: Axes, figure: Figure) -> float:
 
 def _fit_legends(figure: Figure) -> bool:
     """Reduces the number of columns of legends that are too wide, and breaks long entries; returns whether
-    any legend changed.
-    """
+    any legend changed."""
     max_width = figure.bbox.width - 2 * TEXT_MARGIN * figure.dpi
     changed = False
     for old_legend in list(figure.legends):
@@ -177,8 +175,7 @@ def _legend_column_count(legend: Legend) -> int:
 
 def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
     """Replaces a legend of the figure by a legend with the same entries in `columns` columns; returns the new
-    legend.
-    """
+    legend."""
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
@@ -188,9 +185,7 @@ def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend
 
 
 def _spare_height(figure: Figure, min_aspect: float) -> float:
-    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height.
-    min_aspect: smallest ratio of height to width of a panel.
-    """
+    """Height, in inches, by which the figure can shrink until the first panel reaches its smallest height."""
     width, height = figure.get_size_inches()
     spares = [height]
     for axes in figure.axes:

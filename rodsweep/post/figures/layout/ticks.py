@@ -13,8 +13,7 @@ EDGE_TOLERANCE = 1e-9
 
 def thin_ticks(figure: Figure) -> bool:
     """Removes some tick labels, such as every second, from each axis whose labels overlap; returns whether
-    any label was removed.
-    """
+    any label was removed."""
     all_axes = [*figure.axes, *(inset for axes in figure.axes for inset in axes.child_axes)]
     return any(
         [
@@ -38,8 +37,7 @@ def visible_labels(axis: Axis) -> list[Text]:
 
 def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
     """Removes some tick labels of an axis, such as every second, if its labels overlap; returns whether any
-    label was removed. direction: 0 for a horizontal axis, 1 for a vertical axis.
-    """
+    label was removed. direction: 0 for a horizontal axis, 1 for a vertical axis."""
     labels = visible_labels(axis)
     boxes = [label.get_window_extent() for label in labels]
     extents = sorted(tuple(box.intervaly if direction else box.intervalx) for box in boxes)
@@ -67,8 +65,7 @@ def _remove_overlapping_labels(axis: Axis, direction: int) -> bool:
 
 def _thin_powers(axis: Axis, label_count: int) -> bool:
     """Removes labelled powers of ten from a symmetric logarithmic axis; returns whether any label was
-    removed. label_count: current number of labels.
-    """
+    removed."""
     start = getattr(axis.get_transform(), "linthresh", None)
     if start is None:
         return False
@@ -81,8 +78,7 @@ def _thin_powers(axis: Axis, label_count: int) -> bool:
 
 def _thin_decades(axis: Axis, locator: LogLocator) -> bool:
     """Reduces the labelled numbers of each decade to 1 and 3, only 1, or only 2; returns whether labels were
-    removed.
-    """
+    removed."""
     low, high = sorted(axis.get_view_interval())
     labelled = getattr(locator, "_subs", None)
     max_labels = 0 if labelled is None or isinstance(labelled, str) else len(labelled)

@@ -1,6 +1,5 @@
 """Figures of eigenvalues without lines between points: one point in the complex plane, or a list of
-points.
-"""
+points."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -8,9 +7,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ....results.file.view import ResultView
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
-from ..style import BLUE, VERMILION, heading_text, legend_below, parameter_text, require_content
+from ..style import BLUE, VERMILION, legend_below, parameter_text, require_content
 
 SPREAD_RATIO = 100.0
 """An axis is symmetric logarithmic if the ratio of the largest to the smallest nonzero modulus exceeds
@@ -27,8 +26,7 @@ MAX_NUMBERED = 8
 
 def draw_eigenvalues(view: ResultView) -> Figure:
     """Figure of the stored eigenvalues of the only point in a file, in the complex plane, with the numbers of
-    the modes. Raises InputError if nothing can be drawn.
-    """
+    the modes. Raises InputError if nothing can be drawn."""
     modes = len(view.variables["mode"])
     growth, frequency = (view.variables[name].reshape(modes) for name in ("growth_rate", "frequency"))
     require_content(view, np.isfinite(growth).any(), "computed point")
@@ -45,7 +43,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     legend_below(figure, handles, columns=2)
-    figure.suptitle(_heading(view))
+    set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
 
@@ -63,33 +61,25 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
     legend_below(figure, handles, columns=2)
-    figure.suptitle(_heading(view))
+    set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
-
-
-def _heading(view: ResultView) -> str:
-    """Text above a figure: quantities of an arm and parameters that all points share."""
-    return heading_text(view, constant_quantities_text(view), parameter_text(shared_parameters(view)))
 
 
 def _draw_markers(axes: Axes, x: np.ndarray, y: np.ndarray, is_growing: np.ndarray) -> list[Line2D]:
     """Draws markers at the points (x, y); returns legend entries. x, y: arrays of equal shape. is_growing:
-    mask of growing modes, of the same shape.
-    """
+    mask of growing modes, of the same shape."""
     handles = []
     for kind, (colour, marker, word) in MODE_LOOKS.items():
         is_drawn = (is_growing == kind) & np.isfinite(y)
         if is_drawn.any():
-            handles += axes.plot(
-                x[is_drawn], y[is_drawn], marker, color=colour, mfc="none", ms=4.5, label=word
-            )
+            drawn = x[is_drawn], y[is_drawn]
+            handles += axes.plot(*drawn, marker, color=colour, mfc="none", ms=4.5, label=word)
     return handles
 
 
 def scale_if_spread(axes: Axes, x: np.ndarray | None, y: np.ndarray) -> None:
     """Makes an axis symmetric logarithmic if the ratio of its largest to smallest nonzero modulus is above
-    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged.
-    """
+    SPREAD_RATIO. x, y: values on the axes, of any shape; None for an axis that stays unchanged."""
     for set_scale, values in ((axes.set_xscale, x), (axes.set_yscale, y)):
         sizes = np.abs(values[np.isfinite(values) & (values != 0)]) if values is not None else np.zeros(0)
         if sizes.size and sizes.max() > SPREAD_RATIO * sizes.min():

@@ -1,6 +1,5 @@
 """Figures of spectra along a line of points: two roots, or all stored roots, against the parameter and in the
-complex plane, as in the paper's Fig. 2.
-"""
+complex plane, as in the paper's Fig. 2."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -15,7 +14,7 @@ from ....results.file.view import ResultView
 from ....sweep.points.points import lines_along
 from ...located_thresholds import LocatedThreshold, StoredThresholds
 from .. import style
-from ..arm.quantities import NO_BREAK, constant_quantities_text
+from ..arm.quantities import NO_BREAK, set_heading
 from .eigenvalues import scale_if_spread
 
 ROOT_CHOICE_TEXTS = {
@@ -61,8 +60,7 @@ def select_roots(growth: np.ndarray, frequency: np.ndarray, roots: str) -> np.nd
 
 def with_gaps_between_roots(x: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Returns (x, w) with NaN inserted between points at which the followed roots are different roots. x:
-    parameter, (n,). w: followed roots, (n, 2).
-    """
+    parameter, (n,). w: followed roots, (n, 2)."""
     step = np.abs(np.diff(w, axis=0)).max(axis=1)
     size = np.abs(w).max(axis=1)
     # If roots are exchanged, the step is far larger than the neighbouring steps and comparable to the root.
@@ -88,25 +86,20 @@ def roots_to_follow(views: Sequence[ResultView], typed_roots: str | None) -> str
         return sum(len(with_gaps_between_roots(np.arange(len(w), dtype=float), w)[0]) - len(w) for w in lines)
 
     def hides_growth(roots: str) -> bool:
-        followed_growths = (_followed_roots(view, roots).real.max(axis=1) for view in views)
+        followed = (_followed_roots(view, roots).real.max(axis=1) for view in views)
         stored = (view.by_point("growth_rate").max(axis=1) for view in views)
-        return any(
-            ((followed_growth <= 0) & (all_growth > 0)).any()
-            for followed_growth, all_growth in zip(followed_growths, stored, strict=True)
-        )
+        return any(((own <= 0) & (all_ > 0)).any() for own, all_ in zip(followed, stored, strict=True))
 
     return min(("smallest", "rightmost"), key=lambda roots: (hides_growth(roots), breaks(roots)))
 
 
 def _followed_roots(view: ResultView, roots: str) -> Complex:
-    """Roots at the points of a line, as from `select_roots`. roots: choice of the roots."""
+    """Roots at the points of a line, as from `select_roots`."""
     return select_roots(view.by_point("growth_rate"), view.by_point("frequency"), roots)
 
 
 def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
-    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,). label:
-    label of the colour bar.
-    """
+    """Draws all roots w, (n, modes), in the complex plane, in colours that show the parameter x, (n,)."""
     x_of_roots = np.broadcast_to(x[:, None], w.shape)
     dots = axes.scatter(w.real.ravel(), w.imag.ravel(), s=6, c=x_of_roots.ravel(), cmap="viridis_r")
     scale_if_spread(axes, w.real, w.imag)
@@ -114,8 +107,7 @@ def _draw_all_roots(axes: Axes, x: Array, w: Complex, label: str) -> None:
 
 
 def draw_line(view: ResultView, name: str, roots: str) -> Figure:
-    """Figure of the roots against the parameter `name`, and in the complex plane. roots: choice of the
-    roots."""
+    """Figure of the roots against the parameter `name`, and in the complex plane."""
     figure = Figure(figsize=(5.2, 6.6), layout="constrained")
     top, bottom = figure.subplots(2, 1)
     w = draw_roots(top, view, name, roots)
@@ -129,21 +121,13 @@ def draw_line(view: ResultView, name: str, roots: str) -> Figure:
     bottom.axvline(0, color="0.5", lw=0.6)
     bottom.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
     style.legend_below(figure, top.get_legend_handles_labels()[0], 2)
-    figure.suptitle(
-        style.heading_text(
-            view,
-            constant_quantities_text(view),
-            style.constant_parameters_text(view, name),
-            ROOT_CHOICE_TEXTS[roots],
-        )
-    )
+    set_heading(figure, view, style.constant_parameters_text(view, name), ROOT_CHOICE_TEXTS[roots])
     return figure
 
 
 def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
     """Draws roots against the parameter `name`, and returns the roots, with NaN in gaps: followed roots, (n,
-    2), or all roots, (n, modes). roots: choice of the roots.
-    """
+    2), or all roots, (n, modes)."""
     x = view.parameter_values[name]
     w = _followed_roots(view, roots)
     if roots != "all":
@@ -157,16 +141,8 @@ def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
         x_of_roots = np.broadcast_to(x[:, None], w.shape)
         for root_part, colour, marker in ((w.real, style.BLUE, "o"), (w.imag, style.VERMILION, "s")):
             word = rf"$\mathrm{{{'Re' if marker == 'o' else 'Im'}}}\,\omega$"
-            axes.plot(
-                x_of_roots.ravel(),
-                root_part.ravel(),
-                marker,
-                color=colour,
-                mfc="none",
-                ms=2,
-                mew=0.6,
-                label=word,
-            )
+            look: dict[str, Any] = {"color": colour, "mfc": "none", "ms": 2, "mew": 0.6}
+            axes.plot(x_of_roots.ravel(), root_part.ravel(), marker, label=word, **look)
     axes.axhline(0, color="0.5", lw=0.6)
     style.scale_axis(axes, "x", x)
     axes.set(xlabel=style.LABELS[name], ylabel=r"$\omega\,\tau_2$", xlim=(x[0], x[-1]))
@@ -181,8 +157,7 @@ def draw_roots(axes: Axes, view: ResultView, name: str, roots: str) -> Complex:
 
 def _draw_direction_arrow(axes: Axes, w: Complex, colour: str) -> None:
     """Draws an arrow at the middle of the path w, (n,), of a root, in the direction of the path. If w has
-    gaps, the part with the most points is used.
-    """
+    gaps, the part with the most points is used."""
     unbroken_parts = np.split(w, np.flatnonzero(~np.isfinite(w)))
     path = max((unbroken_part[np.isfinite(unbroken_part)] for unbroken_part in unbroken_parts), key=len)
     ranges = max(np.ptp(path.real), 1e-300), max(np.ptp(path.imag), 1e-300)
@@ -222,14 +197,13 @@ def mark_thresholds(axes: Axes, view: ResultView, name: str) -> list[LocatedThre
         axes.axvline(threshold.position, ls=dashes, label=threshold_text(threshold), **THRESHOLD_LINE)
     # The shaded range begins at the upper end of a bracketed Hopf point, and ends at the lower end of a
     # bracketed restabilization.
-    starts, ends = (
-        [
-            change.position if isinstance(change, LocatedThreshold) else getattr(change, inner_end)
-            for change in located
-            if change.kind == kind
-        ]
-        for kind, inner_end in (("hopf", "high"), ("restabilization", "low"))
-    )
+    starts, ends = list[float](), list[float]()
+    for change in located:
+        bounds = [change.position] if isinstance(change, LocatedThreshold) else [change.low, change.high]
+        if change.kind == "hopf":
+            starts.append(bounds[-1])
+        elif change.kind == "restabilization":
+            ends.append(bounds[0])
     if ends and (not starts or ends[0] < starts[0]):
         starts.insert(0, float(x[0]))
     if len(starts) > len(ends):

@@ -2,6 +2,7 @@
 thresholds."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +13,7 @@ from ....results.file.view import ResultView
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import plural
 from .. import style
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 from ..point_lists import label_point_numbers, shared_parameters
 from .class_colours import CLASS_COLOURS, class_legend_entries
 from .row_classes import class_above_crossing
@@ -56,21 +57,16 @@ def draw_class_bars(view: ResultView) -> Figure:
         axes.set(ylim=(0, end), ylabel=style.LABELS["F"])
         label_point_numbers(axes, view, count)
     style.legend_below(figure, handles, columns=2)
-    figure.suptitle(
-        style.heading_text(
-            view, constant_quantities_text(view), style.parameter_text(shared_parameters(view))
-        )
-    )
+    set_heading(figure, view, style.parameter_text(shared_parameters(view)))
     return figure
 
 
 def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, float, str]]:
     """Yields (start, end, class) of each interval of F between crossings, from F = 0 to the end of the
-    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room
-    for all crossings. rod: index of the rod."""
-    kinds, F, counts = (
-        view.by_point(name)[rod] for name in ("crossing_kind", "crossing_F", "unstable_after")
-    )
+    search. The first interval has the class "monotone"; the last is "not stored" if the file has no room for
+    all crossings."""
+    names = ("crossing_kind", "crossing_F", "unstable_after")
+    kinds, F, counts = (view.by_point(name)[rod] for name in names)
     end = float(view.variables["F_end"].ravel()[rod])
     crossing_count = int(view.variables["crossing_count"].ravel()[rod])
     start = 0.0
@@ -87,8 +83,7 @@ def classes_over_force(view: ResultView, rod: int) -> Iterator[tuple[float, floa
 
 def draw_class_bar(axes: Axes, view: ResultView, rod: int, is_vertical: bool) -> set[str]:
     """Draws the bar along F of the rod with the index `rod`, coloured by stability class; returns the classes
-    of the bar. is_vertical: whether the bar is vertical.
-    """
+    of the bar."""
     intervals = list(classes_over_force(view, rod))
     undecided_from, undecided_to = (view.variables[name].ravel()[rod] for name in ("open_from", "open_to"))
     if np.isfinite(undecided_from):
@@ -106,8 +101,7 @@ def mark_thresholds_on_bars(
 ) -> list[Line2D]:
     """Marks the thresholds of all bars; returns legend entries, which for a single rod contain the forces.
 
-    is_vertical: whether bars are vertical. unit: unit of the loads in legend entries; empty for F. factor:
-    load at F = 1, in this unit.
+    unit: unit of the loads in legend entries; empty for F. factor: load at F = 1, in this unit.
     """
     kinds, F, counts = map(view.by_point, ("crossing_kind", "crossing_F", "unstable_after"))
     is_hopf = kinds == CROSSING_KINDS.index("hopf")
@@ -125,7 +119,6 @@ def mark_thresholds_on_bars(
             name = name.partition(" $")[0]
         loads = ", ".join(f"{factor * force_value:#.{THRESHOLD_DIGITS}g}" for force_value in force)
         label = name if is_vertical else f"{name} = {loads} {unit}".rstrip()
-        handles += axes.plot(
-            x, y, marker, color=colour, mec="white", mew=0.6, ms=6, label=label, clip_on=False
-        )
+        look: dict[str, Any] = {"color": colour, "mec": "white", "mew": 0.6, "ms": 6, "clip_on": False}
+        handles += axes.plot(x, y, marker, label=label, **look)
     return handles

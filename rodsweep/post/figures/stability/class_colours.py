@@ -1,5 +1,6 @@
 """Colours and legend entries of the stability classes of the straight rod, and of the stable states."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -46,18 +47,18 @@ entry."""
 
 def class_legend_entries(drawn_classes: set[str]) -> list[Patch]:
     """Legend entries for the classes in `drawn_classes`."""
-    drawn_colours = {word: colour for word, colour in CLASS_COLOURS.items() if word in drawn_classes}
-    return [
-        Patch(facecolor=colour, edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-        for word, colour in drawn_colours.items()
-    ]
+    return _legend_entries([word for word in CLASS_COLOURS if word in drawn_classes], CLASS_COLOURS)
+
+
+def _legend_entries(words: Sequence[str], colours: Mapping[str, str]) -> list[Patch]:
+    look: dict[str, Any] = {"edgecolor": "0.5", "lw": 0.5}
+    return [Patch(facecolor=colours[word], label=LEGEND_ENTRIES.get(word, word), **look) for word in words]
 
 
 @dataclass(frozen=True, slots=True)
 class Palette:
     """Colours for a map of an integer variable. variable: name of the variable. words: (integer, word) of
-    each value. colours: colour of each word.
-    """
+    each value. colours: colour of each word."""
 
     variable: str
     words: tuple[tuple[int, str], ...]
@@ -74,11 +75,7 @@ class Palette:
 
     def legend_entries(self, table: Array) -> list[Patch]:
         """Legend entries for the words whose integers occur in `table`, (rows, columns)."""
-        drawn_words = (word for number, word in self.words if (table == number).any())
-        return [
-            Patch(facecolor=self.colours[word], edgecolor="0.5", lw=0.5, label=LEGEND_ENTRIES.get(word, word))
-            for word in drawn_words
-        ]
+        return _legend_entries([w for number, w in self.words if (table == number).any()], self.colours)
 
 
 CLASS_PALETTE = Palette("class", STABILITY_CLASSES, CLASS_COLOURS)

@@ -22,9 +22,8 @@ LABEL_MARGIN = 1.5
 def lowest_parts(paths: list[Array], force: int) -> list[Array]:
     """Parts of the curves `paths`, (n, 2) each, that have the smallest F of all curves. force: index of the
     column with F."""
-    starts, ends = (
-        np.concatenate([path[piece] for path in paths]) for piece in (slice(None, -1), slice(1, None))
-    )
+    starts = np.concatenate([path[:-1] for path in paths])
+    ends = np.concatenate([path[1:] for path in paths])
     y0 = starts[:, 1 - force]
     y1 = ends[:, 1 - force]
     parts = []
@@ -32,12 +31,9 @@ def lowest_parts(paths: list[Array], force: int) -> list[Array]:
         y = path[:, 1 - force, None]
         edge_fraction = (y - y0) / np.where(y1 == y0, np.inf, y1 - y0)
         crosses = (np.minimum(y0, y1) <= y) & (y <= np.maximum(y0, y1))
-        crossing_forces = np.where(
-            crosses, starts[:, force] + edge_fraction * (ends[:, force] - starts[:, force]), np.inf
-        )
-        parts.append(
-            path[path[:, force] <= crossing_forces.min(axis=1, initial=np.inf) * (1 + CHORD_ROUNDING)]
-        )
+        forces = starts[:, force] + edge_fraction * (ends[:, force] - starts[:, force])
+        lowest = np.where(crosses, forces, np.inf).min(axis=1, initial=np.inf)
+        parts.append(path[path[:, force] <= lowest * (1 + CHORD_ROUNDING)])
     return parts
 
 

@@ -69,8 +69,7 @@ def draw_boundary_curves(axes: Axes, view: ResultView, line: str, row: str, hopf
 
 def boundaries_to_name(view: ResultView, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
     """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of
-    kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**).
-    """
+    kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**)."""
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
     bounds = curves_bounding_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
@@ -156,8 +155,7 @@ def _is_on_curve(view: ResultView, kind: int, line: str, row: str, x: Array, y: 
 
 def _draw_criticality(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
-    entries.
-    """
+    entries."""
     v = view.variables
     drawn_criticalities = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):

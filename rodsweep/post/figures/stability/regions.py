@@ -1,6 +1,5 @@
 """Regions of a plane that are bounded by curves. Each pixel has the class of a known point in the same
-region.
-"""
+region."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,8 +30,7 @@ class DrawnPlane:
 
     def fractions_of_axes(self, x: Array, y: Array) -> Array:
         """Points as fractions of the axes, (n, 2), with 0 and 1 at the edges, linear or logarithmic as the
-        axes. x, y: coordinates, (n,) each.
-        """
+        axes. x, y: coordinates, (n,) each."""
         columns = []
         for values, axis in ((x, self.x), (y, self.y)):
             if is_logarithmic(axis):
@@ -43,12 +41,16 @@ class DrawnPlane:
         return np.column_stack(columns)
 
     @staticmethod
-    def pixel_centres(axis: Array) -> Array:
-        """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
-        fractions = (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT
+    def positions(axis: Array, fractions: Array) -> Array:
+        """Coordinates, (n,), at fractions, (n,), of the axis with the values `axis`."""
         if is_logarithmic(axis):
             return np.asarray(axis[0] * (axis[-1] / axis[0]) ** fractions)
         return np.asarray(axis[0] + (axis[-1] - axis[0]) * fractions)
+
+    @classmethod
+    def pixel_centres(cls, axis: Array) -> Array:
+        """Coordinates of the centres of pixels along the axis with the values `axis`, (PIXEL_COUNT,)."""
+        return cls.positions(axis, (np.arange(PIXEL_COUNT) + 0.5) / PIXEL_COUNT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,13 +62,10 @@ class ClassifiedPoints:
 
     def with_regions(self, regions: NDArray[Any]) -> tuple["ClassifiedPoints", NDArray[Any]]:
         """Returns (points inside the plane, number of the region of each of these points). regions: number of
-        the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT).
-        """
+        the region of each pixel, (PIXEL_COUNT, PIXEL_COUNT)."""
         is_inside = ((self.coordinates >= 0) & (self.coordinates <= 1)).all(axis=1)
-        coordinates = self.coordinates[is_inside]
-        return ClassifiedPoints(coordinates, self.classes[is_inside]), regions[
-            tuple(_pixels_of_points(coordinates).T)
-        ]
+        inside = ClassifiedPoints(self.coordinates[is_inside], self.classes[is_inside])
+        return inside, regions[tuple(_pixels_of_points(inside.coordinates).T)]
 
 
 def pixel_classes(
@@ -100,22 +99,18 @@ def pixel_classes(
                 break
             is_inside = np.full(len(source.coordinates), True) if of_region is None else of_region == region
             if is_inside.any():
-                table[pixels] = _nearest_classes(
-                    pixels, source.coordinates[is_inside], source.classes[is_inside]
-                )
+                known = (source.coordinates[is_inside], source.classes[is_inside])
+                table[pixels] = _nearest_classes(pixels, *known)
                 break
     if walls.any() and not walls.all():
-        nearest_pixels = scipy.ndimage.distance_transform_edt(
-            walls, return_distances=False, return_indices=True
-        )
+        _, nearest_pixels = scipy.ndimage.distance_transform_edt(walls, return_indices=True)
         table = table[tuple(nearest_pixels)]
     return table
 
 
 def _nearest_classes(pixels: tuple[NDArray[Any], ...], points: Array, classes: NDArray[Any]) -> NDArray[Any]:
     """Class of the point nearest to each pixel, (n,). pixels: (row, column), (n,) each. points: points as
-    fractions of the axes, (m, 2). classes: classes of the points, (m,).
-    """
+    fractions of the axes, (m, 2). classes: classes of the points, (m,)."""
     if (classes == classes[0]).all():
         return classes[0]
     centres = (np.column_stack(pixels[::-1]) + 0.5) / PIXEL_COUNT
@@ -129,11 +124,8 @@ def _pixels_of_points(points: Array) -> NDArray[np.intp]:
 
 def _dense_curve_points(curve: Array) -> Array:
     """Points, (m, 2), less than a pixel apart, on the part of a curve that lies inside the plane. curve:
-    vertices, (n, 2).
-
-    Each segment is first cut at the edges of the plane, because a segment may be a thousand times longer than
-    the plane.
-    """
+    vertices, (n, 2). Each segment is first cut at the edges of the plane, because a segment may be a thousand
+    times longer than the plane."""
     curve = curve[np.isfinite(curve).all(axis=1)]
     half_pixel = 0.5 / PIXEL_COUNT  # rounding may move an end from the edge to the outside
     steps = np.diff(curve, axis=0)

@@ -50,13 +50,9 @@ def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Ar
             continue
         low, high = _uncrushed_row(view, build, line, int(index))
         ends = [low, *positions[index, stored_indices].tolist(), high]
-        is_monotone = (
-            kinds[index, stored_indices[0]] == ONSET and unstable_counts[index, stored_indices[0]] == 0
-        )
-        curve_words = ["monotone" if is_monotone else ""]
-        curve_words += [
-            class_above_crossing(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices
-        ]
+        crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
+        curve_words = ["monotone" if crossings[0] == (ONSET, 0) else ""]
+        curve_words += [class_above_crossing(*crossing) for crossing in crossings]
         if len(stored_indices) < counts[index] or np.isfinite(undecided_from[index]):
             curve_words[-1] = ""
         for word, (start, end) in zip(curve_words, pairwise(ends), strict=True):
@@ -67,17 +63,15 @@ def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Ar
 
 
 def _uncrushed_row(view: ResultView, build: Build, line: str, index: int) -> tuple[float, float]:
-    """First and last value of `line` on a row at which the force does not crush the rod. build: constitutive
-    law and profile of the rods. index: index of the row."""
+    """First and last value of `line` on a row at which the force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
     row_start, row_end = view.variables[line][[0, -1]].tolist()
     return uncrushed_interval(build, rod, (line, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
-    """Class of a rod at F just above a crossing. kind: code of the crossing. unstable: number of unstable
-    modes above the crossing; -1 if unknown.
-    """
+    """Class of a rod at F just above a crossing. unstable: number of unstable modes above the crossing; -1 if
+    unknown."""
     stable = STABLE_CLASS.get(CROSSING_KINDS[kind], "undecided")
     if unstable > 0:
         return "flutter"
@@ -88,7 +82,7 @@ def pixel_classes_of_row(
     view: ResultView, variable: str, line: str, row: str, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
     """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
-    parameters along and across rows. index: index of the row. pixel_edges: edges of the pixels, (n + 1,).
+    parameters along and across rows. pixel_edges: edges of the pixels, (n + 1,).
 
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
@@ -117,8 +111,7 @@ def pixel_classes_of_row(
 
 def _class_changes(view: ResultView, variable: str, line: str, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
-    `stable_states`. line: parameter along the row. index: index of the row.
-    """
+    `stable_states`."""
     names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     positions = v["crossing_at"]

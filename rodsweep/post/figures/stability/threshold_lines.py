@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from ....arrays import Array
 from ....results.file.view import ResultView
 from .. import style
-from ..arm.quantities import constant_quantities_text
+from ..arm.quantities import set_heading
 
 CRITICAL_FORCES = (
     ("F_onset", r"onset $\tilde F_*$", style.BLUE, "o", ":"),
@@ -48,34 +48,27 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
     figure = Figure(figsize=(5.6, 4.2), layout="constrained")
     axes = figure.subplots()
     table = _first_force_table(view, x_name, other)
-    style.require_content(
-        view, np.isfinite(_abscissa_values(view, x_name)).sum() > 1, f"two finite values of {x_name}"
-    )
+    x = _abscissa_values(view, x_name)
+    style.require_content(view, np.isfinite(x).sum() > 1, f"two finite values of {x_name}")
     shades = matplotlib.colormaps["viridis"](np.linspace(DARKEST_SHADE, LIGHTEST_SHADE, len(table)))
     for values, shade in zip(table, shades, strict=True):
-        handles = _draw_threshold_lines(
-            axes, _abscissa_values(view, x_name), values, {"color": shade} if other else {"ls": "-"}
-        )
+        handles = _draw_threshold_lines(axes, x, values, {"color": shade} if other else {"ls": "-"})
     if other:
-        handles = _kind_entries(table) + [
-            Line2D(
-                [], [], color=shade, lw=2, label=f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
-            )
-            for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True)
-        ]
+        handles = _kind_entries(table)
+        for value, shade in zip(view.parameter_values[other].tolist(), shades, strict=True):
+            label = f"${style.SYMBOLS[other]} = {style.number_in_tex(value)}$"
+            handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
-    figure.suptitle(style.heading_text(view, *constants, search))
+    set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     caption = f"critical forces against {x_name}" + (f" for every {other}" if other else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
 
 
 def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows thresholds against the parameter `x_name`, with a
-    colour for each file. search: clause on the searched range.
-    """
+    colour for each file. search: clause on the searched range."""
     figure = Figure(figsize=(5.6, 4.6), layout="constrained")
     axes = figure.subplots()
     tables = np.concatenate([_first_force_table(view, x_name, None) for view in views])
@@ -100,8 +93,8 @@ def draw_selected_lines(
     view: ResultView, names: list[str], is_narrow: bool, search: str
 ) -> tuple[Figure, str]:
     """Returns (figure, description). As in the paper's Fig. 3, the figure has a panel for each of the two
-    parameters `names` as abscissa, with curves for some values of the second parameter. is_narrow:
-    whether the panels are stacked. search: clause on the searched range."""
+    parameters `names` as abscissa, with curves for some values of the second parameter. search: clause on the
+    searched range."""
     rows, columns = (2, 1) if is_narrow else (1, 2)
     figure = Figure(figsize=(4.6 * columns + 0.4, 4.0 * rows), layout="constrained")
     panels = figure.subplots(rows, columns, sharey=True, squeeze=False).ravel()
@@ -117,27 +110,22 @@ def draw_selected_lines(
         if np.isfinite(view.variables[name]).any()
     ]
     style.legend_below(figure, handles, columns=3)
-    constants = constant_quantities_text(view), style.constant_parameters_text(view, *names)
-    figure.suptitle(style.heading_text(view, *constants, search))
-    caption = (
-        f"critical forces against {' and '.join(names)}, lines for {' and '.join(texts)} (--what map: all)"
-    )
-    return figure, caption + _infinite_values_clause(view, names)
+    set_heading(figure, view, style.constant_parameters_text(view, *names), search)
+    lines = f"lines for {' and '.join(texts)} (--what map: all)"
+    omissions = _infinite_values_clause(view, names)
+    return figure, f"critical forces against {' and '.join(names)}, {lines}{omissions}"
 
 
 def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
     """Draws thresholds against the parameter `x_name` for up to three different values of the parameter
-    `other`, see `_label_line_indices`; returns the number of values.
-    """
+    `other`, see `_label_line_indices`; returns the number of values."""
     table = _first_force_table(view, x_name, other)
     indices = _label_line_indices(table)
-    for line, group in zip(
-        LINE_STYLES, _groups_of_equal_lines({index: table[index] for index in indices}), strict=False
-    ):
+    groups = _groups_of_equal_lines({index: table[index] for index in indices})
+    for line, group in zip(LINE_STYLES, groups, strict=False):
         _draw_threshold_lines(panel, _abscissa_values(view, x_name), table[group[0]], {"ls": line, "ms": 2})
-        values = ", ".join(
-            style.number_in_tex(float(view.parameter_values[other][index]), 3) for index in group
-        )
+        values_of_group = view.parameter_values[other][group]
+        values = ", ".join(style.number_in_tex(float(value), 3) for value in values_of_group)
         text = f"${style.SYMBOLS[other]} = {values}$" + (" (one line)" if len(group) > 1 else "")
         panel.plot([], [], line, color="0.3", label=text)
     _label_axes(panel, view, x_name, table[indices])
@@ -146,9 +134,8 @@ def _some_lines(panel: Axes, view: ResultView, x_name: str, other: str) -> int:
 
 
 def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Array:
-    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for
-    a missing threshold. x_name, other: parameters; `other` is None if there is no second parameter.
-    """
+    """First forces of the three kinds of thresholds, (values of `other`, 3, values of `x_name`); NaN for a
+    missing threshold. x_name, other: parameters; `other` is None if there is no second parameter."""
     names = list(view.parameter_values)
     kept_axes = [names.index(name) for name in (other, x_name) if name]
     other_axes = tuple(axis for axis in range(len(names)) if axis not in kept_axes)
@@ -162,8 +149,7 @@ def _first_force_table(view: ResultView, x_name: str, other: str | None) -> Arra
 
 def _abscissa_values(view: ResultView, x_name: str) -> Array:
     """Values on the horizontal axis: values of the parameter `x_name`, or 1/gamma3 instead of gamma3, as in
-    the paper.
-    """
+    the paper."""
     values = view.parameter_values[x_name]
     return 1 / values if x_name == "gamma3" else values
 
@@ -171,8 +157,7 @@ def _abscissa_values(view: ResultView, x_name: str) -> Array:
 def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, Any]) -> list[Line2D]:
     """Draws lines of the three kinds of thresholds; returns legend entries of the kinds with a finite force.
     x: (n,); points at an infinite x are left out. values: first forces, (3, n), with NaN at gaps. look:
-    keywords for matplotlib that replace the look in CRITICAL_FORCES.
-    """
+    keywords for matplotlib that replace the look in CRITICAL_FORCES."""
     is_finite = np.isfinite(x)
     handles = []
     for forces, (_, word, colour, marker, line) in zip(values, CRITICAL_FORCES, strict=True):
@@ -185,15 +170,12 @@ def _draw_threshold_lines(axes: Axes, x: Array, values: Array, look: dict[str, A
 
 def _label_axes(axes: Axes, view: ResultView, x_name: str, table: Array) -> None:
     """Labels the horizontal axis, of the parameter `x_name`, and sets the scales. The axis of forces starts
-    at 0. table: drawn forces.
-    """
+    at 0."""
     x = _abscissa_values(view, x_name)
     style.scale_axis(axes, "x", np.sort(x[np.isfinite(x)]))
     axes.set_xlabel(style.INVERSE_DRAG_LABEL if x_name == "gamma3" else style.LABELS[x_name])
-    max_force = max(
-        float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, axes.get_ylim()[1] if axes.lines else 0.0
-    )
-    axes.set_ylim(0, max_force or 1.0)
+    drawn_top = axes.get_ylim()[1] if axes.lines else 0.0
+    axes.set_ylim(0, max(float(np.nanmax(table, initial=0.0)) * FORCE_AXIS_RATIO, drawn_top) or 1.0)
 
 
 def _kind_entries(table: Array) -> list[Line2D]:
@@ -209,20 +191,17 @@ def _kind_entries(table: Array) -> list[Line2D]:
 
 def _infinite_values_clause(view: ResultView, names: list[str]) -> str:
     """Clause on infinite values of the parameters `names`, which an axis cannot show; empty if all values are
-    finite.
-    """
-    omissions = [
-        f"{name} = {value:g}"
-        for name in names
-        for value in view.parameter_values[name][~np.isfinite(_abscissa_values(view, name))]
-    ]
+    finite."""
+    omissions = []
+    for name in names:
+        is_left_out = ~np.isfinite(_abscissa_values(view, name))
+        omissions += [f"{name} = {value:g}" for value in view.parameter_values[name][is_left_out]]
     return f"; {' and '.join(omissions)} has no place on an axis and is left out" if omissions else ""
 
 
 def _label_line_indices(table: Array) -> list[int]:
     """Indices of the first line, of a line whose mean height is half-way, and of the last line. table:
-    (lines, 3, n).
-    """
+    (lines, 3, n)."""
     last = len(table) - 1
     if last < 2:
         return list(range(len(table)))
@@ -234,8 +213,7 @@ def _label_line_indices(table: Array) -> list[int]:
 
 def _groups_of_equal_lines(lines: dict[int, Array]) -> list[list[int]]:
     """Groups of lines that cannot be distinguished in the figure, as lists of keys. lines: forces, (3,
-    points) each, by key.
-    """
+    points) each, by key."""
     size = max(float(np.nanmax(values, initial=0.0)) for values in lines.values())
     groups: list[list[int]] = []
     for number, values in lines.items():

@@ -89,7 +89,7 @@ def _with_failure(answer: Callable[[ResultView, np.ndarray], tuple[Lines, Lines]
 
 def _threshold_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
     """Returns (lines about flutter, lines about extreme arms, effect of drag, onset of oscillation and return
-    to stability). rods: mask of the points with a result."""
+    to stability)."""
     load = view.load_kind
     v = view.variables
     flutter, end, rate = (v[name][rods] for name in (f"{load}_hopf", f"{load}_end", "frequency_hopf_hz"))
@@ -122,12 +122,11 @@ def _extreme_arm_lines(view: ResultView, rods: np.ndarray, loads: np.ndarray) ->
 
 
 def _crossing_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the points."""
+    """Returns (lines about loads and frequencies at the first Hopf points, [])."""
     v = view.variables
     load = view.load_kind
-    end = v[f"{load}_end"][rods] if f"{load}_end" in v else np.full(rods.sum(), np.nan)
     loads, frequency = _at_first_hopf(view, rods, f"crossing_{load}")
-    return _flutter_lines(view, loads, end, frequency), []
+    return _flutter_lines(view, loads, v[f"{load}_end"][rods], frequency), []
 
 
 def _count_clause(mask: np.ndarray, rods: np.ndarray) -> str:
@@ -144,9 +143,8 @@ def _flutter_lines(view: ResultView, loads: np.ndarray, end: np.ndarray, frequen
     count = f" at {int(flutters.sum())} of {len(loads)} points" if not flutters.all() else ""
     sentence = f"flutter begins{count} at {load_range_text(view, loads)}"
     lines = [f"{sentence}; there the arm beats at {range_text(view, frequency, 'Hz')}"]
-    if not flutters.all():
-        stable = f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}"
-        lines.append(stable.rstrip())
+    if count:
+        lines.append(f"does not flutter at {int((~flutters).sum())} of {len(loads)} points {search}".rstrip())
     return lines
 
 
@@ -173,11 +171,9 @@ def _cycle_lines(view: ResultView, rods: np.ndarray) -> Lines:
 
 def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
     """Line with the numbers of arms (with load) that beat for all, some or no drags of their range. Empty
-    list if drag is not varied or an outcome is undecided. rods: mask of the points in the model."""
+    list if drag is not varied or an outcome is undecided."""
     arms = arms_of_drags(view)
-    if arms is None:
-        return []
-    if (rods & ~view.has_status("cycle", "straight")).any():
+    if arms is None or (rods & ~view.has_status("cycle", "straight")).any():
         return []
     is_cycle = view.has_status("cycle").ravel()
     by_arm = [is_cycle[(arms == arm) & rods.ravel()] for arm in np.unique(arms[rods.ravel()])]
@@ -190,7 +186,7 @@ def _drag_outcome_line(view: ResultView, rods: np.ndarray) -> Lines:
 
 
 def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
-    """Lines about stability and leading frequency of the straight arms. rods: mask of the points."""
+    """Lines about stability and leading frequency of the straight arms."""
     count = view.variables["unstable_count"]
     unstable = rods & (count > 0)
     is_unknown = rods & (count < 0)
@@ -207,7 +203,7 @@ def _mode_lines(view: ResultView, rods: np.ndarray) -> Lines:
 
 
 def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies of cycles on branches, []). rods: mask of the points."""
+    """Returns (lines about loads and frequencies of cycles on branches, [])."""
     loads = view.variables[f"branch_{view.load_kind}"][rods]
     if not np.isfinite(loads).any():
         return ["has no branch of cycles from a Hopf point in the range searched"], []
@@ -217,7 +213,7 @@ def _branch_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
 
 
 def _row_lines(view: ResultView, rods: np.ndarray) -> tuple[Lines, Lines]:
-    """Returns (lines about loads and frequencies at the first Hopf points, []). rods: mask of the rows."""
+    """Returns (lines about loads and frequencies at the first Hopf points, [])."""
     v = view.variables
     scale = np.broadcast_to(v[SCALE_NAME[view.load_kind]], rods.shape)[rods]
     forces, frequency = _at_first_hopf(view, rods, "crossing_at")

@@ -54,8 +54,7 @@ def quantity_words(name: str) -> str:
 def printing_unit(view: ResultView, si: str, largest: float) -> tuple[float, str]:
     """Returns (factor, unit): unit for printing numbers given in the SI unit `si`, and the factor that
     converts the numbers to this unit. The unit is typed by the user, else, for energies, powers and short
-    times, it has a prefix suitable for numbers up to `largest`, else it is `si`.
-    """
+    times, it has a prefix suitable for numbers up to `largest`, else it is `si`."""
     unit = next((view.typed_units[n] for n in TYPED_UNIT_SOURCES.get(si, ()) if n in view.typed_units), si)
     if unit != si:
         return value_in_unit(1.0, unit, si), unit
@@ -73,8 +72,8 @@ def range_in_unit(
 ) -> str:
     """Range of `values`, in the SI unit `si`, as text in the unit of `printing_unit`.
 
-    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits. max_digits:
-    largest number of digits."""
+    errors: absolute errors, of the shape of the values, or 0, which limit the number of digits.
+    """
     factor, unit = printing_unit(view, si, _largest_absolute(values))
     return f"{span_text(factor * values, np.broadcast_to(factor * errors, values.shape), max_digits)} {unit}"
 
@@ -93,8 +92,7 @@ def given_columns(view: ResultView) -> dict[str, np.ndarray]:
 
 def region_of_arms(view: ResultView, mask: np.ndarray) -> str:
     """Ranges of an arm's quantities and of the taper over the points in `mask`, (...,), as text; empty if all
-    points of the file have the same arm.
-    """
+    points of the file have the same arm."""
     flat_mask = mask.ravel()
     range_texts = [
         quantity_range(view, name, column, flat_mask) for name, column in given_columns(view).items()
@@ -108,9 +106,8 @@ def region_of_arms(view: ResultView, mask: np.ndarray) -> str:
 
 
 def quantity_range(view: ResultView, name: str, column: np.ndarray, mask: np.ndarray) -> str:
-    """Range of the quantity `name` over the points in the mask `mask`, as text. column: values at all
-    points, (points,). Empty for the quantity "drag" if the chosen points include all drags.
-    """
+    """Range of the quantity `name` over the points in the mask `mask`, as text. column: values at all points,
+    (points,). Empty for the quantity "drag" if the chosen points include all drags."""
     values = column[mask]
     if name == "drag":
         names = [DRAG_NAMES[int(index)] for index in np.unique(values)]
@@ -163,10 +160,8 @@ def arm_lines(view: ResultView, computed: np.ndarray) -> list[str]:
 
 
 def _numbers_text(values: np.ndarray, errors: np.ndarray) -> str:
-    """Values as text: a few values one by one, more values as a range.
-
-    errors: absolute errors, of the shape of the values, which limit the number of digits.
-    """
+    """Values as text: a few values one by one, more values as a range. errors: absolute errors, of the shape
+    of the values, which limit the number of digits."""
     is_finite = np.isfinite(values)
     finite = values[is_finite]
     finite_errors = errors[is_finite]
@@ -183,9 +178,7 @@ def wrapped_lines(text: str) -> list[str]:
 
 def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.ndarray:
     """Absolute errors of the variable `si_name`, in SI units, from the errors of the dimensionless variable
-    `name`; 0 where `name` is 0 or infinite. v: variables of the file. The errors have the shape of the two
-    variables.
-    """
+    `name`; 0 where `name` is 0 or infinite. The errors have the shape of the two variables."""
     is_nonzero = np.isfinite(v[name]) & (v[name] != 0)
     scale = np.divide(v[si_name], v[name], out=np.zeros_like(v[si_name]), where=is_nonzero)
     return np.asarray(np.abs(scale) * absolute_errors(v, name))
@@ -193,16 +186,14 @@ def errors_in_si(v: Mapping[str, np.ndarray], name: str, si_name: str) -> np.nda
 
 def load_range_text(view: ResultView, F: np.ndarray, points: np.ndarray) -> str:
     """Range of the loads for the dimensionless forces F, (n,), as text. points: index of the point of each
-    force, (n,).
-    """
+    force, (n,)."""
     load = view.load_kind
     return range_in_unit(view, F * _values_at(view.quantities[SCALE_NAME[load]], points), UNITS[load][0])
 
 
 def crossings_of_arm(view: ResultView) -> list[str]:
     """One line for each threshold of the only arm in a file, with kind, load, meaning and frequency; an empty
-    list for a rod.
-    """
+    list for a rod."""
     if not view.quantities:
         return []
     v = view.variables
@@ -238,13 +229,11 @@ def thresholds_of_arm(
 
 def _in_hertz(view: ResultView, frequency: np.ndarray, points: np.ndarray) -> str:
     """Range of the frequencies in Hz as text. frequency: angular frequencies in rad/tau2, (n,). points: index
-    of the point of each frequency, (n,).
-    """
+    of the point of each frequency, (n,)."""
     return range_in_unit(view, frequency / (2 * np.pi * _values_at(view.quantities["tau2"], points)), HERTZ)
 
 
 def _values_at(values: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Values of a quantity at the points with the indices `points`. values: (all points,), or () for a
-    quantity with the same value at all points.
-    """
+    quantity with the same value at all points."""
     return values[points] if values.ndim else values

@@ -1,6 +1,5 @@
 """Loads of arms in words: flutter as a force at the tip, the arms with extreme flutter loads, and the loads
-that compress an arm beyond the limit of the model.
-"""
+that compress an arm beyond the limit of the model."""
 
 import numpy as np
 
@@ -35,7 +34,7 @@ def flutter_force_line(view: ResultView, rods: np.ndarray) -> list[str]:
 
 def extreme_arms_text(view: ResultView, rods: np.ndarray, loads: np.ndarray, smallest: str) -> str:
     """The arms with the smallest and with the largest load as text; empty for fewer than two loads. loads:
-    loads of the points in the mask `rods`, (n,). smallest: words for the smallest load."""
+    loads of the points in the mask `rods`, (n,)."""
     if np.isfinite(loads).sum() < 2:
         return ""
     indices = np.flatnonzero(rods)

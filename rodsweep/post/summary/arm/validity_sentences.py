@@ -44,9 +44,8 @@ def validity_caveat(variables: Mapping[str, np.ndarray]) -> str:
 
 def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", noun: str = "point") -> str:
     """Sentence on the validity of the model at n points; if the model is not valid everywhere, with the
-    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. condition: conditional clause.
-    noun: "point", or "row" for rows of a phase diagram.
-    """
+    largest neglected effect. validity: VALIDITY_VARIABLES by name, (n,) each. noun: "point", or "row" for
+    rows of a phase diagram."""
     validities, effects, excesses = (validity[variable.name] for variable in VALIDITY_VARIABLES)
     is_unknown = validities == VALIDITY_NOT_KNOWN
     preposition = "on" if noun == "row" else "at"
@@ -54,11 +53,8 @@ def validity_sentence(validity: Mapping[str, np.ndarray], condition: str = "", n
     everywhere = f" {preposition} all {counted(count, noun)}" if count > 1 else ""
     if is_unknown.all():
         return f"whether the model applies is not known{everywhere}{condition}: {MISSED_MOTION}"
-    rest = (
-        f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
-        if is_unknown.any()
-        else ""
-    )
+    unknown = f"; not known {preposition} {count_of_total(int(is_unknown.sum()), count, noun)}"
+    rest = unknown if is_unknown.any() else ""
     worst_validity = Validity(int(validities.max()))
     is_affected = validities == worst_validity
     somewhere = f" {preposition} {count_of_total(int(is_affected.sum()), count, noun)}"

@@ -47,12 +47,9 @@ class StoredPointMap:
 
     def __call__(self, index: Indices) -> Indices:
         """New flat indices of the points with the stored flat indices `index`, (n,); -1 for a point that is
-        computed again.
-        """
-        places = [
-            positions[i]
-            for positions, i in zip(self.axis_positions, np.unravel_index(index, self.shape), strict=True)
-        ]
+        computed again."""
+        old_places = np.unravel_index(index, self.shape)
+        places = [positions[i] for positions, i in zip(self.axis_positions, old_places, strict=True)]
         is_kept = np.min(places, axis=0) >= 0
         new_index = np.ravel_multi_index([np.maximum(positions, 0) for positions in places], self.new_shape)
         return np.where(is_kept, new_index, -1)
@@ -88,10 +85,8 @@ class Extension:
                 yield self._converted(records[is_kept], index[is_kept])
 
     def _converted(self, records: np.ndarray, index: Indices) -> np.ndarray:
-        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,).
-
-        Values that the old layout lacks are fill values.
-        """
+        """Stored records converted to the new layout, (n,), at new flat indices `index`, (n,). Values that
+        the old layout lacks are fill values."""
         converted = np.empty(len(records), self.new_layout.record_dtype)
         converted["index"] = index
         for variable in self.new_layout.variables:
@@ -123,10 +118,8 @@ def extension_of(header: ResultHeader, points: Points, plan: FilePlan) -> Extens
         else:
             _refuse_difference(header, config_difference(value, new_value, f"parameters.{key}"))
     _refuse_difference(header, config_difference(in_file.get("arm"), requested.get("arm"), "parameters.arm"))
-    handled = {"task", "parameters", "arm", task, "together"}
-    stored, new_rest = (
-        {k: v for k, v in section.items() if k not in handled} for section in (in_file, requested)
-    )
+    others = {*in_file, *requested} - {"task", "parameters", "arm", task, "together"}
+    stored, new_rest = ({k: v for k, v in each.items() if k in others} for each in (in_file, requested))
     _refuse_difference(header, config_difference(stored, new_rest))
     longer = []
     for name, value in in_file[task].items():
@@ -151,63 +144,48 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
 
 
 def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
-    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
-    point."""
+    """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
-        kinds = [
-            f"a grid of {enumeration(tuple(p.axes), 'and')}"
-            if p.axes
-            else f"a list of {enumeration(p.names, 'and')}"
-            for p in (old, new_points)
-        ]
-        _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))
+        words = ("a grid of" if p.axes else "a list of" for p in (old, new_points))
+        names = (enumeration(tuple(p.axes) or p.names, "and") for p in (old, new_points))
+        old_kind, new_kind = map(" ".join, zip(words, names, strict=True))
+        _refuse_difference(header, config_difference(old_kind, new_kind, "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
-    positions = [
-        _positions_on_axis(header, name, axis, new_points.axes[name]) for name, axis in old.axes.items()
-    ]
-    if plan.chains:
-        axis = plan.chains.axis
-        positions[axis] = _positions_before_first_change(
-            positions[axis], new_points.shape[axis], plan.chains.is_upward
-        )
+    positions = [_positions_on_axis(header, n, values, new_points.axes[n]) for n, values in old.axes.items()]
+    if chains := plan.chains:
+        count = new_points.shape[chains.axis]
+        kept = _positions_before_first_change(positions[chains.axis], count, chains.is_upward)
+        positions[chains.axis] = kept
     if plan.groups:
         axis = plan.groups.axis
         old_groups = groups_along_longest_axis(old.shape, old.varying_parameters)
-        is_unchanged = _is_stretch_unchanged(positions[axis], new_points.shape[axis])
-        positions[axis] = np.where(
-            is_unchanged & (old_groups is not None and old_groups.axis == axis), positions[axis], -1
-        )
+        is_same_axis = old_groups is not None and old_groups.axis == axis
+        is_kept = is_same_axis & _is_stretch_unchanged(positions[axis], new_points.shape[axis])
+        positions[axis] = np.where(is_kept, positions[axis], -1)
     return StoredPointMap(old.shape, new_points.shape, tuple(positions))
 
 
 def _positions_on_axis(header: ResultHeader, name: str, old: Array, new: Array) -> Indices:
     """Position of every old value, (n,), on the new axis, (m,); -1 where the values differ by rounding.
-
-    Raises InputError for an old value that is not on the new axis. name: name of the axis.
-    """
+    Raises InputError for an old value that is not on the new axis."""
     above = np.searchsorted(new, old).clip(max=len(new) - 1)
     below = (above - 1).clip(min=0)
     with np.errstate(invalid="ignore"):
         nearest_indices = np.where(np.abs(new[below] - old) < np.abs(new[above] - old), below, above)
         distance = np.abs(new[nearest_indices] - old)
-        is_equal = (new[nearest_indices] == old) | (
-            np.isfinite(distance) & (distance <= ROUNDING_TOLERANCE * np.abs(old))
-        )
-    if not is_equal.all():
-        _refuse_difference(
-            header, f"parameters.{name} = {old[~is_equal][0]:.15g} is in the file and not in the config"
-        )
-    return np.where(new[nearest_indices] == old, nearest_indices, -1).astype(np.int64)
+        is_rounded = np.isfinite(distance) & (distance <= ROUNDING_TOLERANCE * np.abs(old))
+    is_equal = new[nearest_indices] == old
+    if not (is_equal | is_rounded).all():
+        value = old[~(is_equal | is_rounded)][0]
+        _refuse_difference(header, f"parameters.{name} = {value:.15g} is in the file and not in the config")
+    return np.where(is_equal, nearest_indices, -1).astype(np.int64)
 
 
 def _positions_before_first_change(positions: Indices, count: int, upward: bool) -> Indices:
-    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position
-    of the chain on.
-
-    count: number of values on the new axis. upward: direction of the chains.
-    """
+    """Positions `positions` of the values along a chain, (n,), with -1 from the first changed position of the
+    chain on. count: number of values on the new axis. upward: direction of the chains."""
     forward_positions = positions if upward else np.where(positions < 0, -1, count - 1 - positions)[::-1]
     is_kept = np.logical_and.accumulate(forward_positions == np.arange(len(forward_positions)))
     return np.where(is_kept if upward else is_kept[::-1], positions, -1)
@@ -215,13 +193,10 @@ def _positions_before_first_change(positions: Indices, count: int, upward: bool)
 
 def _is_stretch_unchanged(positions: Indices, count: int) -> NDArray[np.bool_]:
     """Whether the group of each old value, (n,), is unchanged on the new axis. positions: new position of
-    each old value, (n,). count: number of values on the new axis.
-    """
+    each old value, (n,). count: number of values on the new axis."""
     indices = np.arange(len(positions))
-    stretch_starts = indices // GROUP_POINTS * GROUP_POINTS
-    same_length = np.minimum(stretch_starts + GROUP_POINTS, len(positions)) == np.minimum(
-        stretch_starts + GROUP_POINTS, count
-    )
+    stretch_ends = (indices // GROUP_POINTS + 1) * GROUP_POINTS
+    same_length = np.minimum(stretch_ends, len(positions)) == np.minimum(stretch_ends, count)
     has_moved = np.logical_or.reduceat(positions != indices, np.arange(0, len(positions), GROUP_POINTS))
     return same_length & ~has_moved[indices // GROUP_POINTS]
 

@@ -39,22 +39,16 @@ def fingerprint_of(config: dict[str, Any], columns: Sequence[Array]) -> str:
 
 def config_change_text(stored: dict[str, Any], given: dict[str, Any]) -> str:
     """Text on the difference of two resolved configs with different fingerprints. stored: config of the file.
-    given: config of the run.
-    """
+    given: config of the run."""
     if stored["task"] != given["task"]:
         return config_difference(stored["task"], given["task"], "task")
     configs = config_from_resolved(stored), config_from_resolved(given)
     axes = [config.parameters.axes for config in configs]
     common = axes[0].keys() & axes[1].keys()
     equal = {name for name in common if np.array_equal(axes[0][name].array(), axes[1][name].array())}
-    written = [
-        {
-            name: value
-            for name, value in config["parameters"].items()
-            if name not in equal and name != "points"
-        }
-        for config in (stored, given)
-    ]
+    omitted = {*equal, "points"}
+    sections = (config["parameters"] for config in (stored, given))
+    written = [{n: value for n, value in each.items() if n not in omitted} for each in sections]
     kinds = [_point_set_kind(config.parameters) for config in configs]
     return (
         config_difference(kinds[0], kinds[1], "parameters")
@@ -95,9 +89,7 @@ def config_difference(
 
 
 def _list_difference(stored: list[Any], given: list[Any], origins: tuple[str, str]) -> str:
-    """Difference of two lists that are too long to show: their lengths, and the first pair that differs.
-    origins: names of the origins of `stored` and `given`.
-    """
+    """Difference of two lists that are too long to show: their lengths, and the first pair that differs."""
     sizes = f"{len(stored)} values in {origins[0]} and {len(given)} in {origins[1]}"
     pairs = enumerate(zip_longest(stored, given), 1)
     number, values = next((i, pair) for i, pair in pairs if pair[0] != pair[1])

@@ -66,10 +66,8 @@ class JoinedFile:
 
     def _compare(self, path: Path, records: np.ndarray, owner: np.ndarray, number: int) -> None:
         """Raises InputError if records, (n,), of the source `number` differ from the values already stored in
-        the file for the same points.
-
-        Rounding errors are allowed. owner: number of the source of each stored point, (points,).
-        """
+        the file for the same points. Rounding errors are allowed. owner: number of the source of each stored
+        point, (points,)."""
         if not len(records):
             return
         stored_records = records_at(path, records["index"], self.plan.layout)
@@ -87,12 +85,9 @@ class JoinedFile:
                     raise InputError(f"{paths} disagree about the point {text}: the values of {name} differ")
 
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
-        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR.
-
-        Always True for error estimates and values that are not floating-point; always False for `status`, and
-        without groups if one BLAS kernel computed all points. a, b: the values. sources: headers
-        of their files.
-        """
+        """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR. Always True
+        for error estimates and values that are not floating-point; always False for `status`, and without
+        groups if one BLAS kernel computed all points. a, b: the values. sources: headers of their files."""
         kernels = {kernel for source in sources for kernel in blas_kernels_in(source.attributes)}
         if (len(kernels) < 2 and not self.plan.groups) or name == "status":
             return False
@@ -129,10 +124,7 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
             f"{first.path} is the file of an arm, and such files are merged only as shards of a single "
             "config; run --extend adds points to the file"
         )
-    if grids[0].is_grid:
-        points, point_maps = _joined_grid(grids)
-    else:
-        points, point_maps = _joined_list(grids)
+    points, point_maps = _joined_grid(grids) if grids[0].is_grid else _joined_list(grids)
     config = _joined_config(first, settings, points)
     plan = planner(config, points)
     _refuse_broken_chains(sources, grids, plan)
@@ -140,11 +132,9 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
 
 
 def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
-    """Returns (joined grid, map from each grid to the joined grid).
-
-    The axes of the joined grid have the values of all grids. Raises InputError if a point of the joined grid
-    is in no grid, or if values differ only by rounding.
-    """
+    """Returns (joined grid, map from each grid to the joined grid). The axes of the joined grid have the
+    values of all grids. Raises InputError if a point of the joined grid is in no grid, or if values differ
+    only by rounding."""
     axes = []
     for name in grids[0].names:
         axis = np.unique(np.concatenate([grid.columns_by_name[name] for grid in grids]))
@@ -173,8 +163,7 @@ def _joined_grid(grids: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]
 
 def _joined_list(lists: Sequence[Points]) -> tuple[Points, list[StoredPointMap]]:
     """Returns (joined list, map from each list to the joined list). The joined list has the points of all
-    lists without repetition.
-    """
+    lists without repetition."""
     numbers: dict[bytes, int] = {}
     rows = [np.column_stack(points.columns) + 0.0 for points in lists]
     maps = [np.array([numbers.setdefault(row.tobytes(), len(numbers)) for row in table]) for table in rows]
@@ -218,7 +207,7 @@ def _axis_from_values(own: Axis, values: Array) -> Axis:
 
 def _refuse_broken_chains(sources: Sequence[ResultHeader], grids: Sequence[Points], plan: FilePlan) -> None:
     """Raises InputError if the points of a chain of the joined file would come from several files. sources,
-    grids: source files and their grids. plan: plan of the joined file."""
+    grids: source files and their grids."""
     if not plan.chains:
         return
     name = plan.points.names[plan.chains.axis]
@@ -242,7 +231,5 @@ def _with_attributes(plan: FilePlan, header: ResultHeader, config: Config) -> Fi
         described = file["status"].attrs
         pairs = zip(described["flag_values"], str(described["flag_meanings"]).split(), strict=True)
         flags = tuple((int(value), word) for value, word in pairs if value != MISSING_STATUS)
-    kept_attributes = {
-        name: value for name, value in header.attributes.items() if name not in NOT_INHERITED_ATTRIBUTES
-    }
-    return replace(plan, attributes=kept_attributes | {"config": text}, flags=flags)
+    kept = {n: value for n, value in header.attributes.items() if n not in NOT_INHERITED_ATTRIBUTES}
+    return replace(plan, attributes=kept | {"config": text}, flags=flags)

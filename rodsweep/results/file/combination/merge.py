@@ -49,9 +49,8 @@ def merge(output: Path, paths: Sequence[Path], planner: FilePlanMaker) -> MergeR
     try:
         with disk_refusals(output, lambda: "; the shards are untouched"):
             if output.exists():  # the file may have appeared while another run held the lock
-                sources = _read_headers(
-                    [output, *(path for path in paths if not os.path.samefile(output, path))]
-                )
+                others = [path for path in paths if not os.path.samefile(output, path)]
+                sources = _read_headers([output, *others])
             if all(_has_same_fingerprint(sources[0], source) for source in sources):
                 return _merge(replacement, sources, planner)
             return _write_joined_file(replacement, joined_file_of(sources, planner))
@@ -83,8 +82,7 @@ def _write_joined_file(replacement: FileReplacement, joined: JoinedFile) -> Merg
 
 def _finish_merge(copy: Path, plan: FilePlan, used: Sequence[ResultHeader]) -> MergeResult:
     """Writes the provenance of the points into the merged file, and finishes the file if no point is missing;
-    returns the outcome of the merge. copy: path of the merged file. used: sources of the stored points.
-    """
+    returns the outcome of the merge. used: sources of the stored points."""
     missing_indices = missing_ranges(copy)
     finished = not missing_indices and not plan.layout.needs_all_points
     history = merged_history([source.attributes for source in used])

@@ -26,33 +26,28 @@ BRANCH_LOOKS = tuple(zip(style.LINE_COLOURS, ("o", "s", "^", "D", "v", "P"), str
 MIN_ARROW_POINTS = 4
 """Only a line with at least this number of points has an arrow in the direction of continuation."""
 UNSTABLE_LOOK: dict[str, Any] = {"mfc": "white", "ls": "", "ms": 5.0, "zorder": 3}
-"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the
-line."""
+"""Matplotlib style of the open markers of unstable cycles, which are drawn over the markers of the line."""
 
 
 def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tuple[Figure, str]:
     """Returns (figure, description). The figure shows (x_max - x_min)/2 and y_max of the tip, period and
     power against a parameter.
 
-    A straight arm has amplitude 0 and no period. is_narrow: whether the panels are stacked. Raises InputError
-    for too many lines.
+    A straight arm has amplitude 0 and no period. Raises InputError for too many lines.
     """
     first_view = views[0]
     name = abscissa_parameter(first_view)
     units = units_of_files(views, [np.arange(view.variables["status"].size) for view in views])
     pairs = zip(views, units, strict=True)
-    branches = [
-        branch for view, units_of_view in pairs for branch in amplitude_branches(view, name, units_of_view)
-    ]
+    branches = [branch for view, own_units in pairs for branch in amplitude_branches(view, name, own_units)]
     if len(branches) > len(BRANCH_LOOKS):
         raise InputError(
             f"{first_view.path} gives {len(branches)} lines over {name}, and a figure has room for "
             f"{len(BRANCH_LOOKS)}: choose lines with --at, such as --at k1=150, or draw a full grid over two "
             "parameters as maps (--what maps)"
         )
-    style.require_content(
-        first_view, any(np.isfinite(branch.amplitude_y).any() for branch in branches), "amplitude"
-    )
+    has_amplitude = any(np.isfinite(branch.amplitude_y).any() for branch in branches)
+    style.require_content(first_view, has_amplitude, "amplitude")
     figure = Figure(figsize=(4.4, 8.4) if is_narrow else (8.6, 5.6), layout="constrained")
     panels = figure.subplots(*((4, 1) if is_narrow else (2, 2)), sharex=True).T.ravel()
     common_text, branch_texts = _common_and_own_texts(branches, name)
@@ -61,11 +56,8 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     coloured = zip(branches, colours, strict=False)
     marks = [(point, colour) for branch, colour in coloured for point in branch.hopf]
     handles += mark_hopf_points(panels, marks)
-    handles += draw_square_root_laws(
-        panels[1],
-        [law for branch in branches for law in square_root_laws(branch.x, branch.amplitude_y, branch.hopf)],
-        units[0].names[0] * units[0].in_si,
-    )
+    laws = [law for each in branches for law in square_root_laws(each.x, each.amplitude_y, each.hopf)]
+    handles += draw_square_root_laws(panels[1], laws, units[0].names[0] * units[0].in_si)
     _label_axes(panels, name, units[0].panel_labels)
     for panel in panels:
         style.scale_axis(panel, "x", np.unique(branches[0].x))
@@ -82,9 +74,8 @@ def _draw_branches(
     texts: Sequence[str],
     direction_labels: dict[int, tuple[str, bool | None]],
 ) -> list[Line2D]:
-    """Draws all lines in all panels; returns legend entries. texts: legend entry of each line.
-    direction_labels: result of `_legend_entries_of_files`.
-    """
+    """Draws all lines in all panels; returns legend entries. direction_labels: result of
+    `_legend_entries_of_files`."""
     handles = []
     unknown_statuses = set[str]()
     for branch, text, (colour, marker) in zip(branches, texts, BRANCH_LOOKS, strict=False):
@@ -108,10 +99,8 @@ def _draw_branches(
 def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int, tuple[str, bool | None]]:
     """Returns {id(view): (legend entry, is_upward)}; the path is no key, because all Datasets of Python have
     the same path. is_upward: whether the parameter `name` increased during the continuation; None unless the
-    files differ in this direction.
-
-    Files with different directions of continuation are distinguished by direction, other files by name.
-    """
+    files differ in this direction. Files with different directions of continuation are distinguished by
+    direction, other files by name."""
     if len(views) == 1:
         return {id(views[0]): ("", None)}
     options = [view.config.get("limit_cycle", {}) for view in views]
@@ -122,48 +111,42 @@ def _legend_entries_of_files(views: Sequence[ResultView], name: str) -> dict[int
     directions = [chosen.get("direction", "up") for chosen in options]
     if not followed or len(set(directions)) < len(views):
         return {id(view): (style.escape_dollar_signs(view.path.stem), None) for view in views}
-    direction_texts = {"up": f"${style.SYMBOLS[name]}$ rising", "down": f"${style.SYMBOLS[name]}$ falling"}
-    return {
-        id(view): (direction_texts[direction], direction == "up")
-        for view, direction in zip(views, directions, strict=True)
+    entries = {
+        "up": (f"${style.SYMBOLS[name]}$ rising", True),
+        "down": (f"${style.SYMBOLS[name]}$ falling", False),
     }
+    return {id(view): entries[direction] for view, direction in zip(views, directions, strict=True)}
 
 
 def _show_direction(panels: Sequence[Axes], branch: AmplitudeSeries, upward: bool, colour: str) -> None:
     """Draws an arrow of the colour `colour` on a line, in each panel, in the direction of continuation.
-    upward: whether the parameter increased.
-    """
+    upward: whether the parameter increased."""
     arrow = {"arrowstyle": "-|>", "color": colour, "lw": 1.2, "mutation_scale": 14}
     for axes, values in zip(panels, branch.measures, strict=True):
         finite_indices = np.flatnonzero(np.isfinite(values))
         if len(finite_indices) < MIN_ARROW_POINTS:
             continue
-        ends = finite_indices[len(finite_indices) * 3 // 4 - 1], finite_indices[len(finite_indices) * 3 // 4]
-        start, end = ends if upward else ends[::-1]
-        head = branch.x[end], values[end]
-        tail = branch.x[start], values[start]
+        place = len(finite_indices) * 3 // 4
+        ends = finite_indices[place - 1], finite_indices[place]
+        tail, head = ((branch.x[i], values[i]) for i in (ends if upward else ends[::-1]))
         axes.annotate("", head, tail, arrowprops=arrow, zorder=4)
 
 
 def _common_and_own_texts(branches: Sequence[AmplitudeSeries], name: str) -> tuple[str, list[str]]:
     """Returns (text of the parameters that are equal for all lines, text of the other parameters of each
     line); for an arm, of the quantities in the units typed by the user. name: parameter on the horizontal
-    axis.
-    """
+    axis."""
     view = branches[0].view
     if branches[0].units.in_si and all(branch.view is view for branch in branches):
-        names = {
-            name,
-            *(quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name),
-        }
-        return shared_and_own_of_arms(view, [branch.first_number for branch in branches], names)
+        names = [quantity for quantity, changed_name in CHANGED_PARAMETER.items() if changed_name == name]
+        numbers = [branch.first_number for branch in branches]
+        return shared_and_own_of_arms(view, numbers, {name, *names})
     return shared_and_own_texts([branch.parameters for branch in branches])
 
 
 def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> None:
     """Sets limits and labels of the axes. The lower limit is below 0, so that straight arms are visible.
-    labels: labels of the vertical axes. name: parameter on the horizontal axis.
-    """
+    name: parameter on the horizontal axis."""
     for axes, label in zip(panels, labels, strict=True):
         if not np.isfinite(axes.dataLim.y1):
             axes.text(0.5, 0.5, "no cycle", color="0.5", ha="center", transform=axes.transAxes)
@@ -179,8 +162,7 @@ def _label_axes(panels: Sequence[Axes], name: str, labels: Sequence[str]) -> Non
 
 def _draw_branch(panels: Sequence[Axes], branch: AmplitudeSeries, keywords: dict[str, Any]) -> set[str]:
     """Draws a line in all panels, with open markers for unstable cycles; returns the statuses of points
-    without a known amplitude. keywords: keywords for matplotlib.
-    """
+    without a known amplitude."""
     unstable = branch.status_names == "unstable"
     unknown_statuses: set[str] = set()
     for axes, values in zip(panels, branch.measures, strict=True):

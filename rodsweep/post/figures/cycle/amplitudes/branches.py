@@ -48,8 +48,7 @@ class AmplitudeSeries:
 
     def with_gap_at_onset(self, values: Array) -> tuple[Array, Array]:
         """Returns (x, values) with NaN inserted between neighbouring points of which one is straight and one
-        is not, because a line between these points would suggest a slope.
-        """
+        is not, because a line between these points would suggest a slope."""
         straight = self.status_names == "straight"
         change = np.flatnonzero(straight[1:] != straight[:-1]) + 1
         return np.insert(self.x, change, np.nan), np.insert(values, change, np.nan)
@@ -57,8 +56,7 @@ class AmplitudeSeries:
 
 def abscissa_parameter(view: ResultView) -> str:
     """Name of the parameter on the horizontal axis: F, or the parameter with the most values if F is
-    constant. Raises InputError for a file with one point.
-    """
+    constant. Raises InputError for a file with one point."""
     sizes = {name: len(np.unique(column)) for name, column in view.point_columns.items()}
     name = "F" if sizes["F"] > 1 else max(sizes, key=sizes.__getitem__)
     if sizes[name] < 2:
@@ -68,8 +66,7 @@ def abscissa_parameter(view: ResultView) -> str:
 
 def amplitude_branches(view: ResultView, name: str, units: CycleUnits = PLAIN_UNITS) -> list[AmplitudeSeries]:
     """Curves of a file against the parameter `name`, one for each combination of the other parameters. units:
-    units of the drawn quantities.
-    """
+    units of the drawn quantities."""
     statuses = view.status_names
     v = view.variables
     straight = statuses == "straight"

@@ -63,8 +63,7 @@ def mark_hopf_points(panels: Sequence[Axes], marks: Sequence[tuple[LocatedThresh
 
 def draw_square_root_laws(axes: Axes, laws: Sequence[SquareRootLaw], unit: str = "") -> list[Line2D]:
     """Draws square-root laws as dashed curves; returns legend entries with formula and coefficients. unit:
-    unit of the amplitude; empty for amplitudes in L.
-    """
+    unit of the amplitude; empty for amplitudes in L."""
     handles = []
     for is_above in (True, False):
         chosen_laws = [law for law in laws if law.is_above == is_above]

@@ -53,19 +53,17 @@ def square_root_laws(F: Array, amplitude: Array, points: Sequence[LocatedThresho
     """Square-root laws that the amplitudes follow, at most one on each side of a Hopf point.
 
     F, amplitude: force and amplitude of n cycles, (n,) each, in any order; an amplitude is NaN or 0 if there
-    is no cycle. points: Hopf points.
+    is no cycle.
     """
     laws = (_law_on_side(F, amplitude, point, side) for point in points for side in (1, -1) if point.position)
     return [law for law in laws if law]
 
 
 def _law_on_side(F: Array, amplitude: Array, point: LocatedThreshold, side: int) -> SquareRootLaw | None:
-    """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law.
-
-    To leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this
-    ratio at distance 0 is extrapolated from the two nearest cycles. F, amplitude: force and amplitude of n
-    cycles, (n,) each, in any order; an amplitude is NaN or 0 if there is no cycle.
-    """
+    """Law above (side 1) or below (side -1) a Hopf point; None if the amplitudes do not follow a law. To
+    leading order amplitude^2/distance is linear in the distance from the Hopf point. The value of this ratio
+    at distance 0 is extrapolated from the two nearest cycles. F, amplitude: force and amplitude of n cycles,
+    (n,) each, in any order; an amplitude is NaN or 0 if there is no cycle."""
     distance = side * (F - point.position) / abs(point.position)
     # If two cycles exist at one F, only the smaller cycle can shrink to zero at the Hopf point.
     order = np.lexsort((np.where(amplitude > 0, amplitude, np.inf), distance))
