@@ -1,8 +1,8 @@
 """Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
 s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.stress_strain`, where S1 and S3 are called q1
-and q3: the stresses of a linear rod with the same strain, minus their values at rest; s2 = S2. At a node where the
-material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
+and q3: the stresses of a linear rod with the same strain, minus their values at rest; s2 = S2. At a node
+where the material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
