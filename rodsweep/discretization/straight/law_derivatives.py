@@ -1,7 +1,8 @@
 """Derivatives of the constitutive law s(S) at S = 0, the straight rod, at the nodes of a mesh.
 
-s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.stress_strain`; s2 = S2. At a node where the
-material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
+s1 = N(S1, S3) and s3 = M(S1, S3) of `rodsweep.model.material.stress_strain`, where S1 and S3 are called q1
+and q3: the stresses of a linear rod with the same strain, minus their values at rest; s2 = S2. At a node
+where the material jumps, N and M are the functions of the mean unknowns in `rodsweep.model.material.jump`.
 """
 
 from dataclasses import dataclass
@@ -128,9 +129,12 @@ DerivativeTensors = tuple[Array, Array, Array]
 
 
 def derivatives_by_mean_unknowns(law: Law, sides: Array) -> DerivativeTensors:
-    """Derivatives of N and M at rest with respect to the mean unknowns q1 and q3, at k jumps; sides: (k, 2,
-    7). The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
-    M(q1, q3) are the inverse of (N, M) -> (q1, q3)."""
+    """Derivatives of N and M at rest with respect to the weighted mean unknowns q1 and q3, at k jumps. sides:
+    material on both sides of each jump, (k, 2, 7), with the columns of `rodsweep.model.material.jump`.
+
+    The unknowns on both sides are functions of N and M, and so are the means q1 and q3. N(q1, q3) and
+    M(q1, q3) are the inverse of (N, M) -> (q1, q3).
+    """
     fractions = sides[..., 3:5]
     unknowns = inverse_function_derivatives(
         _derivatives_beside_jump(law, *np.moveaxis(sides[..., :3], -1, 0))

@@ -47,6 +47,8 @@ def refuse_wrong_choices(arm: "SlenderArm") -> None:
             f"drag = {arm.drag!r} is for sweeps over all estimates; for one arm choose one of "
             f"{', '.join(DRAG_NAMES)}; the report states the results for all estimates"
         )
+    if not isinstance(arm.drag, str):
+        raise InputError(f"drag = {arm.drag!r:.60} is not one name; choose one of {', '.join(DRAG_NAMES)}")
     if arm.drag not in DRAG_NAMES:
         raise InputError(f"drag = {arm.drag!r:.60} is not known; choose one of {', '.join(DRAG_NAMES)}")
     texts = (("law", arm.law, "linear or neo_hookean"), ("section", arm.section, "fixed or swelling"))

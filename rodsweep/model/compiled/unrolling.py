@@ -46,8 +46,9 @@ class UnrolledOverAlgebra(Generic[P, R]):
         return self._compiled[g]
 
     def unrolled_for(self, g: Algebra) -> Callable[P, R]:
-        """The function unrolled for the algebra `g`, not compiled. All called functions that have this
-        decorator too are unrolled and compiled."""
+        """The function as Python code whose loops over the Lie algebra `g` are unrolled. The function itself
+        is not compiled, but the functions with this decorator that it calls are unrolled and compiled.
+        """
         tree = ast.parse(dedent(inspect.getsource(self.function)))
         ast.increment_lineno(tree, self.function.__code__.co_firstlineno - 1)
         definition: Any = tree.body[0]

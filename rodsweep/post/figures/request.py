@@ -149,8 +149,8 @@ class FigureRequest:
             raise InputError(f"--output {self.output}: the name must end in {', '.join(suffixes)}")
         if self.is_protected:
             raise InputError(
-                f"--output {self.output} is one of the results or no regular file, so a figure does not "
-                "overwrite it; choose another name"
+                f"--output {self.output} is one of the results of this figure, or not a regular file, so it "
+                "is not overwritten; choose another name"
             )
 
     def write(self, figure: Figure, caption: str, min_aspect: float = MIN_ASPECT) -> str:

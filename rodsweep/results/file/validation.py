@@ -169,7 +169,10 @@ def require_variables_of_layout(file: h5py.File, layout: Layout) -> None:
         if not isinstance(data, h5py.Dataset) or data.shape != extents or data.dtype != kind:
             raise ValueError(f"its variable {name} does not fit its config")
         if data.id.get_offset() is None or data.chunks or not data.id.get_storage_size():
-            raise ValueError(f"its variable {name} is not stored in one contiguous piece")
+            raise ValueError(
+                f"its variable {name} is chunked, compressed or without data, as after a rewrite by another "
+                "program"
+            )
 
 
 def is_rodsweep_file(path: Path) -> bool:

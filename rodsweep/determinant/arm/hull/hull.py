@@ -102,9 +102,11 @@ def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
 
 
 def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
-    """Constants (a, c) by `averaged_regions` for each arm, (n, trials, 2); inf for an arm without c2 > 0 and
-    g > 0 everywhere. F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,).
-    coefficients: (6, n, pieces, points)."""
+    """Constants (a, c) of the region of all eigenvalues for each arm and each trial weight of
+    `averaged_regions`, (n, trials, 2); inf for an arm without c2 > 0 and g > 0 everywhere. F: forces, (n,).
+    lengths: lengths of the intervals between breaks, (pieces,). coefficients: `LocalCoefficients` at the
+    sampled points, (6, n, pieces, points).
+    """
     interval_starts = np.cumsum(lengths) - lengths
     x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
     u = (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()

@@ -96,8 +96,8 @@ class BorderedMatrix:
         return self.solve(border, right_side, columns[:, :, 0], 1.0)
 
     def branch_tangent(self, border: Array) -> Array:
-        """Tangent of the branch, (N + 1,), of unit arc length, whose components (see `scale.components`) make
-        an acute angle with `border`, (3,)."""
+        """Tangent of the branch, (N + 1,). Its deflection, logarithm of the period, and parameter (see
+        `scale.components`) have the norm 1 and make an acute angle with `border`, (3,)."""
         # The null vector of all rows except the last, normalised by the border; residuals are not needed.
         right_side = np.append(np.zeros(len(self._right_sides)), 1.0)
         change = self.solve(border, right_side, self._stage_columns[:, :, 1], 0.0)

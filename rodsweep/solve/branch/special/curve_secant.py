@@ -90,7 +90,9 @@ class SecantSearch:
         # Without derivatives any small step suffices: the two cycles then give derivatives.
         step = -current.test_value / rates.test_slope if rates else CURVE_SECANT_SETTINGS.first_secant_step
         if not abs(step) <= CURVE_SECANT_SETTINGS.max_secant_step:
-            raise Unsolvable("the secant step to a point of the curve is too large")
+            raise Unsolvable(
+                "the secant step to a point of the curve is too large: its start is too far away"
+            )
         if rates:
             error = self._error_after(step, span)
             if self._is_accurate_enough(error):

@@ -46,7 +46,8 @@ variable p, sizes of their entries); the first two arrays: (elements, terms, PAD
 @compiled
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
-    rounding error is the error of the products at the tip only."""
+    error estimate contains only the rounding errors of the products of propagators; it is no bound of the
+    rounding error of D, see `rounding_error_by_chain`."""
     value = path_value_by_chain(w, level[0], level[1], level[2])
     return newton_step(w, value, value.rounding_error)
 
