@@ -150,18 +150,22 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
         )
 
 
+def kind_of_points(points: Points) -> str:
+    """Kind and parameters of points, such as "a grid of F and k1", for a message."""
+    return (
+        f"a grid of {enumeration(tuple(points.axes))}"
+        if points.axes
+        else f"a list of {enumeration(points.names)}"
+    )
+
+
 def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a
     point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
-        kinds = [
-            f"a grid of {enumeration(tuple(p.axes), 'and')}"
-            if p.axes
-            else f"a list of {enumeration(p.names, 'and')}"
-            for p in (old, new_points)
-        ]
-        _refuse_difference(header, config_difference(kinds[0], kinds[1], "parameters"))
+        kinds = kind_of_points(old), kind_of_points(new_points)
+        _refuse_difference(header, config_difference(*kinds, "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
     positions = [
