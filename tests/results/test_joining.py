@@ -163,7 +163,7 @@ def test_points_that_no_file_has_computed_are_missing(command):
         (CHAINS, [[], [("60]", "70]")]], "differs from the other files in F"),
         (
             SPECTRA,
-            [[], [("  k2:", "  taper: 0.5\n  k2:")]],
+            [[], [("  k2:", "  taper: 0.9\n  k2:")]],
             "one has a grid of F, k1, k2 and gamma3, the other a grid of F, k1, k2, gamma3 and taper",
         ),
     ],
