@@ -161,6 +161,11 @@ def test_points_that_no_file_has_computed_are_missing(command):
         ),
         (SPECTRA, [[(RANGE, "10")], [(RANGE, "[10.000000000000002]")]], "which differ by rounding only"),
         (CHAINS, [[], [("60]", "70]")]], "differs from the other files in F"),
+        (
+            SPECTRA,
+            [[], [("  k2:", "  taper: 0.9\n  k2:")]],
+            "one has a grid of F, k1, k2 and gamma3, the other a grid of F, k1, k2, gamma3 and taper",
+        ),
     ],
 )
 def test_files_that_do_not_fit_are_refused_in_a_sentence(command, text, parts, sentence):

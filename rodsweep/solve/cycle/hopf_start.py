@@ -132,7 +132,8 @@ def orbit_from_hopf(form: StressForm, hopf: HopfPointBelow, workspace: NewtonWor
     if not normal.amplitude_coefficient > 0:
         reason = "starts towards smaller forces: follow it with the task `branch`"
         raise Unsolvable(f"the branch from the Hopf point at F = {hopf.F:g} {reason}")
-    if hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F:
+    is_near = hopf.F * (1 + HOPF_START_SETTINGS.max_direct_force_distance) >= rod.F
+    if is_near and normal.squared_y_and_frequency(rod.F)[0] <= HOPF_START_SETTINGS.max_direct_y**2:
         return orbit_by_normal_form(normal, replace(form, mesh=normal.form.mesh))
     coarse_form = replace(form, mesh=coarse_mesh_along_branch(rod))
     for distance in HOPF_START_SETTINGS.start_force_distances:

@@ -33,16 +33,20 @@ class HopfStartSettings:
     would have an error of 3 percent at a drag of 1e-4 and of 100 times its value at 1e-6."""
     finest_normal_form_accuracy: float = 1e-15
     """Smallest relative accuracy for which the mesh of the normal form is chosen: rounding error."""
-    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006)
+    start_force_distances: tuple[float, ...] = (0.3, 0.12, 0.03, 0.006, 1e-3, 2e-4)
     """Relative distances of the force above the Hopf point at which Newton's method starts from the normal
     form's orbit, tried in this order until Newton's method succeeds. For most rods the amplitude of the
-    normal form has an error of 25 percent at the first distance, of 10 percent at the second."""
+    normal form has an error of 25 percent at the first distance, of 10 percent at the second. The last two
+    are for rods of small axial drag, whose cycles may grow ten times as fast."""
     squared_amplitude_ratios: tuple[float, float] = 0.3, 3.0
     """Smallest and largest allowed ratio of the squared largest y of the solved orbit to the squared largest
     y of the normal form."""
     max_direct_force_distance: float = 1e-2
     """Up to this relative distance of the force above the Hopf point, Newton's method starts from the normal
     form's orbit at the given force itself, with an error of its amplitude of 1 percent for most rods."""
+    max_direct_y: float = 0.7
+    """If the largest y of the normal form's orbit at the given force, in L, is larger, Newton's method does
+    not start there: the largest y of cycles of rods of small axial drag is then below half of it."""
     coarse_intervals: int = 8
     """Number of time intervals of the coarse mesh, over half a period."""
     coarse_stages: int = 3

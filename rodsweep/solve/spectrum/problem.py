@@ -51,6 +51,12 @@ class TransverseProblem(ABC):
     additional_eigenvalues: int = 0
     """Number of eigenvalues requested from the first mesh besides the modes, for a proof without a count."""
 
+    def move_shift_right(self) -> None:
+        """Moves the shift farther to the right, where the eigenvalues nearest to it are the rightmost. For a
+        uniform rod, whose shift lies to the right of all amplified waves, it stays.
+        """
+        return
+
     @abstractmethod
     def mesh_for(self, modes: int, accuracy: float) -> Any:
         """The mesh expected to give `modes` leading eigenvalues with relative error below `accuracy`."""
@@ -128,6 +134,7 @@ class ArmProblem(TransverseProblem):
     def __init__(self, rod: Rod, to_prove: int = 0):
         self.rod = rod
         self._modes_to_prove = to_prove
+        self._has_proof_failed = False
         self._hull = hull_of(rod)
         self._determinant = arm_determinant(rod)
         self.has_bound = isfinite(self._hull.a)
@@ -137,11 +144,18 @@ class ArmProblem(TransverseProblem):
         growth, _ = most_amplified_local_waves(rod)
         self.shift = KRYLOV_SETTINGS.shift_over_growth_rate * float(growth.max())
 
+    def move_shift_right(self) -> None:
+        """Doubles the shift, at most to the right end of the hull: local waves at a thin tip, between the
+        sample points, may grow faster than the initial shift."""
+        right_end = self._hull.a**2 / (4 * (1 - self._hull.c))
+        self.shift = max(self.shift, min(2 * self.shift, right_end))
+
     def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
         return arm_mesh(self.rod, modes, accuracy)
 
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
-        """Roots of D refined from `mesh_eigenvalues`, (n,); for a proof, only from those that it needs."""
+        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails, only
+        from the eigenvalues that the proof needs."""
         needed_mask, largest_w = self._eigenvalues_for_proof(mesh_eigenvalues)
         return roots_of_arm(
             np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, largest_w
@@ -157,7 +171,8 @@ class ArmProblem(TransverseProblem):
         order = finite[np.lexsort((-mesh_eigenvalues.imag[finite], -mesh_eigenvalues.real[finite]))]
         line = min(float(mesh_eigenvalues[order[self._modes_to_prove - 1]].real), 0.0)
         number, size = cheapest_proof(line, self._hull, mesh_eigenvalues[order], self._modes_to_prove)
-        if not number:
+        # After a failed proof a count decides, which needs all eigenvalues right of its line.
+        if not number or self._has_proof_failed:
             return needed_mask, largest_w_of_count(line, self._determinant, self._hull)
         needed_mask[order[number:]] = False
         return needed_mask, size
@@ -171,7 +186,9 @@ class ArmProblem(TransverseProblem):
         return is_countable(self._determinant, self._hull)
 
     def prove_completeness(self, line: float, roots: Roots) -> tuple[bool, int]:
-        return prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
+        is_complete, evaluations = prove_complete(line, roots.w, roots.error, self._determinant, self._hull)
+        self._has_proof_failed |= not is_complete
+        return is_complete, evaluations
 
 
 def transverse_problem(rod: Rod, to_prove: int = 0) -> TransverseProblem:

@@ -143,14 +143,14 @@ class SpectrumSearch:
         return max(error, displacement / (self.request.accuracy if self.needs_vectors else allowed))
 
     def request_missing_eigenvalues(self, number: int, found_count: int) -> None:
-        """Requests more eigenvalues or a finer mesh, because a count gives `number` eigenvalues to the right
-        of the line, of which `found_count` were found."""
+        """Requests more eigenvalues or a finer mesh: `found_count` of `number` counted ones are found."""
         if number <= found_count:  # spurious eigenvalues, or a line within the errors
             self.mesh = self.problem.finer_mesh(self.mesh)
             return
         new_count = number + SEARCH_SETTINGS.spare_modes
         if new_count <= self.requested_count:  # missing eigenvalues are far from the shift or unresolved
             new_count = self.requested_count + number - found_count + SEARCH_SETTINGS.spare_modes
+            self.problem.move_shift_right()
             self.mesh = self.problem.finer_mesh(self.mesh)
         self.request_eigenvalues(new_count)
 

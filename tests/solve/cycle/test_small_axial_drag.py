@@ -117,3 +117,19 @@ def test_branches_start_at_hopf_points_and_have_their_folds(gamma1):
     assert found.status == BranchStatus.ok, found.message
     (fold,) = (p for p in found.curves[0].special_points if p.kind == SpecialKind.fold)
     assert fold.parameter_value == pytest.approx(FOLD, abs=2e-9 if gamma1 == 1e-6 else 2e-6)
+
+
+@pytest.mark.parametrize("distance", [0.01, 0.1])
+def test_a_fast_growing_branch_is_followed_from_its_hopf_point(distance):
+    """By the square-root law y would be 1.2 and 3.9 L: Newton's method diverged from such orbits."""
+    hopf = 16.01750598
+    rod = Rod(
+        F=hopf * (1 + distance),
+        k1=13659.3799413271,
+        k2=17.1484088792414,
+        gamma3=0.03176726705,
+        gamma1=0.0359586,
+    )
+    from_hopf, from_mode = (solve_cycle(rod, replace(REQUEST, start=start)) for start in ("hopf", "mode"))
+    assert from_hopf.status == from_mode.status == CycleStatus.cycle
+    assert from_hopf.measures.tip_y_max == pytest.approx(from_mode.measures.tip_y_max, rel=2e-5)

@@ -180,3 +180,18 @@ def test_two_rows_far_apart_are_the_same_arm_as_many_rows_on_their_line(factor):
     assert few.status == many.status == SpectrumStatus.ok
     apart = np.abs(few.eigenvalues - many.eigenvalues)
     assert (apart <= few.error_estimate + many.error_estimate).all()
+
+
+@pytest.mark.parametrize(
+    ("F", "taper", "modes"),
+    [(0.9, 100.0, 4), (0.3, 0.02, 4)],
+    ids=["more roots than a proof needs", "growth at a thin tip"],
+)
+def test_eigenvalues_right_of_the_line_of_a_count_are_found(F, taper, modes):
+    """Roots refined only as far as a proof needs, or a shift left of the spectrum, hid eigenvalues."""
+    rod = Rod(F=F, k1=1e4, k2=100.0, gamma3=1e-2, taper=taper)
+    found, dense = solve_spectrum(rod, SpectrumRequest(modes, 1e-10, certify=True)), eigenvalues(rod, 16)
+    assert (found.status, found.certified) == (SpectrumStatus.ok, True)
+    assert found.unstable_count == int((dense.real > 0).sum())
+    leading = dense[np.lexsort((-dense.imag, -dense.real))][:modes]
+    np.testing.assert_allclose(found.eigenvalues, leading, rtol=1e-5)

@@ -143,14 +143,21 @@ def _refuse_difference(header: ResultHeader, difference: str) -> None:
         )
 
 
+def kind_of_points(points: Points) -> str:
+    """Kind and parameters of points, such as "a grid of F and k1", for a message."""
+    return (
+        f"a grid of {enumeration(tuple(points.axes))}"
+        if points.axes
+        else f"a list of {enumeration(points.names)}"
+    )
+
+
 def _stored_point_map(header: ResultHeader, old: Points, plan: FilePlan) -> StoredPointMap:
     """Map from the stored points `old` to the points of the plan; InputError if the plan lacks a point."""
     new_points = plan.points
     if tuple(old.axes) != tuple(new_points.axes) or old.names != new_points.names:
-        words = ("a grid of" if p.axes else "a list of" for p in (old, new_points))
-        names = (enumeration(tuple(p.axes) or p.names, "and") for p in (old, new_points))
-        old_kind, new_kind = map(" ".join, zip(words, names, strict=True))
-        _refuse_difference(header, config_difference(old_kind, new_kind, "parameters"))
+        kinds = kind_of_points(old), kind_of_points(new_points)
+        _refuse_difference(header, config_difference(*kinds, "parameters"))
     if not old.axes:
         return StoredPointMap(old.shape, new_points.shape, (_positions_in_list(header, old, new_points),))
     positions = [_positions_on_axis(header, n, values, new_points.axes[n]) for n, values in old.axes.items()]

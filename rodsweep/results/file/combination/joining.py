@@ -25,7 +25,7 @@ from ..creation import FilePlan
 from ..points import points_of_file, records_at, stored_records, write_records
 from ..provenance import MAX_ATTRIBUTE_LENGTH, blas_kernels_in
 from ..validation import ResultHeader
-from .extension import ROUNDING_TOLERANCE, StoredPointMap
+from .extension import ROUNDING_TOLERANCE, StoredPointMap, kind_of_points
 from .identity import config_difference
 
 NOT_INHERITED_ATTRIBUTES = (
@@ -115,9 +115,10 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
         difference = config_difference(settings | {"together": None}, other, "", names)
         if difference:
             raise InputError(f"{header.path} was made from another config than {first.path} ({difference})")
-        if points.is_grid != grids[0].is_grid:
+        kinds = kind_of_points(grids[0]), kind_of_points(points)
+        if kinds[0] != kinds[1]:
             raise InputError(
-                f"{first.path} and {header.path} cannot be merged: one has a grid of points, the other a list"
+                f"{first.path} and {header.path} cannot be merged: one has {kinds[0]}, the other {kinds[1]}"
             )
     if "arm" in settings:
         raise InputError(
