@@ -13,6 +13,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
+from .curve_extrema import curve_extremum_values
 from .curve_variables import (
     boundary_curve_values,
     criticality_record,
@@ -171,7 +172,8 @@ class DiagramCurves:
         unstored = unstored_special_count(view, self._is_row_finite)
         curves = with_hopf_ends(stages.curves(results), plane, criticalities, unstored)
         changed = rows_with_further_branches(view, stages.changed_rows(results))
-        variables += [*cycle_curve_values(curves, names), *detached_branch_values(view, changed)]
+        variables += [*cycle_curve_values(curves, names), *curve_extremum_values(curves, names)]
+        variables += detached_branch_values(view, changed)
         messages = {number: row_message(result) for number, result in changed.items()}
         return SweepWideResult(variables, changed, messages)
 

@@ -9,7 +9,8 @@ from typing import ClassVar
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import CurveTracing, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from .curve_problem import END_SETTINGS, SpecialCurveProblem
+from .curve_ends import END_SETTINGS
+from .curve_problem import SpecialCurveProblem
 from .half_curve import trace_half_curve
 from .row_crossing import RowCrossing
 from .special_curves import (
