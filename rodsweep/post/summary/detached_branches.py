@@ -25,7 +25,8 @@ def detached_branch_lines(view: ResultView, row: str) -> list[str]:
     values = axis_values_text(view.point_columns[row][numbers])
     return [
         f"branches that no Hopf point of their row leads to: on {rows}, {row} = {values}; they were followed "
-        "from the crossings of these curves with the rows, and the stable states include their cycles"
+        "from the crossings of curves of folds or torus points with the rows, and the stable states include "
+        "their cycles"
     ]
 
 
