@@ -1,6 +1,7 @@
 """Rows of a diagram with branches that only a curve of folds leads to, on ranks and after kills."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -12,6 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
+from rodsweep.post.summary.detached_branches import detached_branch_lines
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.detached_rows import DetachedRows, DiagramStages
 from rodsweep.solve.branch.special.folds_beyond import FoldsBeyondRange
@@ -27,6 +29,7 @@ from rodsweep.solve.branch.special.special_point import RowSpecialPoint, Special
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
 from rodsweep.solve.orbit.symmetry import REFLECTION
+from rodsweep.tasks.diagram.detached_branches import curves_lost_beyond_values
 
 FORCES = [45.0, 55.0, 65.0, 70.0, 75.0]
 DIAGRAM = f"""
@@ -348,6 +351,15 @@ def test_curves_are_followed_beyond_the_range_after_all_other_stages():
     assert [start.parameter_value for start in rows.starts_of_row(3)] == [1.5]
     results[5] = {"at": np.array([])}
     assert stages.stages(results)[-1] == rows
+    assert stages.lost_beyond_count(results) == 0
+    lost = half(tracer.special_points[0], 1.0, [0]) | {"end": np.array([float(CurveEndReason.not_followed)])}
+    assert stages.lost_beyond_count(results | {4: lost}) == 1
+    assert stages.lost_beyond_count(results | {3: TracedHalfCurve(None).arrays()}) == 1
+    ((variable, count),) = curves_lost_beyond_values(2)
+    view = SimpleNamespace(variables={variable.name: count})
+    (line,) = detached_branch_lines(view, "k1")
+    assert line.startswith("curves of folds that were lost beyond the range: 2; rows that only these")
+    assert curves_lost_beyond_values(0) == detached_branch_lines(SimpleNamespace(variables={}), "k1") == []
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
     # A row that could not be solved again has no folds.
     assert stages.stages({**{i: results[i] for i in (0, 1)}, 2: {}})[-1] == folds

@@ -25,6 +25,7 @@ from .curve_variables import (
 )
 from .detached_branches import (
     COMPLETE_ROW_STATUS,
+    curves_lost_beyond_values,
     detached_branch_values,
     row_message,
     row_result,
@@ -191,6 +192,7 @@ class DiagramCurves:
         changed = rows_with_further_branches(view, stages.changed_rows(results))
         variables += [*cycle_curve_values(curves, names), *curve_extremum_values(curves, names)]
         variables += detached_branch_values(view, changed)
+        variables += curves_lost_beyond_values(stages.lost_beyond_count(results))
         messages = {number: row_message(result) for number, result in changed.items()}
         return SweepWideResult(variables, changed, messages)
 

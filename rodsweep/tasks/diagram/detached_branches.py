@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import DETACHED_BRANCH_VARIABLES
+from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
 from ...results.layouts.variables import FilledVariable
 from ..protocol import NamedArrays
 
@@ -82,6 +82,11 @@ def rows_with_further_branches(
         for row, values in solved_again.items()
         if int(values["cycle_special_count"]) != counts[row] or int(values["status"]) != statuses[row]
     }
+
+
+def curves_lost_beyond_values(count: int) -> list[FilledVariable]:
+    """Variable with the number `count` of ends of curves that were lost beyond the range; [] if it is 0."""
+    return [(CURVES_LOST_BEYOND, np.array(count))] if count else []
 
 
 def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:

@@ -19,7 +19,7 @@ from .curve_comparison import are_identical_curves
 from .folds_beyond import FoldsBeyondRange
 from .row_crossing import RowCrossing
 from .special_curve_tracer import SpecialCurveTracer
-from .special_curves import SpecialPointCurve
+from .special_curves import CurveEndReason, SpecialPointCurve
 from .special_point import RowSpecialPoint, SpecialPoint
 
 MAX_DIAGRAM_STAGES = 8
@@ -168,6 +168,18 @@ class DiagramStages:
     def changed_rows(self, results: Results) -> dict[int, dict[str, Array]]:
         """Variables of all rows that were solved again, (...,) each, by index of the row."""
         return _changed_rows(self.stages(results), results)
+
+    def lost_beyond_count(self, results: Results) -> int:
+        """Number of ends at which curves were lost while they were followed beyond the range, where they may
+        lead to further rows, plus the number of special points from which no such curve could be followed;
+        valid as `curves`. results: arrays, (...,) each, by name and item."""
+        count = 0
+        for stage in self.stages(results):
+            if isinstance(stage, SpecialCurveTracer) and stage.line_axis != self.first.line_axis:
+                traced = stage.curves(results)
+                ends = [end for curve in traced.curves for end in curve.ends]
+                count += ends.count(CurveEndReason.not_followed) + traced.untraced_count
+        return count
 
     def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
         """The curves of all stages, each only once; valid if the last stage is complete."""
