@@ -26,7 +26,8 @@ from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.file.validation import FORMAT
 from rodsweep.results.layouts.arm import VALIDITY_VARIABLES
-from rodsweep.results.layouts.detached_branches import DETACHED_BRANCH_VARIABLES
+from rodsweep.results.layouts.curve_extrema import curve_extremum_variables
+from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
 from rodsweep.results.layouts.phase_diagram import (
     CYCLE_CURVE_ENDS,
     STABILITY_CLASSES,
@@ -85,6 +86,7 @@ LENGTHS = {
     "bautin": "as found",
     "cycle_special": "64",
     "cycle_curve_point": "as found",
+    "cycle_extremum": "as found",
     "cycle_detached": "as found",
     "bautin_step": "as found",
     "branch_point": "`branch.cycles`",
@@ -433,7 +435,8 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
         yield "diagrams over F and k1" if beam else "", variable_row(variable, list(variable.extra))
     for variable in criticality_variables(line, row).values():
         yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
-    for variable in (cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES).values():
+    cycle_curves = cycle_curve_variables(line, row) | curve_extremum_variables(line, row)
+    for variable in (*(cycle_curves | DETACHED_BRANCH_VARIABLES).values(), CURVES_LOST_BEYOND):
         yield "phase_diagram.cycles: true", variable_row(variable, list(variable.extra))
     third = job.config.phase_diagram.bautin_parameter
     assert third is not None

@@ -1044,11 +1044,20 @@ def _state_sentences(view, page, fine, row):
         places = ((float(match[2 + k]), match[3 + k], match[4 + k]) for k in (0, 3))
         why = (_special_on_branch(view, row, match[1], *place) for place in places)
         found.append((line, "; ".join(filter(None, why))))
+    for line, match in read(
+        page,
+        rf"^extremum of {row} along curve NUMBER of folds of cycles: "
+        rf"{row} = NUMBER \(\+- NUMBER\), F = NUMBER",
+    ):
+        found.append((line, _extremum_on_curve(view, row, int(match[1]), float(match[2]), float(match[4]))))
     detached = _detached(view, row)
     pattern = "^branches that no Hopf point of their row leads to: on NUMBER of NUMBER row"
     found += counts(page, pattern, len(detached), len(rows))
     if detached:
         found += ranges(page, rf"^branches that .*: on \d+ of \d+ rows?, {row} = RANGE", detached)
+    name = "cycle_curves_lost_beyond"
+    lost = int(view.variables[name]) if name in view.variables else 0
+    found += counts(page, "^curves of folds that were lost beyond the range: NUMBER;", lost)
     for line, match in read(
         page, rf"^this curve crosses the row {row} = NUMBER between F = NUMBER and NUMBER, but no branch"
     ):
@@ -1064,6 +1073,18 @@ def _state_sentences(view, page, fine, row):
         )
         found.append((line, "" if (int(match[1]), int(match[3] or 0)) == true else f"it is {true}"))
     return found
+
+
+def _extremum_on_curve(view, row, number, value, F):
+    """Why a point of a curve of folds is no extremum of the row parameter."""
+    v = view.variables
+    points = v["cycle_curve_number"] == number
+    across, along = v[f"cycle_curve_{row}"][points], v["cycle_curve_F"][points]
+    here = int(np.argmin(np.abs(along - F) + np.abs(across - value)))
+    if not 0 < here < len(across) - 1:
+        return "the curve has no two neighbours of this point"
+    sides = across[[here - 1, here + 1]] - value
+    return "" if sides[0] * sides[1] > 0 else f"{row} changes by {sides} to the neighbours"
 
 
 def _special_on_row(view, row, value, low, high):

@@ -76,6 +76,7 @@ ROUNDING = 1e-11
 SOFT_IN_SHEAR = Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1)
 BEATING = Rod(F=0.0, k1=1e4, k2=1e2, gamma3=1e-2)
 STRONGLY_UNSTABLE = Rod(F=0.0, k1=251.35, k2=10.5379, gamma3=1.0956e-7, gamma1=0.91638)
+NEAR_CLOSED_BRANCH = Rod(F=0.0, k1=133.3, k2=1e4, gamma3=0.006)
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 WITH_FOLD = Rod(F=0.0, k1=149.9, k2=1e4, gamma3=1e-4)
 ANOTHER_START = {
@@ -162,6 +163,30 @@ def curve_of_folds(accuracy: float) -> Answer:
         return None
     last = points[-1]
     return {f"{end.name} at": (last.parameter, last.error), "row": (last.row_parameter, ROUNDING)}
+
+
+@cache
+def fold_near_closed_branch() -> Any:
+    """The fold at k1 = 133.3, from which a curve of folds passes its smallest k1."""
+    request = BranchRequest("F", 60.0, 120.0, 1e-7, False, 500, 50)
+    curves = solve_branches(NEAR_CLOSED_BRANCH, request).curves
+    points = (point for curve in curves for point in curve.special_points)
+    return next(point for point in points if point.kind is SpecialKind.fold)
+
+
+def extremum_of_folds(accuracy: float) -> Answer:
+    """Smallest k1 of a curve of folds, where both parameters exchange their roles."""
+    plane = PlaneAxis("F", 60.0, 120.0), PlaneAxis("k1", 133.0, 134.0)
+    problem = SpecialCurveProblem(SpecialKind.fold, *plane, NewtonWorkspace(), -1.0)
+    try:
+        points, _ = problem.follow_from(fold_near_closed_branch(), NEAR_CLOSED_BRANCH.k1)
+    except FAILURES:
+        return None
+    answer = {}
+    for number, point in enumerate(p for p in points if p.row_extremum_error):
+        answer[f"extremum {number}, F"] = point.parameter, point.error
+        answer[f"extremum {number}, k1"] = point.row_parameter, point.row_extremum_error
+    return answer
 
 
 def coefficients(accuracy: float) -> Answer:
@@ -509,6 +534,7 @@ DETACHED = Case(detached_branch, 1e-6, 1e-8)
 BEYOND = Case(branch_from_beyond, 1e-5, 1e-7)
 LOPSIDED = Case(lopsided_branches, 1e-4, 1e-6)
 CURVE = Case(curve_of_folds, 1e-7, 1e-7)
+EXTREMUM = Case(extremum_of_folds, 1e-7, 1e-7)
 HOPF = Case(coefficients, 1e-6, 1e-11)
 BAUTIN_POINT = Case(generalised_hopf, 1e-10, 1e-12)
 BAUTIN_CURVE = Case(curve_of_generalised_hopf, 1e-10, 1e-12)
@@ -562,6 +588,8 @@ CASES = {
     "CURVE_SECANT_SETTINGS": CURVE,
     "AUGMENTED_SETTINGS": CURVE,
     "END_SETTINGS": CURVE,
+    "PARAMETER_ROLE_SETTINGS": EXTREMUM,
+    "ROW_EXTREMUM_SETTINGS": EXTREMUM,
     "CURVE_STEP_CONTROL": CURVE,
     "NORMAL_FORM_SETTINGS": HOPF,
     "HOPF_COEFFICIENT_SETTINGS": HOPF,

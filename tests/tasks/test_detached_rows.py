@@ -1,6 +1,7 @@
 """Rows of a diagram with branches that only a curve of folds leads to, on ranks and after kills."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import h5py
 import numpy as np
@@ -12,8 +13,10 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
+from rodsweep.post.summary.detached_branches import detached_branch_lines
 from rodsweep.results.run.checkpoints import ItemResults
 from rodsweep.solve.branch.special.detached_rows import DetachedRows, DiagramStages
+from rodsweep.solve.branch.special.folds_beyond import FoldsBeyondRange
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_curve_tracer import SpecialCurveTracer
 from rodsweep.solve.branch.special.special_curves import (
@@ -26,6 +29,7 @@ from rodsweep.solve.branch.special.special_point import RowSpecialPoint, Special
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh
 from rodsweep.solve.orbit.symmetry import REFLECTION
+from rodsweep.tasks.diagram.detached_branches import curves_lost_beyond_values
 
 FORCES = [45.0, 55.0, 65.0, 70.0, 75.0]
 DIAGRAM = f"""
@@ -108,6 +112,51 @@ def test_two_ranks_and_python_give_the_same(whole):
             assert np.array_equal(data[name].values, file[name][...], equal_nan=name.endswith("F"))
 
 
+NARROW_FORCES = FORCES[2:]
+"""A range beyond the folds of both rows."""
+
+
+@pytest.fixture(scope="module")
+def narrow(whole):
+    """The command with the diagram of a range without folds, `narrow.h5`."""
+    whole.write("narrow.yaml", DIAGRAM.replace(str(FORCES), str(NARROW_FORCES)))
+    run = whole("run", "narrow.yaml", "-o", "narrow.h5")
+    assert run.returncode == 0, run.stderr
+    assert "1 row with branches that leave the range" in run.stdout
+    assert "1 row solved again with the branches that only these curves lead to" in run.stdout
+    return whole
+
+
+@pytest.mark.long
+def test_a_fold_beyond_the_range_leads_to_cycles_of_a_row_without_hopf_points(narrow):
+    with h5py.File(narrow.directory / "narrow.h5") as file, h5py.File(narrow.directory / "whole.h5") as wide:
+        states = [each["stable_states"][...].reshape(2, -1) for each in (file, wide)]
+        assert states[0].tolist() == states[1][:, 2:].tolist() == [[3, 3, 3], [2, 3, 3]]
+        assert file["cycle_detached_row"][...].tolist() == [1]
+        assert file["cycle_detached_count"][...].tolist() == [4]
+        # The curve lies beyond the range and is no part of the diagram.
+        assert len(file["cycle_curve_number"]) == 0
+        assert file["cycle_curves_untraced"][()] == 0
+        assert [file["status"][...].ravel().tolist()] == [[0, 0]]
+    text = " ".join(narrow("show", "narrow.h5").stdout.split())
+    assert "branches that no Hopf point of their row leads to: on 1 of 2 rows, gamma3 = 0.042" in text
+
+
+@pytest.mark.long
+def test_rows_with_folds_beyond_the_range_do_not_depend_on_ranks_or_kills(narrow):
+    run = narrow("run", "narrow.yaml", "-o", "narrow2.h5", ranks=2)
+    assert run.returncode == 0, run.stderr
+    assert same(content(narrow.directory / "narrow2.h5"), content(narrow.directory / "narrow.h5"))
+    for stage in ("FoldsBeyondRange", "DetachedRows"):
+        patch = KILL.replace("DetachedRows", stage).replace("detached_rows", MODULES[stage])
+        assert narrow("run", "narrow.yaml", "-o", f"{stage}.h5", patch=patch).returncode == 9
+        again = narrow("run", "narrow.yaml", "-o", f"{stage}.h5")
+        assert again.returncode == 0, again.stderr
+        assert "0 of 2 points to do, 2 kept, then the curves" in again.stdout
+        assert same(content(narrow.directory / f"{stage}.h5"), content(narrow.directory / "narrow.h5"))
+
+
+MODULES = {"FoldsBeyondRange": "folds_beyond", "DetachedRows": "detached_rows"}
 KILL = """
 import os
 from rodsweep.tasks.diagram.curves import DiagramCurves
@@ -279,6 +328,47 @@ def test_new_special_points_of_a_row_start_curves_that_lead_to_further_rows():
         4: [0.6],
     }
     assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2, 0.6]
+
+
+def test_curves_are_followed_beyond_the_range_after_all_other_stages():
+    """From the fold at F = 1.5 of row 5, and along the curve that leaves the range from F = 0.2 on row 4."""
+    wide = PlaneAxis("F", 0.0, 2.0)
+    first = SpecialCurveTracer(LINE, ROWS, [special(4, 0.2)], {3: 3.0, 4: 4.0, 5: 5.0})
+    stages = DiagramStages(first, of_row, wide, {5: 5.0})
+    results = {0: half(first.special_points[0], 5.0, [0]), 1: half(first.special_points[0], 1.0, [0])}
+    _, folds = stages.stages(results)
+    assert isinstance(folds, FoldsBeyondRange)
+    assert (folds.items_to_solve(results), folds.row_of(2), folds.starts_of_row(5)) == ([2], 5, ())
+    known = [crossing(5, at).special_point for at in (0.7, 1.5)]
+    results[2] = folds.solve(2, lambda row: known if row == 5 else [], (0.0, 1.0))
+    *_, tracer = stages.stages(results)
+    assert tracer.line_axis == wide
+    assert [(point.row_index, point.parameter_value) for point in tracer.special_points] == [(5, 1.5)]
+    results[3] = half(tracer.special_points[0], 5.0, [0])
+    results[4] = half(tracer.special_points[0], 1.0, [0], [crossing(3, 1.5)])
+    *_, rows = stages.stages(results)
+    assert isinstance(rows, DetachedRows)
+    assert [start.parameter_value for start in rows.starts_of_row(3)] == [1.5]
+    results[5] = {"at": np.array([])}
+    assert stages.stages(results)[-1] == rows
+    assert stages.lost_beyond_count(results) == 0
+    lost = half(tracer.special_points[0], 1.0, [0]) | {"end": np.array([float(CurveEndReason.not_followed)])}
+    assert stages.lost_beyond_count(results | {4: lost}) == 1
+    assert stages.lost_beyond_count(results | {3: TracedHalfCurve(None).arrays()}) == 1
+    ((variable, count),) = curves_lost_beyond_values(2)
+    view = SimpleNamespace(variables={variable.name: count})
+    (line,) = detached_branch_lines(view, "k1")
+    assert line.startswith("curves of folds that were lost beyond the range: 2; rows that only these")
+    assert curves_lost_beyond_values(0) == detached_branch_lines(SimpleNamespace(variables={}), "k1") == []
+    assert [curve.points[0].parameter_value for curve in stages.curves(results).curves] == [0.2]
+    # A row that could not be solved again has no folds.
+    assert stages.stages({**{i: results[i] for i in (0, 1)}, 2: {}})[-1] == folds
+    # Where nothing leaves the range there is nothing to follow.
+    assert DiagramStages(first, of_row, wide).stages(results) == [first]
+    leaving = SpecialCurveTracer(LINE, ROWS, [special(4, 1.0)], {})
+    results = {0: half(leaving.special_points[0], 5.0, [0]), 1: half(leaving.special_points[0], 1.0, [0])}
+    *_, tracer = DiagramStages(leaving, of_row, wide).stages(results)
+    assert (tracer.line_axis, tracer.special_points) == (wide, leaving.special_points)
 
 
 def test_a_row_is_solved_again_with_all_its_crossings_and_only_for_new_ones():

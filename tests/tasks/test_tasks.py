@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from dataclasses import replace
 from types import SimpleNamespace
 
 import h5py
@@ -15,6 +16,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.discretization.elements.resolution import Resolution
 from rodsweep.post.summary import POINT_NOUNS, show_summary
+from rodsweep.post.summary.curve_extrema import curve_extremum_lines
 from rodsweep.post.summary.diagram_curves import cycle_curve_lines
 from rodsweep.results.file.creation import FilePlan, FinalVariables
 from rodsweep.results.file.store import ResultFileWriter
@@ -29,6 +31,7 @@ from rodsweep.solve.continuation.curve_search import TracedCurves
 from rodsweep.solve.spectrum.search import Spectrum
 from rodsweep.solve.spectrum.status import SpectrumStatus
 from rodsweep.tasks import modes, spectrum, thresholds
+from rodsweep.tasks.diagram.curve_extrema import curve_extremum_values
 from rodsweep.tasks.diagram.curve_variables import cycle_curve_values
 from rodsweep.tasks.running.job import job_of_file
 from rodsweep.tasks.thresholds import crossing_values
@@ -364,33 +367,40 @@ def test_a_curve_of_one_point_has_the_reasons_of_both_ends():
     assert line.startswith(f"curve of folds of cycles: from {first} to {last}; 1 point,")
 
 
-@pytest.mark.parametrize(("second", "clause"), [(133.0146, "; k1 is almost extremal there"), (133.3, "")])
-@pytest.mark.parametrize("side", [0, 1])
-def test_a_curve_that_is_lost_near_an_extremum_of_the_row_parameter_is_said_to_be(second, clause, side):
+def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_shown():
     """As with folds at gamma3 = 0.006, where a closed branch of cycles shrinks to one cycle."""
-    places = [(79.16, 133.01457), (80.0, second), (90.0, 133.5), (110.0, 134.0)]
-    points = [
+    places = [(74.1, 133.0742), (79.00407, 133.0145143), (110.0, 134.0)]
+    points = tuple(
         CurvePoint(
-            parameter_value=at, row_value=k1, row_coordinate=k1 - 133, error=1e-7, period=0.02, tip_y_max=0.1
+            parameter_value=at,
+            row_value=k1,
+            row_coordinate=k1 - 133,
+            error=1e-6,
+            period=0.02,
+            tip_y_max=0.1,
+            row_extremum_error=4e-7 if k1 == min(places, key=lambda place: place[1])[1] else 0.0,
         )
         for at, k1 in places
-    ]
-    ends = (CurveEndReason.not_followed, CurveEndReason.edge)
-    points, ends = (tuple(points), ends) if side == 0 else (tuple(points[::-1]), ends[::-1])
-    curve = SpecialPointCurve(SpecialKind.fold, points, ends, (None, None))
-    filled = cycle_curve_values(
-        TracedCurves((curve,), largest_seed_distance=0.0, untraced_count=0), ("F", "k1")
     )
-    rows = {name: np.zeros((2, 2)) for name in ("cycle_special_kind", "cycle_special_F")}
-    view = SimpleNamespace(
-        variables={variable.name: values for variable, values in filled} | {"F": np.array([0.0, 120.0])},
-        point_columns={"k1": np.array([100.0, 200.0])},
-        status_names=np.array(["ok", "ok"]),
-        by_point=rows.__getitem__,
+    curves = [SpecialPointCurve(SpecialKind.fold, points[2:], (CurveEndReason.edge,) * 2, (None, None))]
+    curves.append(replace(curves[0], points=points))
+    traced = TracedCurves(tuple(curves), largest_seed_distance=0.0, untraced_count=0)
+    filled = curve_extremum_values(traced, ("F", "k1"))
+    view = SimpleNamespace(variables={variable.name: values for variable, values in filled})
+    assert {name: values.tolist() for name, values in view.variables.items()} == {
+        "cycle_extremum_curve": [2],
+        "cycle_extremum_F": [79.00407],
+        "cycle_extremum_k1": [133.0145143],
+        "cycle_extremum_F_error": [1e-6],
+        "cycle_extremum_k1_error": [4e-7],
+    }
+    (line,) = curve_extremum_lines(view, "F", "k1")
+    assert line.startswith(
+        "extremum of k1 along curve 2 of folds of cycles: k1 = 133.0145143 (+- 4e-07), "
+        "F = 79.004070 (+- 1e-06); "
     )
-    line = cycle_curve_lines(view, "F", "k1")[0]
-    assert f"(no further point found{clause})" in line
-    assert "(edge of the diagram)" in line
+    assert curve_extremum_values(replace(traced, curves=(curves[0],)), ("F", "k1")) == []
+    assert curve_extremum_lines(SimpleNamespace(variables={}), "F", "k1") == []
 
 
 def test_a_row_that_a_curve_of_folds_meets_without_a_fold_of_its_own_is_named():

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import DETACHED_ROW
+from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_ROW
 from ...wording import count_of_total
 from .number_texts import axis_values_text
 
@@ -17,15 +17,29 @@ the row, divided by the length of the row."""
 
 
 def detached_branch_lines(view: ResultView, row: str) -> list[str]:
-    """List with a line about the rows with cycles on detached branches; empty if there are none."""
+    """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
+    lost = lost_beyond_lines(view)
     if DETACHED_ROW not in view.variables:
-        return []
+        return lost
     numbers = view.variables[DETACHED_ROW] - 1
     rows = count_of_total(len(numbers), view.variables["status"].size, "row")
     values = axis_values_text(view.point_columns[row][numbers])
     return [
         f"branches that no Hopf point of their row leads to: on {rows}, {row} = {values}; they were followed "
-        "from the crossings of these curves with the rows, and the stable states include their cycles"
+        "from the crossings of curves of folds or torus points with the rows, and the stable states include "
+        "their cycles",
+        *lost,
+    ]
+
+
+def lost_beyond_lines(view: ResultView) -> list[str]:
+    """List with a line about curves of folds that were lost beyond the range; empty if there are none."""
+    if CURVES_LOST_BEYOND.name not in view.variables:
+        return []
+    count = int(view.variables[CURVES_LOST_BEYOND.name])
+    return [
+        f"curves of folds that were lost beyond the range: {count}; rows that only these curves lead to lack "
+        "their cycles in the stable states"
     ]
 
 

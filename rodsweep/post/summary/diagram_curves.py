@@ -2,7 +2,6 @@
 that varies along a row. row: parameter that is constant on a row."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...model.parameters import LINEAR_PARAMETERS
 from ...results.file.view import ResultView
@@ -10,6 +9,7 @@ from ...results.layouts.branch import SPECIAL_KINDS
 from ...results.layouts.phase_diagram import BAUTIN_ENDS, CURVE_ENDS, CYCLE_CURVE_ENDS
 from ...wording import counted, is_or_are
 from .criticality import CRITICALITY_WORDS
+from .curve_extrema import curve_extremum_lines
 from .detached_branches import detached_branch_lines, rows_without_cycles_of_curve
 from .number_texts import error_text, number_with_error, span_text
 
@@ -31,9 +31,6 @@ CURVE_END_WORDS = {
     "not_followed": "no further point found",
 }
 """Phrase for the reason for which a curve of folds or torus points of cycles ends."""
-MAX_SLOPE_AT_EXTREMUM = 0.05
-"""The row parameter is said to be extremal at the end of a curve if the slope of the last chord is below this
-number, in units of the ranges of the curve: 0.02 was measured at such an end."""
 BAUTIN_END_WORDS = {
     "none": "not an end",
     "range_end": "the end of the range",
@@ -71,32 +68,14 @@ def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
         ends = " to ".join(
             f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
             f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
-            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{suffix}'][i])]]}"
-            f"{_extremum_clause(view, line, row, from_end)})"
-            for suffix, i, from_end in zip(
-                END_SUFFIXES, indices[[0, -1]], (indices, indices[::-1]), strict=True
-            )
+            f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{suffix}'][i])]]})"
+            for suffix, i in zip(END_SUFFIXES, indices[[0, -1]], strict=True)
         )
         error = error_text(float(v["cycle_curve_error"][indices].max()))
         points = counted(len(indices), "point")
         lines.append(f"curve of {noun}: from {ends}; {points}, largest error of {line} {error}")
         lines += rows_without_cycles_of_curve(view, line, row, indices)
-    return lines + detached_branch_lines(view, row)
-
-
-def _extremum_clause(view: ResultView, line: str, row: str, points: NDArray[np.intp]) -> str:
-    """Clause on an extremum of the row parameter near which a curve ends; empty for all other ends. points:
-    indices of the points of the curve, from this end on, (n,). At an extremum two branches of cycles exchange
-    their parts, or a closed branch shrinks to a cycle; there cycles cannot be computed as functions of the
-    row parameter and of a position along a branch."""
-    v = view.variables
-    side = "start" if points[0] <= points[-1] else "end"
-    if len(points) < 2 or v[f"cycle_curve_{side}"][points[0]] != list(CYCLE_CURVE_ENDS).index("not_followed"):
-        return ""
-    across, along = (v[f"cycle_curve_{name}"][points] for name in (row, line))
-    steps = (abs(values[1] - values[0]) / np.ptp(values) for values in (across, along))
-    slope = np.divide(*steps)
-    return f"; {row} is almost extremal there" if slope < MAX_SLOPE_AT_EXTREMUM else ""
+    return lines + curve_extremum_lines(view, line, row) + detached_branch_lines(view, row)
 
 
 def curve_count_lines(view: ResultView, line: str) -> list[str]:

@@ -35,6 +35,7 @@ TABLE_NAMES = {
     ("hopf",): "hopf_points",
     ("change",): "force_changes",
     ("cycle_curve_point",): "cycle_curves",
+    ("cycle_extremum",): "cycle_curve_extrema",
     ("cycle_detached",): "cycle_detached_rows",
     ("bautin",): "generalised_hopf_points",
     ("bautin_step",): "generalised_hopf_curves",

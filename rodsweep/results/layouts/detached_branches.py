@@ -12,3 +12,9 @@ VARIABLES = along_dimension(
 DETACHED_BRANCH_VARIABLES = {variable.name: variable for variable in VARIABLES}
 """Variables, by name, of the rows whose stable states contain cycles on branches that were found only because
 a curve of folds or torus points crosses the row; a file without such rows does not have them."""
+CURVES_LOST_BEYOND = integer(
+    "cycle_curves_lost_beyond",
+    "number of ends of curves of folds that were lost beyond the range",
+)
+"""Variable of a diagram with rows that curves beyond the range may lead to, but could not be followed to; a
+file without such curves does not have it."""

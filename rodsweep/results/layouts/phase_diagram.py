@@ -6,7 +6,8 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
-from .detached_branches import DETACHED_BRANCH_VARIABLES, DETACHED_ROW
+from .curve_extrema import curve_extremum_variables
+from .detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES, DETACHED_ROW
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
 from .thresholds import CROSSING_LIST_EXTENSION_RULE, search_variables
@@ -82,6 +83,7 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     `phase_diagram.bautin_along` only. is_grid: not used."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
+    variables |= curve_extremum_variables(line, row) | {CURVES_LOST_BEYOND.name: CURVES_LOST_BEYOND}
     variables |= cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES
     for third in config["phase_diagram"].get("bautin_along") or ():
         variables |= bautin_curve_variables(line, row, third)
@@ -154,10 +156,8 @@ def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
 
 
 def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[Variable, Variable]:
-    """Variables with the reasons why curves begin and end, along the points of the curves.
-
-    curve: prefix of the names.
-    """
+    """Variables with the reasons why curves begin and end, along the points of the curves. curve: prefix of
+    the names. dimension: dimension of the points."""
     reasons = tuple(reasons)
     return (
         word(f"{curve}_start", "why the curve begins at the point", reasons, dimension),

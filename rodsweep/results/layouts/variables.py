@@ -34,6 +34,7 @@ DIMENSIONS = {p.name: (p.unit, p.long_name) for p in PARAMETERS.values()} | {
     "special": ("1", "number of the special point on all branches of a rod, branch by branch"),
     "cycle_special": ("1", "number of the special point on all branches of cycles of a row"),
     "cycle_curve_point": ("1", "number of the point on all curves of folds and torus points, curve by curve"),
+    "cycle_extremum": ("1", "number of the extremum of the row parameter along a curve of folds of cycles"),
     "cycle_detached": ("1", "number of the row among the rows with detached branches of cycles"),
     "bautin": ("1", "number of the generalised Hopf point, Hopf curve by Hopf curve"),
     "bautin_step": ("1", "number of the point on curves of generalised Hopf points, curve by curve"),

@@ -31,4 +31,5 @@ class BranchLimits:
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""
     locates_special_points: bool = True
-    """Whether special points between the ends of a branch are located; not on parts beyond the range."""
+    """Whether all special points between the ends of a branch are located; on parts beyond the range only
+    folds are."""

@@ -45,6 +45,11 @@ class BranchSearch:
         values = [PARAMETERS[self.name].value(coordinate) for coordinate in reached]
         return min(values), max(values)
 
+    @property
+    def folds_beyond(self) -> list[SpecialPoint]:
+        """Folds of the branches followed beyond the range."""
+        return [fold for region in self.regions for fold in region.folds]
+
     def follow_within_range(self) -> None:
         """Follows the branches from all Hopf points and symmetry breakings of the range, within the range."""
         self.follow_from_hopf_points()
@@ -142,6 +147,16 @@ class BranchSearch:
         self.followed_passages.append(entry)
 
     def _follow_detached(self, start: SpecialPoint) -> None:
+        """Appends the branch through `start`, or its parts that enter the range if `start` lies beyond it.
+        Raises Unsolvable if no branch passes `start`."""
+        regions = [region for region in self.regions if region.has(start)]
+        if not regions:
+            self._follow_detached_within_range(start)
+        for region in regions:
+            for entry in region.entries_through(start):
+                self._follow_entering(entry, region)
+
+    def _follow_detached_within_range(self, start: SpecialPoint) -> None:
         """Appends the branch through `start`, unless it is a branch that was followed before: the crossing is
         then an artefact of the mesh of its curve, as beyond the end of a curve of folds at a symmetry
         breaking, where a mesh rounds off the corner between two branches. Raises Unsolvable if no branch

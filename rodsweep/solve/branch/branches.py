@@ -21,7 +21,7 @@ from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import BranchRequest
 from .branch_search import BranchSearch
-from .region_beyond import regions_beyond
+from .regions_beyond import regions_beyond
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
 from .status import BranchStatus
@@ -60,6 +60,8 @@ class BranchesOfRod:
     followed_range: tuple[float, float] = (nan, nan)
     """Smallest and largest value of the parameter up to which branches are followed, in and beyond the range:
     a branch that enters the range but was not found passes one of these values."""
+    folds_beyond: tuple[SpecialPoint, ...] = ()
+    """Located folds of the branches followed beyond the range."""
 
 
 def solve_branches(
@@ -128,6 +130,7 @@ def _solve_branches_or_raise(
         proved=crossings.proved_to_the_end,
         curves=tuple(search.curves),
         followed_range=search.followed_range,
+        folds_beyond=tuple(search.folds_beyond),
     )
 
 

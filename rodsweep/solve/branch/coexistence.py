@@ -51,6 +51,8 @@ class CoexistenceRow:
     special_points: tuple[SpecialPoint, ...]
     status: CoexistenceStatus
     followed_range: tuple[float, float]
+    folds_beyond: tuple[SpecialPoint, ...] = ()
+    """Located folds of the branches followed beyond the range of the row."""
     message: str = ""
     seconds: float = 0.0
 
@@ -85,6 +87,7 @@ def solve_coexistence(
         special_points=special_points_of(branches),
         status=status,
         followed_range=branches.followed_range,
+        folds_beyond=branches.folds_beyond,
         message="; ".join(filter(None, [message, _undecided_values_text(request.parameter_name, undecided)])),
         seconds=row.seconds + branches.seconds,
     )

@@ -3,8 +3,9 @@ stored.
 
 A branch may leave the range, turn back at a fold beyond its end, and enter the range again; and the branch of
 a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.
-Special points in the region are not located. A fold changes the number of multipliers outside the unit circle
-by one: a branch that moves away from the range is followed only if it has one, and may come back stable.
+Of special points in the region only folds are located. A fold changes the number of multipliers outside the
+unit circle by one: a branch that moves away from the range is followed only if it has one, and may come back
+stable.
 """
 
 from collections.abc import Iterator
@@ -13,8 +14,6 @@ from dataclasses import dataclass, field, replace
 from math import isnan
 
 from ...determinant.parameter_path import ParameterPath
-from ...discretization.stress.form import has_small_rotational_drag
-from ...model.crushing import uncrushed_interval
 from ...solve_progress import solve_part
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
@@ -22,10 +21,10 @@ from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
 from .branch_continuation import follow_from_cycle, index_of_passed_range_end
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
-from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
-from .detached_branch import turned_back
+from .detached_branch import follow_detached_branch, lies_on_any, turned_back
+from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
 from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
 
@@ -67,6 +66,8 @@ class RegionBeyond:
     followed_to: float = field(init=False)
     """Coordinate in the region up to which branches are followed: a branch that enters the range but was not
     found passes this coordinate."""
+    folds: list[SpecialPoint] = field(default_factory=list)
+    """Located folds of the branches followed in the region."""
     _ended_hopfs: set[int] = field(default_factory=set)
     """Indices of the Hopf points of the region at which a followed branch ends."""
 
@@ -160,6 +161,7 @@ class RegionBeyond:
         where it enters the range, or None."""
         curve = follow_from_cycle(curve, first_cycle, replace(self.limits, accuracy=accuracy))
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
+        self._add_folds(curve)
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)
         if not curve.complete:
@@ -167,6 +169,36 @@ class RegionBeyond:
             self.stop_at(self.path.coordinate(curve.points[-1].parameter_value))
         passage = curve.end_passage
         return None if passage is None or passage.index == self.index else replace(passage, index=self.index)
+
+    def entries_through(self, start: SpecialPoint) -> list[RangePassage]:
+        """The places where the branch through the special point `start` in the region enters the range.
+        Empty if the branch is known. Raises Unsolvable if no branch is found, or if it is not followed to its
+        ends."""
+        workspace = self.limits.workspace
+        initial_work = workspace.work
+        try:
+            with workspace.further_limit(self.remaining_work):
+                curve = follow_detached_branch(start, self.path.name, self.limits)
+        finally:
+            self.remaining_work -= workspace.work - initial_work
+        if any(lies_on_any(fold, [curve]) for fold in self.folds):
+            return []
+        if start.kind == SpecialKind.fold and not lies_on_any(start, [curve]):
+            raise Unsolvable("the branch found does not pass this point")
+        if not curve.complete:
+            raise Unsolvable("the branch is not followed to its ends")
+        self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
+        self._add_folds(curve)
+        passages = (curve.start_passage, curve.end_passage)
+        return [replace(p, index=self.index) for p in passages if p is not None and p.index != self.index]
+
+    def has(self, start: SpecialPoint) -> bool:
+        """Whether the special point `start` lies in the region, beyond the end of the range."""
+        low, high = self.limits.coordinate_range
+        return low < self.path.coordinate(start.parameter_value) < high
+
+    def _add_folds(self, curve: BranchCurve) -> None:
+        self.folds += [p for p in curve.special_points if p.kind == SpecialKind.fold and not p.message]
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:
@@ -212,39 +244,3 @@ class RegionBeyond:
         if not isnan(search.open_range[0]):
             unsearched = [self.path.coordinate(value) for value in search.open_range]
             self.stop_at(min(unsearched) if self.index == 1 else max(unsearched))
-
-
-def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
-    """The regions beyond the ends of the range of `limits`. margin: smallest relative distance from the
-    crushing force."""
-    regions = (_region(path, index, limits, margin) for index in (0, 1))
-    return [region for region in regions if region is not None]
-
-
-def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
-    """The region beyond the end with the given index of the range of `limits`; None if no branch leads on
-    from there, because the force crushes the rod, the force is 0 or a pull, or the coordinate is 0. margin:
-    smallest relative distance from the crushing force."""
-    end = limits.coordinate_range[index]
-    if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
-        return None
-    factor = 1 + BEYOND_RANGE_SETTINGS.relative_extent
-    far_end = end * factor if index == 1 else end / factor * (path.name != "F")
-    low, high = sorted(map(path.parameter.value, (end, far_end)))
-    rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
-    low, high = uncrushed_interval(path.rod.build, rod, (path.name, low, high), margin)
-    ends = [path.coordinate(low), path.coordinate(high)]
-    far_end = max(ends) if index == 1 else min(ends)
-    # The unknowns of a branch cannot change within the branch.
-    is_small = has_small_rotational_drag(path.rod_at(far_end))
-    if not low < high or is_small and not limits.keeps_omega:
-        return None
-    region_limits = replace(
-        limits,
-        hopfs=(),
-        coordinate_range=(end, far_end) if index == 1 else (far_end, end),
-        end_reasons=(BranchEndReason.range_end, BranchEndReason.range_end),
-        max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
-        locates_special_points=False,
-    )
-    return RegionBeyond(path, index, limits, region_limits)

@@ -13,6 +13,7 @@ from ...results.file.view import ResultView
 from ...results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..protocol import NamedArrays, SweepWideResult
 from .boundary_curves import boundary_curves, criticality_along, generalised_hopf_curves
+from .curve_extrema import curve_extremum_values
 from .curve_variables import (
     boundary_curve_values,
     criticality_record,
@@ -24,16 +25,19 @@ from .curve_variables import (
 )
 from .detached_branches import (
     COMPLETE_ROW_STATUS,
+    curves_lost_beyond_values,
     detached_branch_values,
     row_message,
     row_result,
     rows_with_further_branches,
+    rows_with_leaving_branches,
 )
 
 if TYPE_CHECKING:
     from ...determinant.parameter_plane import Plane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.detached_rows import DiagramStages, Stage
+    from ...solve.branch.special.folds_beyond import FoldsBeyondRange
     from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
     from ...solve.branch.special.special_point import SpecialPoint
     from ...solve.orbit.matrix.workspace import NewtonWorkspace
@@ -65,15 +69,15 @@ class DiagramCurves:
         """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
         cached. number: number of the row."""
         if len(self.special_points_by_row) < MAX_CACHED_ROWS:
-            self.special_points_by_row[number, 0] = row.special_points
+            self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond
         return row
 
     def initial_data(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
         """Special points cached on this rank, for the rows on which the half curves numbered `item_numbers`
-        start. items: all half curves, or rows that are solved again, which need no special points."""
-        from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
+        start. items: all half curves, or rows; rows that are solved again need no special points."""
+        from ...solve.branch.special.detached_rows import DetachedRows
 
-        if not isinstance(items, SpecialCurveTracer):
+        if isinstance(items, DetachedRows):
             return {}
         keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, item_numbers)}
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
@@ -93,6 +97,8 @@ class DiagramCurves:
 
     def _stages(self, view: ResultView) -> "DiagramStages | None":
         """All stages of the search, as in `work_items`."""
+        from ...determinant.parameter_plane import PlaneAxis
+        from ...solve.branch.regions_beyond import extended_range
         from ...solve.branch.special.detached_rows import DiagramStages
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
@@ -107,23 +113,36 @@ class DiagramCurves:
             special_points_of_rows(view, line, rows),
             {int(number): float(rows[number]) for number in complete},
         )
+        low, high = self._line_limits
         return DiagramStages(
-            tracer, lambda number, values: special_points_of_row(values, line, number, rows[number])
+            tracer,
+            lambda number, values: special_points_of_row(values, line, number, rows[number]),
+            PlaneAxis(line, *extended_range(line, low, high)),
+            rows_with_leaving_branches(view, line, tracer.complete_rows, (low, high)),
         )
+
+    @property
+    def _line_limits(self) -> tuple[float, float]:
+        """Smallest and largest value of the parameter along the rows."""
+        values = self.task.line_values
+        return float(values.min()), float(values.max())
 
     def solve_item(self, items: "Stage", item: int) -> dict[str, np.ndarray]:
         """Result of the work item number `item`: of a half curve, arrays with the shapes of
         `TracedHalfCurve`; of a row that is solved again, its variables, and its message as bytes."""
         from ...determinant.arm.determinant import forget_arm_determinants
         from ...solve.branch.special.detached_rows import DetachedRows
+        from ...solve.branch.special.folds_beyond import FoldsBeyondRange
 
         forget_arm_determinants()  # made for the rows, of which each rank solves others
+        if isinstance(items, FoldsBeyondRange):
+            return items.solve(item, partial(self._special_points, items), self._line_limits)
         if not isinstance(items, DetachedRows):
             return items.solve(item, partial(self._special_points, items), self.workspace)
         number = items.row_of(item)
         starts = items.starts_of_row(number)
         row = self.task.coexistence_row(number, self.workspace, starts)
-        self.special_points_by_row[number, len(starts)] = row.special_points
+        self.special_points_by_row[number, len(starts)] = row.special_points + row.folds_beyond
         return row_result(row, self.task.coexistence_record(row))
 
     def empty_result(self, items: "Stage") -> dict[str, np.ndarray]:
@@ -169,7 +188,9 @@ class DiagramCurves:
         unstored = unstored_special_count(view, self._is_row_finite)
         curves = with_hopf_ends(stages.curves(results), plane, criticalities, unstored)
         changed = rows_with_further_branches(view, stages.changed_rows(results))
-        variables += [*cycle_curve_values(curves, names), *detached_branch_values(view, changed)]
+        variables += [*cycle_curve_values(curves, names), *curve_extremum_values(curves, names)]
+        variables += detached_branch_values(view, changed)
+        variables += curves_lost_beyond_values(stages.lost_beyond_count(results))
         messages = {number: row_message(result) for number, result in changed.items()}
         return SweepWideResult(variables, changed, messages)
 
@@ -199,16 +220,17 @@ class DiagramCurves:
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
         return Plane(rod, (abscissa, ordinate))
 
-    def _special_points(self, items: "SpecialCurveTracer", number: int) -> "tuple[SpecialPoint, ...]":
-        """Special points of the branches of the row `number`, cached or computed again. items: half curves
-        that start at these points."""
+    def _special_points(
+        self, items: "SpecialCurveTracer | FoldsBeyondRange", number: int
+    ) -> "tuple[SpecialPoint, ...]":
+        """Special points of the branches of the row `number`, within the range and beyond, cached or computed
+        again. items: half curves that start at these points, or rows."""
         from ...solve.branch.coexistence import row_branches, special_points_of
 
         starts = items.starts_of_row(number)
         if (number, len(starts)) not in self.special_points_by_row:
             rod = self.task.rod_of_row(number)
             request = self.task.row_request()
-            return special_points_of(
-                row_branches(rod, request, MAX_CYCLE_SPECIAL_POINTS, self.workspace, starts)
-            )
+            branches = row_branches(rod, request, MAX_CYCLE_SPECIAL_POINTS, self.workspace, starts)
+            return special_points_of(branches) + branches.folds_beyond
         return self.special_points_by_row[number, len(starts)]

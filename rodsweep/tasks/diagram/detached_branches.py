@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...results.file.view import ResultView
-from ...results.layouts.detached_branches import DETACHED_BRANCH_VARIABLES
+from ...results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
 from ...results.layouts.variables import FilledVariable
 from ..protocol import NamedArrays
 
@@ -55,6 +55,21 @@ def followed_special_points(
     ]
 
 
+def rows_with_leaving_branches(
+    view: ResultView, line: str, rows: Mapping[int, float], limits: tuple[float, float]
+) -> dict[int, float]:
+    """The rows of `rows` with branches that leave or enter the range `limits`; values of the row parameter by
+    index of the row. view: the file with all rows. line: parameter along the rows."""
+    from ...solve.branch.special.special_curves import CURVE_IDENTITY_SETTINGS
+    from ...solve.branch.special.special_point import SpecialKind
+
+    kinds, positions = (view.by_point(name) for name in ("cycle_special_kind", f"cycle_special_{line}"))
+    distances = np.abs(positions[..., None] - limits)
+    is_at_limit = (distances <= CURVE_IDENTITY_SETTINGS.max_row_distance * np.ptp(limits)).any(axis=-1)
+    is_leaving = ((kinds == SpecialKind.end) & is_at_limit).any(axis=1)
+    return {row: value for row, value in rows.items() if is_leaving[row]}
+
+
 def rows_with_further_branches(
     view: ResultView, solved_again: Mapping[int, NamedArrays]
 ) -> dict[int, NamedArrays]:
@@ -67,6 +82,11 @@ def rows_with_further_branches(
         for row, values in solved_again.items()
         if int(values["cycle_special_count"]) != counts[row] or int(values["status"]) != statuses[row]
     }
+
+
+def curves_lost_beyond_values(count: int) -> list[FilledVariable]:
+    """Variable with the number `count` of ends of curves that were lost beyond the range; [] if it is 0."""
+    return [(CURVES_LOST_BEYOND, np.array(count))] if count else []
 
 
 def detached_branch_values(view: ResultView, changed: Mapping[int, NamedArrays]) -> list[FilledVariable]:

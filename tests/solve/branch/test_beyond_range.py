@@ -10,15 +10,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
-from rodsweep.solve.branch import branches, region_beyond
+from rodsweep.solve.branch import branches, region_beyond, regions_beyond
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.coexistence import solve_coexistence, stability_intervals
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
+from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.status import BranchStatus, CoexistenceStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
 RUBBER = Rod(F=0.0, k1=322.11, k2=1e4, gamma3=0.02, build=Build("neo_hookean", "swelling"))
@@ -81,6 +85,48 @@ def test_a_branch_that_turns_back_beyond_the_range_comes_back_stable():
         assert at_force(back, force) == pytest.approx(at_force(upper, force), rel=3e-3)
     last, same = back.special_points[-1], wide.special_points[-1]
     assert abs(last.period / same.period - 1) <= last.period_error + same.period_error
+
+
+def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
+    """At k1 = 321.7 there is no Hopf point; the fold is on a curve through the fold at k1 = 322.11."""
+    request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
+    (fold,) = solve_branches(RUBBER, request).folds_beyond
+    assert fold.parameter_value == pytest.approx(77.690, abs=2e-3)
+    axes = PlaneAxis("F", 50.0, 137.56), PlaneAxis("k1", 321.0, 323.0)
+    problem = SpecialCurveProblem(SpecialKind.fold, *axes, NewtonWorkspace(), -1.0)
+    points, _ = problem.follow_from(fold, RUBBER.k1)
+    row = axes[1].coordinate(321.7)
+    number = next(i for i, point in enumerate(points) if point.row_coordinate < row)
+    one, other = points[number - 1 : number + 1]
+    crossing = problem.point_on_row(one, other, row)
+    start = RowCrossing.from_solved_point(0, SpecialKind.fold, crossing, 0.0).special_point
+    rod = RUBBER.with_values(k1=321.7)
+    assert solve_branches(rod, request).curves == ()
+    found = solve_branches(rod, request, starts=[start])
+    assert (found.status, found.message) == (BranchStatus.ok, "")
+    assert [kinds(curve) for curve in found.curves] == [["end", "end"]] * 2
+    stable = [[interval.stability for interval in stability_intervals(curve)] for curve in found.curves]
+    assert sorted(stable) == [[0], [1]]
+    (same,) = found.folds_beyond
+    # The branch through a fold that is known starts no other branch, nor does the fold of a known branch.
+    again = solve_branches(rod, request, starts=[start, same])
+    assert len(again.curves) == 2
+    assert len(solve_branches(RUBBER, request, starts=[fold]).curves) == 3
+    # On a range that contains the fold it is a point of the branch.
+    (wide,) = solve_branches(rod, replace(request, start=70.0), starts=[start]).curves
+    (located,) = [point for point in wide.special_points if point.kind == SpecialKind.fold]
+    assert located.parameter_value == pytest.approx(same.parameter_value, rel=2e-9)
+    assert crossing.parameter == pytest.approx(same.parameter_value, rel=1e-7)
+
+
+def test_a_branch_that_is_lost_beyond_the_range_leaves_the_row_undecided():
+    request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
+    (fold,) = solve_branches(RUBBER, request).folds_beyond
+    wrong = replace(fold, parameter_value=fold.parameter_value - 1.0, orbit=None, message="its cycle is lost")
+    found = solve_branches(RUBBER.with_values(k1=321.7), request, starts=[wrong])
+    assert found.status == BranchStatus.stopped
+    assert "no branch is followed through the fold at F = 76.68" in found.message
+    assert found.message.endswith("its cycle is lost")
 
 
 @pytest.mark.parametrize(
@@ -147,6 +193,7 @@ def test_a_limit_beyond_the_range_is_stated(limits, monkeypatch):
     """The branches within the range are complete; `followed_range` says how far the others were followed."""
     settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, **limits)
     monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    monkeypatch.setattr(regions_beyond, "BEYOND_RANGE_SETTINGS", settings)
     found = followed(RUBBER, 88.04, 137.56)
     assert [kinds(curve) for curve in found.curves] == [["hopf", "end"]] * 2
     low, high = found.followed_range
@@ -160,6 +207,7 @@ def test_a_branch_given_up_on_its_way_to_the_range_is_followed_only_to_its_last_
     assert low == 0.0
     settings = replace(region_beyond.BEYOND_RANGE_SETTINGS, max_cycles=4)
     monkeypatch.setattr(region_beyond, "BEYOND_RANGE_SETTINGS", settings)
+    monkeypatch.setattr(regions_beyond, "BEYOND_RANGE_SETTINGS", settings)
     found = followed(FIG_2C, 60.0, 80.0)
     assert found.curves == ()
     low, _ = found.followed_range

@@ -103,20 +103,38 @@ class BorderedMatrix:
         change = self.solve(border, right_side, self._stage_columns[:, :, 1], 0.0)
         return change / np.linalg.norm(self.scale.directional_derivative(self.orbit, change))
 
-    def residual_variations(self, orbit: Orbit, variations: Array) -> tuple[Array, Array]:
+    def residual_variations(
+        self, orbit: Orbit, variations: Array, name: str | None = None
+    ) -> tuple[Array, Array]:
         """Returns (stages, ends): derivatives of the stage residuals of `orbit` along v variations, reduced
         by the factors of this matrix, (K, s, v, n), and the resulting increments of the state at the
         end of the last interval for a fixed start, (v, n).
 
-        variations: variations of orbit values and parameter coordinate, (v, N + 1).
+        variations: variations of orbit values and parameter coordinate, (v, N + 1). name: this parameter;
+        None: the parameter of the branch.
         """
-        derivatives = parameter_derivatives(orbit.form, self.scale.parameter_name)
+        derivatives = parameter_derivatives(orbit.form, name or self.scale.parameter_name)
         equations = orbit.orbit_equations
         p = self.orbit.orbit_equations
         sides: tuple[Array, Array] = reduced_variation_sides(
             orbit.values, equations, derivatives, variations, p, self._memory.factors
         )
         return sides
+
+    def parameter_response(self, name: str, border: Array) -> float:
+        """Derivative of the parameter coordinate with respect to the coordinate of another parameter `name`,
+        along the cycles with equal `border` . `scale.components`, (3,).
+
+        At a fold the derivative does not depend on `border`: it is the slope of the curve of folds.
+        """
+        orbit = self.orbit
+        variation = np.append(np.zeros(len(orbit.values)), 1.0)
+        columns, ends = self.residual_variations(orbit, variation[None], name)
+        sides = self.matching_right_sides(np.zeros(len(orbit.start_state)), columns, ends)
+        p = orbit.orbit_equations
+        change = orbit.form.parameter_derivative(name)
+        phase_side = phase_right_side(orbit.start_state, change, p.rod, p.node_matrices)
+        return float(self.solve(border, np.array([*sides, phase_side, 0.0]), columns[:, :, 0], 1.0)[-1])
 
     def orbit_increments_at_fixed_parameter(self, starts: Array, columns: Array) -> Array:
         """Increments of the orbit, (v, N + 1), at fixed period and parameter. starts: increments of the start

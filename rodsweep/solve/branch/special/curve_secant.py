@@ -201,7 +201,8 @@ class SecantSearch:
         tangent = tangent_at(matrix.orbit, family.scale, family.border, matrix)
         row_coordinate = self.row_coordinate + (self.distance + step) * float(self.line.direction[1])
         orbit = family.orbit_at_row(self._predicted_orbit(step, derivatives), row_coordinate)
-        scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, family.scale.min_deflection_unit)
+        units = family.scale.min_deflection_unit, family.scale.min_coordinate_unit
+        scale = ArcLengthScale.at_orbit(orbit, family.scale.parameter_name, *units)
         derivative = scale.directional_derivative(orbit, tangent)
         return SolvedPoint(
             orbit=orbit,

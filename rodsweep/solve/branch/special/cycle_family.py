@@ -14,12 +14,13 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_limit, mesh_of
+from ...orbit.orbit_mesh import OrbitMesh, mesh_limit, mesh_of
 from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import FoldFunction, TorusFunction
+from .curve_prediction import orbit_with_parameters
 from .curve_secant import SecantSearch
 from .solved_curve_point import (
     CURVE_SECANT_SETTINGS,
@@ -27,7 +28,6 @@ from .solved_curve_point import (
     NormalDerivatives,
     SearchLine,
     SolvedPoint,
-    orbit_with_parameters,
 )
 from .special_point import SpecialKind
 
@@ -117,11 +117,7 @@ class CycleFamily:
             return replace(coarser_point, measured_error=previous.measured_error.for_next_point)
         for _ in range(CURVE_SECANT_SETTINGS.max_finer_meshes):
             mesh = mesh_of(coarser_point.orbit)
-            longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
-            larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
-            finer_mesh = replace(larger, interval_count=longer)
-            if not finer_mesh.is_allowed:
-                break
+            finer_mesh = self.finer_mesh_than(coarser_point)
             normal_derivatives = coarser_point.normal_derivatives
             start = finer_mesh.interpolated_orbit(coarser_point.orbit)
             fine_point = self.corrected_point(
@@ -142,3 +138,13 @@ class CycleFamily:
                 return replace(coarser_point, measured_error=errors)
             coarser_point = fine_point
         raise mesh_limit()
+
+    def finer_mesh_than(self, point: SolvedPoint) -> OrbitMesh:
+        """A mesh finer than that of `point` in space and time; raises Unsolvable if it is not allowed."""
+        mesh = mesh_of(point.orbit)
+        longer = ceil(CURVE_SECANT_SETTINGS.interval_ratio * mesh.interval_count)
+        larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
+        finer_mesh = replace(larger, interval_count=longer)
+        if not finer_mesh.is_allowed:
+            raise mesh_limit()
+        return finer_mesh

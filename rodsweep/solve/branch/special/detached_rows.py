@@ -4,17 +4,22 @@ curves lead to, in stages.
 A stage traces curves through special points (`SpecialCurveTracer`), or solves rows again, each with the
 points at which curves cross it without a special point of its own (`DetachedRows`). The next stage follows
 from the results of all stages so far: rows after curves, and curves through the new special points of rows.
+At the end, curves that leave the range, and curves through folds beyond it (`FoldsBeyondRange`), are followed
+beyond the range, where they may cross further rows.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from ....arrays import Array
+from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import TracedCurves
+from .curve_comparison import are_identical_curves
+from .folds_beyond import FoldsBeyondRange
 from .row_crossing import RowCrossing
-from .special_curve_tracer import SpecialCurveTracer, are_identical_curves
-from .special_curves import SpecialPointCurve
+from .special_curve_tracer import SpecialCurveTracer
+from .special_curves import CurveEndReason, SpecialPointCurve
 from .special_point import RowSpecialPoint, SpecialPoint
 
 MAX_DIAGRAM_STAGES = 8
@@ -62,16 +67,20 @@ class DetachedRows:
         return f"detached branches of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
 
 
-Stage = SpecialCurveTracer | DetachedRows
+Stage = SpecialCurveTracer | DetachedRows | FoldsBeyondRange
 
 
 @dataclass(frozen=True, slots=True)
 class DiagramStages:
     """The stages of a diagram whose first stage traces the curves of `first`. special_points_of_row: as in
-    `SpecialPointsOfRow`."""
+    `SpecialPointsOfRow`. extended_axis: axis of the parameter along the rows, as far as branches are followed
+    beyond the range; None: curves are not followed beyond the range. leaving_rows: value of the row
+    parameter, by index, of the rows with branches that leave or enter the range."""
 
     first: SpecialCurveTracer
     special_points_of_row: SpecialPointsOfRow
+    extended_axis: PlaneAxis | None = None
+    leaving_rows: Mapping[int, float] = field(default_factory=dict)
 
     def stages(self, results: Results) -> list[Stage]:
         """All stages that follow from the results of work items; only the last one may be incomplete."""
@@ -86,11 +95,13 @@ class DiagramStages:
     def _stage_after(self, stages: Sequence[Stage], results: Results) -> Stage | None:
         """The stage after complete `stages`; None if nothing is left to do."""
         last_stage = stages[-1]
+        if isinstance(last_stage, FoldsBeyondRange):
+            return self._tracer_beyond(stages, last_stage, results)
         if isinstance(last_stage, SpecialCurveTracer):
-            return _rows_after(last_stage, stages, results)
+            return _rows_after(last_stage, stages, results) or self._folds_beyond_after(stages, results)
         new_points = self._new_special_points(stages, last_stage, results)
         if not new_points:
-            return None
+            return self._folds_beyond_after(stages, results)
         known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
         known_points = tuple(point for point in known_points if point not in new_points)
         return replace(
@@ -99,6 +110,34 @@ class DiagramStages:
             special_points=new_points,
             known_special_points=known_points,
             starts_by_row={row: last_stage.starts_of_row(row) for row in last_stage.crossings},
+        )
+
+    def _folds_beyond_after(self, stages: Sequence[Stage], results: Results) -> FoldsBeyondRange | None:
+        """The stage of the folds beyond the range, after complete `stages`; None if it was solved before, or
+        if neither a branch nor a curve leaves the range."""
+        if self.extended_axis is None or any(isinstance(stage, FoldsBeyondRange) for stage in stages):
+            return None
+        if not self.leaving_rows and not self.first.points_of_leaving_curves(results):
+            return None
+        return FoldsBeyondRange(stages[-1].end_item, self.first.row_axis.name, self.leaving_rows)
+
+    def _tracer_beyond(
+        self, stages: Sequence[Stage], folds_beyond: FoldsBeyondRange, results: Results
+    ) -> SpecialCurveTracer | None:
+        """Curves within and beyond the range through the folds of `folds_beyond`, and through a special point
+        of each curve that leaves the range; None if there are none."""
+        assert self.extended_axis is not None
+        # Special points of rows solved again are known only with the starts of their stage.
+        points = folds_beyond.special_points(results) + self.first.points_of_leaving_curves(results)
+        if not points:
+            return None
+        known_points = (*self.first.special_points, *self._special_points_of_rows(stages, results))
+        return replace(
+            self.first,
+            line_axis=self.extended_axis,
+            first_item=folds_beyond.end_item,
+            special_points=points,
+            known_special_points=tuple(point for point in known_points if point not in points),
         )
 
     def _special_points_of_rows(self, stages: Sequence[Stage], results: Results) -> list[RowSpecialPoint]:
@@ -130,11 +169,28 @@ class DiagramStages:
         """Variables of all rows that were solved again, (...,) each, by index of the row."""
         return _changed_rows(self.stages(results), results)
 
+    def lost_beyond_count(self, results: Results) -> int:
+        """Number of ends at which curves were lost while they were followed beyond the range, where they may
+        lead to further rows, plus the number of special points from which no such curve could be followed;
+        valid as `curves`. results: arrays, (...,) each, by name and item."""
+        count = 0
+        for stage in self.stages(results):
+            if isinstance(stage, SpecialCurveTracer) and stage.line_axis != self.first.line_axis:
+                traced = stage.curves(results)
+                ends = [end for curve in traced.curves for end in curve.ends]
+                count += ends.count(CurveEndReason.not_followed) + traced.untraced_count
+        return count
+
     def curves(self, results: Results) -> TracedCurves[SpecialPointCurve]:
         """The curves of all stages, each only once; valid if the last stage is complete."""
         curves: list[SpecialPointCurve] = []
         stages = self.stages(results)
-        traced_stages = [stage.curves(results) for stage in stages if isinstance(stage, SpecialCurveTracer)]
+        # Curves that are followed beyond the range only lead to rows; within it they are known.
+        traced_stages = [
+            stage.curves(results)
+            for stage in stages
+            if isinstance(stage, SpecialCurveTracer) and stage.line_axis == self.first.line_axis
+        ]
         for curve in (curve for stage_curves in traced_stages for curve in stage_curves.curves):
             if not any(are_identical_curves(curve, other, self.first.line_axis) for other in curves):
                 curves.append(curve)

@@ -79,7 +79,8 @@ def _special_points_and_row_crossings(
             for i, distance in distances_here.items():
                 distances[i] = min(distance, distances.get(i, distance))
             if not distances_here and index in complete_rows:
-                crossings.append(RowCrossing.from_solved_point(index, problem.kind, crossing))
+                error = max(a.error, b.error)
+                crossings.append(RowCrossing.from_solved_point(index, problem.kind, crossing, error))
     return dict(sorted(distances.items())), tuple(crossings)
 
 

@@ -21,14 +21,17 @@ class RowCrossing:
     special_point: SpecialPoint
 
     @classmethod
-    def from_solved_point(cls, row_index: int, kind: SpecialKind, point: SolvedPoint) -> "RowCrossing":
-        """The crossing at the point `point` of a curve of special points of the kind `kind`."""
+    def from_solved_point(
+        cls, row_index: int, kind: SpecialKind, point: SolvedPoint, error: float
+    ) -> "RowCrossing":
+        """The crossing at the point `point` of a curve of special points of the kind `kind`. error: absolute
+        error of the parameter along a row at the neighbouring points of the curve."""
         special = SpecialPoint(
             kind=kind,
             parameter_value=point.parameter,
             period=point.orbit.period,
             tip_y_max=point.tip_y_max,
-            error=CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter),
+            error=max(error, CURVE_SECANT_SETTINGS.accuracy * abs(point.parameter)),
             orbit=point.orbit,
         )
         return cls(row_index, special)

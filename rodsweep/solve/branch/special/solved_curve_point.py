@@ -13,8 +13,6 @@ from ...cycle.cycles_along_parameter import interpolated_change
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ...orbit.tails import smooth_tails
-from ...unsolvable import Unsolvable
-from ..bordered.condition import require_equal_unknowns
 from ..bordered.scale import ArcLengthScale
 
 
@@ -167,6 +165,8 @@ class SolvedPoint:
     """Value of the row parameter."""
     error: float = nan
     """Absolute error of `parameter`; NaN before `with_parameter_errors` sets it."""
+    row_extremum_error: float = 0.0
+    """Absolute error of `row_parameter` where it is extremal along the curve; 0 at other points."""
     measured_error: MeasuredCurveError | None = None
     """Error measured at this point or at an earlier point of the curve; None if unknown."""
     secant_error: float = 0.0
@@ -178,6 +178,11 @@ class SolvedPoint:
     def tip_y_max(self) -> float:
         """Largest tip y of the cycle, in L: the modulus of the tip's y at t = 0."""
         return abs(float(self.orbit.form.tip_coordinates(self.orbit.start_state)[1]))
+
+    def has_mesh_and_roles_of(self, other: "SolvedPoint") -> bool:
+        """Whether mesh and branch parameter of this point and of the point `other` agree."""
+        has_same_roles = self.scale.parameter_name == other.scale.parameter_name
+        return has_same_roles and mesh_of(self.orbit) == mesh_of(other.orbit)
 
     def step_from(self, other: "SolvedPoint") -> Array:
         """Step from the point `other` to this point, (4,), in components (deflection, log period, parameter
@@ -202,30 +207,20 @@ def with_parameter_errors(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     if a point has no error estimate.
     """
     points_with_errors: list[SolvedPoint] = []
-    previous_error: MeasuredCurveError | None = None
+    measured_point: SolvedPoint | None = None
     # In reverse order, so that the next measurement after each point is known.
     for point in reversed(points):
         if point.measured_error is None:
             raise ValueError("the point has no error estimate")
         candidates = [point.measured_error]
         if point.measured_error.reuse_count == 0:
-            previous_error = point.measured_error
-        elif previous_error and previous_error.mesh == mesh_of(point.orbit):
-            candidates.append(previous_error)
+            measured_point = point
+        elif measured_point is not None and point.has_mesh_and_roles_of(measured_point):
+            assert measured_point.measured_error is not None
+            candidates.append(measured_point.measured_error)
         mesh_error = max(errors.error_at(point) for errors in candidates)
         points_with_errors.append(replace(point, error=mesh_error + point.secant_error))
     return points_with_errors[::-1]
-
-
-def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
-    """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
-    parameters are not allowed or change the unknowns of a state. parameters: new parameter values by name."""
-    try:
-        form = replace(orbit.form, rod=orbit.form.rod.with_values(**parameters))
-    except (ValueError, ZeroDivisionError) as error:
-        raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
-    require_equal_unknowns(form, orbit)
-    return replace(orbit, form=form)
 
 
 def arc_lengths(points: Sequence[SolvedPoint]) -> Array:

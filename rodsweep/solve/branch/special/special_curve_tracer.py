@@ -9,7 +9,9 @@ from typing import ClassVar
 from ....determinant.parameter_plane import PlaneAxis
 from ...continuation.curve_search import CurveTracing, TracedCurves, trace_all_curves
 from ...orbit.matrix.workspace import NewtonWorkspace
-from .curve_problem import END_SETTINGS, SpecialCurveProblem
+from .curve_comparison import are_identical_curves, leaves_range
+from .curve_ends import END_SETTINGS
+from .curve_problem import SpecialCurveProblem
 from .half_curve import trace_half_curve
 from .row_crossing import RowCrossing
 from .special_curves import (
@@ -69,6 +71,16 @@ class SpecialCurveTracer:
             for _, search in self._searches(results)
             for traced in search.curves
             for crossing in traced.crossings
+        ]
+
+    def points_of_leaving_curves(self, results: Mapping[int, HalfCurveArrays]) -> list[RowSpecialPoint]:
+        """A special point of each curve that leaves the range of the parameter along the rows; valid as
+        `curves`."""
+        return [
+            self.special_points[min(traced.distances)]
+            for _, search in self._searches(results)
+            for traced in search.curves
+            if traced.distances and leaves_range(traced.curve, self.line_axis)
         ]
 
     def curves(self, results: Mapping[int, HalfCurveArrays]) -> TracedCurves[SpecialPointCurve]:
@@ -224,19 +236,3 @@ class _CurvesOfKind:
             if 0 <= fraction <= 1 and distance <= CURVE_IDENTITY_SETTINGS.max_last_chord_distance:
                 return True
         return False
-
-
-def are_identical_curves(first: SpecialPointCurve, second: SpecialPointCurve, line_axis: PlaneAxis) -> bool:
-    """Whether two curves are identical: kinds agree, and their ends coincide within a tolerance. line_axis:
-    axis of the parameter along a row."""
-    pairs = zip(_ends(first, line_axis), _ends(second, line_axis), strict=True)
-    distances = (abs(a - b) for p, q in pairs for a, b in zip(p, q, strict=True))
-    return first.kind == second.kind and all(
-        distance <= CURVE_IDENTITY_SETTINGS.max_end_distance for distance in distances
-    )
-
-
-def _ends(curve: SpecialPointCurve, line_axis: PlaneAxis) -> list[tuple[float, float]]:
-    """Both ends of a curve, each as (row coordinate, position along the row), from 0 to 1; ascending."""
-    ends = curve.points[0], curve.points[-1]
-    return sorted((p.row_coordinate, line_axis.coordinate(p.parameter_value)) for p in ends)

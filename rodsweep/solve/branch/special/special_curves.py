@@ -95,6 +95,7 @@ class CurvePoint:
 
     parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
     the row parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
+    row_extremum_error: absolute error of `row_value` where it is extremal along the curve, 0 elsewhere.
     """
 
     parameter_value: float
@@ -103,13 +104,19 @@ class CurvePoint:
     error: float
     period: float
     tip_y_max: float
+    row_extremum_error: float = 0.0
 
     @classmethod
     def from_solved_point(cls, point: SolvedPoint) -> "CurvePoint":
         """The stored quantities of a solved point of a curve."""
-        period = point.orbit.period
         return cls(
-            point.parameter, point.row_parameter, point.row_coordinate, point.error, period, point.tip_y_max
+            parameter_value=point.parameter,
+            row_value=point.row_parameter,
+            row_coordinate=point.row_coordinate,
+            error=point.error,
+            period=point.orbit.period,
+            tip_y_max=point.tip_y_max,
+            row_extremum_error=point.row_extremum_error,
         )
 
 
@@ -137,7 +144,7 @@ class TracedHalfCurve:
     crossings: tuple[RowCrossing, ...] = ()
 
     def arrays(self) -> HalfCurveArrays:
-        """The result as named arrays: points (points, 6), the fields of `CurvePoint`; end (1,), the value of
+        """The result as named arrays: points (points, 7), the fields of `CurvePoint`; end (1,), the value of
         the `CurveEndReason`, 0 if `half` is None; distances (near, 2), index and distance of each
         nearby special point; and the arrays of `numbered_arrays` for the crossings."""
         points = [] if self.half is None else [_point_numbers(point) for point in self.half.points]

@@ -1,0 +1,38 @@
+"""Ends of a curve of folds or torus points: settings, and the reason for each margin that becomes 0."""
+
+from dataclasses import dataclass
+
+from .special_curves import CurveEndReason
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveEndSettings:
+    """Settings for the ends of a curve of special points."""
+
+    min_loop_points: int = 5
+    """Whether a curve closes is tested only after more than this number of points."""
+    max_edge_distance: float = 1e-8
+    """Points at most this far from an edge of the plane lie on the edge; each axis has length 1."""
+    margin_tolerance: float = 1e-10
+    """Tolerance of a margin, and of the position at which it becomes 0 (divided by the step length)."""
+    crushing_margin: float = 1e-3
+    """A curve ends where the relative distance of F from the force that crushes the arm is this number."""
+    crushing_tolerance: float = 1e-6
+    """Relative tolerance of the length of a step that is shortened to end at half of `crushing_margin`."""
+    min_amplitude: float = 0.01
+    """A curve ends, at an extrapolated Hopf point, where the largest tip y, in L, is below this number."""
+    min_sine_at_resonance: float = 0.2
+    """A lost curve of torus points has ended at a resonance (the complex pair becomes real) if the sine of
+    the angle between multiplier and real axis is below this number."""
+
+
+END_SETTINGS = CurveEndSettings()
+ROW_EDGE_MARGINS = (2, 3)
+"""Indices, in `SpecialCurveProblem.margins`, of the two edges that are parallel to the rows."""
+END_BY_MARGIN = (
+    *4 * (CurveEndReason.edge,),
+    CurveEndReason.crushed,
+    CurveEndReason.left_the_model,
+    CurveEndReason.hopf,
+)
+"""Reason for the end of a curve, by the index of the margin that becomes 0; four are distances from edges."""

@@ -1,0 +1,78 @@
+"""Prediction of points of a curve of folds or torus points, by polynomials through points with equal roles of
+the parameters."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ....arrays import Array
+from ...orbit.orbit import Orbit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_of
+from ...unsolvable import Unsolvable
+from ..bordered.condition import require_equal_unknowns
+from .parameter_roles import ParameterRoles
+from .solved_curve_point import SolvedPoint, arc_lengths
+from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
+
+
+def predicted_orbit(
+    roles: ParameterRoles, points: Sequence[SolvedPoint], length: float
+) -> tuple[Orbit, float]:
+    """(orbit, row coordinate) predicted an arc length `length` beyond the last point; raises Unsolvable."""
+    tail = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    return weighted_sum(roles, tail, lagrange_weights(arc_lengths(tail), length), mesh_of(tail[-1].orbit))
+
+
+def weighted_sum(
+    roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array, mesh: OrbitMesh
+) -> tuple[Orbit, float]:
+    """(orbit on `mesh`, row coordinate): sums of `points` with weights, (points,); raises Unsolvable."""
+    values = np.dot(weights, [mesh.interpolated_orbit(point.orbit).values for point in points])
+    row, parameters = _parameters(roles, points, weights)
+    orbit = replace(mesh.interpolated_orbit(points[-1].orbit), values=values)
+    return orbit_with_parameters(orbit, parameters), row
+
+
+def length_before_crushing(
+    roles: ParameterRoles, points: Sequence[SolvedPoint], length: float, margin: float, tolerance: float
+) -> float:
+    """The arc length `length`, shortened so that the rod predicted beyond `points` keeps half of the crushing
+    margin `margin`; unchanged if the last point has less than half of this margin. tolerance: relative
+    tolerance of the shortened length."""
+    from scipy.optimize import brentq  # slow import: 0.1 s, for few runs
+
+    known = points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]
+    lengths = arc_lengths(known)
+
+    def distance(length: float) -> float:
+        rod = known[-1].orbit.form.rod
+        _, parameters = _parameters(roles, known, lagrange_weights(lengths, length))
+        values = {**rod.values, **parameters}
+        load = rod.build.crushing_ratio(values["F"], values["k1"], values["taper"])
+        return 1 - margin / 2 - load
+
+    if distance(length) >= 0 or distance(0.0) <= 0:
+        return length
+    return float(brentq(distance, 0.0, length, rtol=tolerance))
+
+
+def orbit_with_parameters(orbit: Orbit, parameters: dict[str, float]) -> Orbit:
+    """The orbit with unchanged values, for a rod with changed parameters; raises Unsolvable if the new
+    parameters are not allowed or change the unknowns of a state. parameters: new parameter values by name."""
+    try:
+        form = replace(orbit.form, rod=orbit.form.rod.with_values(**parameters))
+    except (ValueError, ZeroDivisionError) as error:
+        raise Unsolvable(f"the curve leaves the allowed range of the parameters: {error}") from error
+    require_equal_unknowns(form, orbit)
+    return replace(orbit, form=form)
+
+
+def _parameters(
+    roles: ParameterRoles, points: Sequence[SolvedPoint], weights: Sequence[float] | Array
+) -> tuple[float, dict[str, float]]:
+    """(row coordinate, values of both parameters by name): sums of `points` with weights, (points,)."""
+    branch_axis, row_axis = roles.axes_of(points[-1])
+    row = float(np.dot(weights, [point.row_coordinate for point in points]))
+    value = float(np.dot(weights, [point.parameter for point in points]))
+    return row, {branch_axis.name: value, row_axis.name: row_axis.value(row)}

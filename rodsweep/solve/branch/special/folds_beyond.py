@@ -1,0 +1,77 @@
+"""Folds beyond the range of the rows of a diagram. Curves of folds through them may cross, beyond the range,
+rows whose branches have no Hopf point anywhere; such a branch may enter the range."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from ....arrays import Array
+from .special_point import RowSpecialPoint, SpecialKind, SpecialPoint
+
+FOLDS = "folds_beyond"
+"""Name of the array of a row's folds beyond the range, (folds, 3): parameter along the row, period, tip y."""
+
+
+@dataclass(frozen=True, slots=True)
+class FoldsBeyondRange:
+    """Rows whose branches leave the range or enter it, as work items numbered from `first_item`; the results
+    are the folds of these branches beyond the range. row_name, row_values: name of the row parameter, and its
+    value by index of the row."""
+
+    outcome: ClassVar[str] = "row with branches that leave the range"
+    progress_noun: ClassVar[str] = "rows"
+
+    first_item: int
+    row_name: str
+    row_values: Mapping[int, float]
+
+    @property
+    def end_item(self) -> int:
+        """Number of rows plus `first_item`."""
+        return self.first_item + len(self.row_values)
+
+    def items_to_solve(self, results: Mapping[int, dict[str, Array]]) -> list[int]:
+        """Numbers of the rows without a result. results: arrays `FOLDS`, (folds, 3), by number."""
+        return [item for item in range(self.first_item, self.end_item) if item not in results]
+
+    def row_of(self, item: int) -> int:
+        """Index of the row of a work item."""
+        return sorted(self.row_values)[item - self.first_item]
+
+    def starts_of_row(self, row: int) -> tuple[SpecialPoint, ...]:
+        """No special points: the branches of the row with the index `row` are those of the first stage."""
+        return ()
+
+    def item_label(self, item: int) -> str:
+        """Text for a row in the progress display."""
+        return f"folds beyond the range of {self.row_name} = {self.row_values[self.row_of(item)]:.5g}"
+
+    def solve(
+        self, item: int, known_points: Callable[[int], tuple[SpecialPoint, ...]], limits: tuple[float, float]
+    ) -> dict[str, Array]:
+        """Folds of the row of a work item beyond the range `limits` of the parameter along the rows, as the
+        array `FOLDS`, (folds, 3). known_points: function from the index of a row to its special points,
+        within the range and beyond."""
+        folds = [
+            (point.parameter_value, point.period, point.tip_y_max)
+            for point in known_points(self.row_of(item))
+            if point.kind == SpecialKind.fold and not limits[0] <= point.parameter_value <= limits[1]
+        ]
+        return {FOLDS: np.array(folds, dtype=float).reshape(-1, 3)}
+
+    def special_points(self, results: Mapping[int, dict[str, Array]]) -> list[RowSpecialPoint]:
+        """The folds of all rows. results: arrays `FOLDS`, (folds, 3), of all work items, by number."""
+        return [
+            RowSpecialPoint(
+                row_index=self.row_of(item),
+                row_value=self.row_values[self.row_of(item)],
+                kind=SpecialKind.fold,
+                parameter_value=float(value),
+                period=float(period),
+                tip_y_max=float(height),
+            )
+            for item in range(self.first_item, self.end_item)
+            for value, period, height in results[item].get(FOLDS, ())
+        ]

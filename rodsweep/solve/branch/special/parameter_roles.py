@@ -1,0 +1,144 @@
+"""Roles of the two parameters of a plane along a curve of folds.
+
+The matrix of the cycle's equations with the branch parameter as a further unknown has full rank at a fold. It
+loses rank where the other parameter is extremal on the curve, as where a closed branch shrinks to one cycle.
+There the matrix with the other parameter as the unknown has full rank. A fold does not depend on which of the
+two parameters varies along the branch, so that they exchange their roles near such an extremum.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ....determinant.parameter_plane import PlaneAxis
+from ....model.parameters import PARAMETERS
+from ....model.rod import Rod
+from ...orbit.matrix.workspace import NewtonWorkspace
+from ..bordered.matrix import BorderedMatrix
+from ..bordered.scale import ArcLengthScale
+from .solved_curve_point import SolvedPoint, arc_lengths
+from .special_curves import CURVE_IDENTITY_SETTINGS, lagrange_weights
+from .special_point import SpecialKind
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterRoleSettings:
+    """Settings for the choice of the parameter along the branch."""
+
+    max_slope: float = 0.02
+    """The parameters exchange their roles where the relative change of the row parameter along the curve is
+    at most this number times the relative change of the parameter along a row. With larger slopes the errors
+    of the parameter along a row are smaller without the exchange."""
+    min_coordinate_unit: float = 0.01
+    """Smallest unit of a parameter coordinate, divided by the length of its axis: parameters may be 0."""
+
+
+PARAMETER_ROLE_SETTINGS = ParameterRoleSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class ParameterRoles:
+    """The two axes of a plane, and points of a curve of special points with each of its two parameters as the
+    branch parameter. line_axis, row_axis: axes of the parameter along a row and of the row parameter. In a
+    point with exchanged roles `parameter` is a value of the row parameter, and `row_coordinate` a position on
+    `line_axis`."""
+
+    kind: SpecialKind
+    line_axis: PlaneAxis
+    row_axis: PlaneAxis
+
+    def are_exchanged_at(self, point: SolvedPoint) -> bool:
+        """Whether the row parameter is the branch parameter of `point`."""
+        return point.scale.parameter_name != self.line_axis.name
+
+    def axes_of(self, point: SolvedPoint) -> tuple[PlaneAxis, PlaneAxis]:
+        """(axis of the branch parameter, axis of the other parameter) of `point`."""
+        axes = self.line_axis, self.row_axis
+        return axes[::-1] if self.are_exchanged_at(point) else axes
+
+    def with_roles(self, point: SolvedPoint, exchanged: bool) -> SolvedPoint:
+        """The point `point` with the row parameter (if `exchanged`) or the parameter along a row as the
+        branch parameter. Derivatives and the measured error of a point whose roles change are unknown."""
+        if self.are_exchanged_at(point) == exchanged:
+            return point
+        other_axis, branch_axis = self.axes_of(point)
+        unit = self._min_coordinate_unit(branch_axis) if exchanged else 0.0
+        return replace(
+            point,
+            # At a fold the branches along both parameters have the same direction.
+            scale=ArcLengthScale.at_orbit(
+                point.orbit, branch_axis.name, point.scale.min_deflection_unit, unit
+            ),
+            row_coordinate=other_axis.coordinate(point.parameter),
+            parameter=point.row_parameter,
+            row_parameter=point.parameter,
+            measured_error=None,
+            secant_error=0.0,
+            normal_derivatives=None,
+        )
+
+    def in_plane(self, point: SolvedPoint) -> SolvedPoint:
+        """The point `point` with the parameter along a row as the branch parameter."""
+        return self.with_roles(point, exchanged=False)
+
+    def need_exchange_between(self, first: SolvedPoint, second: SolvedPoint) -> bool:
+        """Whether the parameters exchange their roles on the chord between two points of a curve."""
+        changes = (
+            second.orbit.form.rod.coordinate(axis.name) - first.orbit.form.rod.coordinate(axis.name)
+            for axis in (self.line_axis, self.row_axis)
+        )
+        return self._is_flat(second.orbit.form.rod, *changes)
+
+    def need_exchange_beyond(self, points: Sequence[SolvedPoint], length: float) -> bool:
+        """Whether the parameters exchange their roles on the step of the arc length `length` beyond the last
+        of `points`: on the last chord or on the predicted one the row parameter hardly changes, or it turns
+        back between both, and the parameter along a row does not."""
+        known = [self.in_plane(point) for point in points[-CURVE_IDENTITY_SETTINGS.max_interpolated_points :]]
+        if self.need_exchange_between(*known[-2:]):
+            return True
+        rods = [point.orbit.form.rod for point in known]
+        names = self.line_axis.name, self.row_axis.name
+        table = np.array([[rod.coordinate(name) for name in names] for rod in rods])
+        predicted = lagrange_weights(arc_lengths(known), length) @ table - table[-1]
+        turns = predicted * (table[-1] - table[-2]) < 0
+        return bool(turns[1] and not turns[0]) or self._is_flat(rods[-1], *predicted)
+
+    def need_exchange_at(self, point: SolvedPoint, slope: float) -> bool:
+        """Whether the parameters exchange their roles on the first step from `point`, whose branch parameter
+        is the parameter along a row. slope: `axis_slope_at` this point."""
+        rod = point.orbit.form.rod
+        changes = (
+            axis.path_variable_per_coordinate(getattr(rod, axis.name))
+            for axis in (self.line_axis, self.row_axis)
+        )
+        line_change, row_change = changes
+        return self._is_flat(rod, slope * line_change, row_change)
+
+    def axis_slope_at(self, point: SolvedPoint, workspace: NewtonWorkspace) -> float:
+        """Derivative of the position on the axis of the branch parameter of `point` with respect to the
+        position on the other axis, along the curve. workspace: memory of Newton's matrices."""
+        matrix = BorderedMatrix(point.orbit, point.scale, workspace)
+        rod = point.orbit.form.rod
+        branch_change, other_change = (
+            axis.path_variable_per_coordinate(getattr(rod, axis.name)) for axis in self.axes_of(point)
+        )
+        response = matrix.parameter_response(self.axes_of(point)[1].name, point.branch_direction)
+        return response * other_change / branch_change
+
+    def _is_flat(self, rod: Rod, line_change: float, row_change: float) -> bool:
+        """Whether the row parameter hardly changes in comparison with the parameter along a row. rod: gives
+        the units. line_change, row_change: changes of the coordinates of both parameters."""
+        if self.kind != SpecialKind.fold:
+            return False
+        line, row = (
+            abs(change) / max(abs(rod.coordinate(axis.name)), self._min_coordinate_unit(axis))
+            for axis, change in ((self.line_axis, line_change), (self.row_axis, row_change))
+        )
+        return row <= PARAMETER_ROLE_SETTINGS.max_slope * line
+
+    def _min_coordinate_unit(self, axis: PlaneAxis) -> float:
+        """Smallest unit of the coordinate of the parameter of `axis`."""
+        parameter = PARAMETERS[axis.name]
+        length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))
+        return PARAMETER_ROLE_SETTINGS.min_coordinate_unit * float(length)

@@ -1,0 +1,103 @@
+"""Extrema of the row parameter along a curve of folds: a closed branch of cycles shrinks to one cycle there,
+or two branches exchange their parts."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from ...point_outcome import FAILURES
+from .solved_curve_point import ALONG_BRANCH, CURVE_SECANT_SETTINGS, SolvedPoint
+
+if TYPE_CHECKING:
+    from .curve_problem import SpecialCurveProblem  # for annotations only: the module imports this one
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RowExtremumSettings:
+    """Settings for locating an extremum of the row parameter along a curve of folds."""
+
+    slope_tolerance: float = 1e-7
+    """Largest slope of the curve at a located extremum, divided by the change of the slope between the two
+    points of the curve beside the extremum. Errors of the fold, 1e-9, change the slope by about as much."""
+
+
+ROW_EXTREMUM_SETTINGS = RowExtremumSettings()
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _SlopedPoint:
+    """A point of a curve with exchanged roles. slope: derivative of the position on the row axis with respect
+    to the position on the axis of the parameter along a row, along the curve."""
+
+    point: SolvedPoint
+    slope: float
+
+
+def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
+    """The points of a curve, in order, with the parameter along a row as the branch parameter, and further
+    points at the extrema of the row parameter. points: points with errors and any roles of the parameters.
+    An extremum that cannot be located is omitted."""
+    roles = problem.roles
+    sloped = {}
+    for i, point in enumerate(points):
+        # The chords to and from points with exchanged roles.
+        if any(map(roles.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
+            exchanged = roles.with_roles(point, exchanged=True)
+            sloped[i] = _SlopedPoint(exchanged, roles.axis_slope_at(exchanged, problem.workspace))
+    result = []
+    for i, point in enumerate(points):
+        has_plane_error = not roles.are_exchanged_at(point)
+        error = point.error if has_plane_error else _error_along_row(problem, sloped, i)
+        result.append(replace(roles.in_plane(point), error=error))
+        if i in sloped and i + 1 in sloped and sloped[i].slope * sloped[i + 1].slope < 0:
+            try:
+                result.append(_located_extremum(problem, sloped[i], sloped[i + 1]))
+            except FAILURES:
+                continue
+    return result
+
+
+def _error_along_row(problem: "SpecialCurveProblem", sloped: Mapping[int, _SlopedPoint], i: int) -> float:
+    """Absolute error of the parameter along a row at point i, whose error is one of the row parameter."""
+    here = sloped[i]
+    line_axis, row_axis = problem.line_axis, problem.row_axis
+    error = here.point.error / abs(row_axis.parameter_per_coordinate(here.point.parameter))
+    curvature = max(abs(_slope_change(here, sloped[j])) for j in (i - 1, i + 1) if j in sloped)
+    # The distance d along the row at which |slope| d + curvature d^2 / 2 is the error of the row coordinate.
+    distance = 2 * error / (abs(here.slope) + sqrt(here.slope**2 + 2 * curvature * error))
+    return distance * abs(line_axis.parameter_per_coordinate(here.point.row_parameter))
+
+
+def _slope_change(first: _SlopedPoint, second: _SlopedPoint) -> float:
+    """Change of the slope between two points, divided by the change of the position along a row."""
+    return (second.slope - first.slope) / (second.point.row_coordinate - first.point.row_coordinate)
+
+
+def _located_extremum(
+    problem: "SpecialCurveProblem", first: _SlopedPoint, second: _SlopedPoint
+) -> SolvedPoint:
+    """The extremum of the row parameter between two successive points of a curve, with the errors of both
+    parameters; raises Unsolvable."""
+    roles = problem.roles
+    slopes = first.slope, second.slope
+    tolerance = ROW_EXTREMUM_SETTINGS.slope_tolerance * abs(second.slope - first.slope)
+
+    def slope(point: SolvedPoint) -> float:
+        return roles.axis_slope_at(point, problem.workspace)
+
+    point = problem.zero_between(first.point, second.point, slope, slopes, tolerance)
+    family = problem.family(point)
+    finer_mesh = family.finer_mesh_than(point)
+    fine = family.corrected_point(
+        finer_mesh.interpolated_orbit(point.orbit), point.row_coordinate, ALONG_BRANCH
+    )
+    slope_error = CURVE_SECANT_SETTINGS.error_factor * abs(slope(fine) - slope(point)) + tolerance
+    line_axis = roles.line_axis
+    distance = slope_error / abs(_slope_change(first, second))
+    difference = CURVE_SECANT_SETTINGS.error_factor * abs(fine.parameter - point.parameter)
+    return replace(
+        roles.in_plane(point),
+        error=distance * abs(line_axis.parameter_per_coordinate(point.row_parameter)),
+        row_extremum_error=difference + CURVE_SECANT_SETTINGS.min_error * abs(point.parameter),
+    )

@@ -1,0 +1,178 @@
+"""Curves of folds through extrema of the row parameter, where both parameters exchange their roles.
+
+With k2 = 1e4, gamma3 = 0.006 the folds have their smallest k1 at F = 79.004, where a closed branch of cycles
+shrinks to one cycle, and a largest k1 at F = 118.458.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import rodsweep as rs
+from rodsweep.determinant.parameter_plane import PlaneAxis
+from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.coexistence import row_branches, special_points_of
+from rodsweep.solve.branch.special import parameter_roles, row_extremum
+from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
+from rodsweep.solve.branch.special.half_curve import trace_half_curve
+from rodsweep.solve.branch.special.parameter_roles import ParameterRoles
+from rodsweep.solve.branch.special.row_crossing import RowCrossing
+from rodsweep.solve.branch.special.special_curves import CurveEndReason
+from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.changes.diagram.rows import RowRequest
+from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
+from rodsweep.solve.unsolvable import Unsolvable
+
+ROD = Rod(F=60.0, k1=133.3, k2=1e4, gamma3=0.006)
+AXES = PlaneAxis("F", 50.0, 120.0), PlaneAxis("k1", 132.0, 136.0)
+REQUEST = RowRequest("F", np.array([50.0, 120.0]), 1e-10, True, 16)
+SMALLEST = 79.0040695, 133.01451425
+"""F and k1 at the smallest closed branch, by folds of branches along k1 at five forces."""
+
+
+def folds_of(rod, starts=()):
+    found = special_points_of(row_branches(rod, REQUEST, 64, starts=starts))
+    return [point for point in found if point.kind == SpecialKind.fold]
+
+
+def followed(special, row, direction, axes=AXES):
+    problem = SpecialCurveProblem(SpecialKind.fold, *axes, NewtonWorkspace(), direction)
+    return problem.follow_from(special, row)
+
+
+def extrema_of(points):
+    return [point for point in points if point.row_extremum_error]
+
+
+@pytest.fixture(scope="module")
+def fold():
+    """The fold of the branches at k1 = 133.3."""
+    (fold,) = folds_of(ROD)
+    return fold
+
+
+@pytest.fixture(scope="module")
+def points(fold):
+    """The curve of folds from k1 = 133.3 to smaller k1, through its smallest k1."""
+    points, end = followed(fold, ROD.k1, -1.0)
+    assert end is CurveEndReason.hopf
+    return points
+
+
+@pytest.mark.long
+def test_a_curve_of_folds_passes_the_smallest_closed_branch(points):
+    (extremum,) = extrema_of(points)
+    assert extremum.row_parameter == min(point.row_parameter for point in points)
+    assert extremum.parameter == pytest.approx(SMALLEST[0], abs=extremum.error + 1e-7)
+    assert extremum.row_parameter == pytest.approx(SMALLEST[1], abs=extremum.row_extremum_error)
+    assert extremum.error <= 1e-7 * SMALLEST[0]
+    assert extremum.row_extremum_error <= 1e-8 * SMALLEST[1]
+    # The curve is regular there: its points lie on both sides, in order.
+    forces = [point.parameter for point in points]
+    assert forces == sorted(forces, reverse=True)
+    assert forces[0] > 90 > SMALLEST[0] > 75 > forces[-1]
+    assert all(point.scale.parameter_name == "F" for point in points)
+
+
+@pytest.mark.long
+def test_the_extremum_is_that_of_folds_along_the_row_parameter():
+    forces = np.array([78.4, 78.8, 79.0, 79.2, 79.6])
+    along = rs.sweep(
+        "branch", along="k1", F=forces, k2=1e4, gamma3=0.006, gamma1=1, start=133, stop=133.6, progress=False
+    )
+    kinds, at = (along[name].values.reshape(len(forces), -1) for name in ("special_kind", "special_at"))
+    folds = [values[kind == SpecialKind.fold].item() for kind, values in zip(kinds, at, strict=True)]
+    fit = np.polynomial.Polynomial.fit(forces, folds, 4)
+    vertex = min(fit.deriv().roots(), key=lambda F: abs(F - 79)).real
+    assert (vertex, fit(vertex)) == pytest.approx(SMALLEST, abs=1e-7)
+
+
+@pytest.mark.long
+def test_folds_near_the_extremum_are_those_of_branches_along_the_row(points):
+    near = [point for point in points if 133.015 < point.row_parameter < 133.1]
+    assert {point.parameter > SMALLEST[0] for point in near} == {True, False}
+    assert len(near) > 5
+    for point in near:
+        crossing = RowCrossing.from_solved_point(0, SpecialKind.fold, point, point.error)
+        folds = folds_of(replace(ROD, k1=point.row_parameter), [crossing.special_point])
+        distance = min(abs(fold.parameter_value - point.parameter) for fold in folds)
+        assert distance <= min(point.error, 1e-7 * point.parameter)
+
+
+@pytest.mark.long
+def test_a_curve_begins_near_an_extremum_in_both_directions(points):
+    extremum = extrema_of(points)[0]
+    row = extremum.row_parameter + 6e-4
+    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), 1.0)
+    beyond = next(p for p in points if p.parameter < extremum.parameter and p.row_parameter > row)
+    before = points[points.index(beyond) - 1]
+    crossing = problem.point_on_row(before, beyond, AXES[1].coordinate(row))
+    start = RowCrossing.from_solved_point(0, SpecialKind.fold, crossing, 1e-4).special_point
+    low, high = sorted(folds_of(replace(ROD, k1=row), [start]), key=lambda fold: fold.parameter_value)
+    assert low.parameter_value == pytest.approx(crossing.parameter, abs=1e-4)
+    for axes in (
+        AXES,
+        (AXES[0], PlaneAxis("k1", 136.0, 132.0)),
+        (AXES[0], PlaneAxis("k1", 132.0, 180.0, True)),
+    ):
+        for special, leads_over in ((low, -1.0), (high, -1.0)):
+            for direction in (1.0, -1.0):
+                # `direction` belongs to the row coordinate, which may decrease with k1.
+                rises = np.sign(axes[1].stop - axes[1].start)
+                curve, _ = followed(special, row, direction * rises, axes)
+                at = [round(point.parameter, 5) for point in extrema_of(curve)]
+                assert (79.00407 in at) == (direction == leads_over)
+                assert (118.45785 in at) == ((special is low) == (direction == leads_over))
+
+
+@pytest.mark.long
+def test_a_row_near_an_extremum_is_crossed_twice(fold):
+    stored = RowSpecialPoint(
+        row_index=0,
+        row_value=ROD.k1,
+        kind=fold.kind,
+        parameter_value=fold.parameter_value,
+        period=fold.period,
+        tip_y_max=fold.tip_y_max,
+    )
+    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), -1.0)
+    half = trace_half_curve(problem, stored, [fold], [stored], {1: 133.0155, 2: 133.0145})
+    assert half.distances == {0: pytest.approx(0, abs=1e-6)}
+    assert [crossing.row_index for crossing in half.crossings] == [1, 1]
+    starts = [crossing.special_point for crossing in half.crossings]
+    folds = sorted(point.parameter_value for point in folds_of(replace(ROD, k1=133.0155), starts))
+    assert len(folds) == 2
+    for start, same in zip(starts, folds[::-1], strict=True):
+        assert start.parameter_value == pytest.approx(same, abs=min(start.error, 1e-4))
+
+
+@pytest.mark.long
+def test_an_extremum_that_is_not_located_is_left_out(fold, points, monkeypatch):
+    def fail(*_):
+        raise Unsolvable("no point")
+
+    monkeypatch.setattr(row_extremum, "_located_extremum", fail)
+    others, end = followed(fold, ROD.k1, -1.0)
+    assert end is CurveEndReason.hopf
+    extremum = extrema_of(points)[0]
+    kept = [point for point in points if point is not extremum]
+    assert [point.parameter for point in others] == [point.parameter for point in kept]
+
+
+@pytest.mark.long
+def test_without_the_exchange_of_roles_the_curve_is_lost(fold, monkeypatch):
+    """What the exchange is for; from k1 = 134 on, with the steps of this curve."""
+    start = folds_of(replace(ROD, k1=134.0))[0]
+    settings = replace(parameter_roles.PARAMETER_ROLE_SETTINGS, max_slope=0.0)
+    monkeypatch.setattr(parameter_roles, "PARAMETER_ROLE_SETTINGS", settings)
+    monkeypatch.setattr(ParameterRoles, "need_exchange_beyond", lambda *_: False)
+    points, end = followed(start, 134.0, -1.0)
+    assert end is CurveEndReason.not_followed
+    assert points[-1].row_parameter == pytest.approx(133.0146, abs=1e-4)
+
+
+def test_curves_of_torus_points_never_exchange_the_roles():
+    roles = ParameterRoles(SpecialKind.torus, *AXES)
+    assert not roles._is_flat(ROD, 1.0, 0.0)
+    assert ParameterRoles(SpecialKind.fold, *AXES)._is_flat(ROD, 1.0, 0.0)
