@@ -154,8 +154,8 @@ class ArmProblem(TransverseProblem):
         return arm_mesh(self.rod, modes, accuracy)
 
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
-        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails, only
-        from the eigenvalues that the proof needs."""
+        """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,
+        only from the eigenvalues that the proof needs."""
         needed_mask, largest_w = self._eigenvalues_for_proof(mesh_eigenvalues)
         return roots_of_arm(
             np.where(needed_mask, mesh_eigenvalues, np.inf), self._determinant, self._hull, max_q, largest_w

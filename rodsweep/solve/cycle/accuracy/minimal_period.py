@@ -15,6 +15,7 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
+from ...orbit.time_grading import UNIFORM_TIME
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,8 +37,11 @@ MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
 def common_harmonic_divisor(path: CyclePath, min_ratio: float) -> int:
-    """Greatest common divisor of the numbers of all harmonics larger than `min_ratio` times the largest
-    harmonic; 0 if all harmonics are 0."""
+    """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
+    times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
+    the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
+    if _divisor_from_harmonic_sizes(path.tip_angle_harmonics, min_ratio) == 1:
+        return 1
     return int(_divisor_from_harmonic_sizes(path.bending_harmonics, min_ratio))
 
 
@@ -77,4 +81,5 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
         return orbit
     times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
-    return replace(orbit, values=np.append(orbit.states_at(times / g), orbit.period / g))
+    values = np.append(orbit.states_at(times / g), orbit.period / g)
+    return replace(orbit, values=values, grading=UNIFORM_TIME)
