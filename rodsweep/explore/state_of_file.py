@@ -67,7 +67,7 @@ def state_from_config(config: Config, path: Path, F_max: str = DEFAULT_F_MAX) ->
     material = _law_key(config, path)
     axes = {name: axis.array() for name, axis in config.parameters.axes.items()}
     if not axes:
-        raise InputError(f"{path}: a list of points has no diagram; the page needs axes of parameters")
+        raise InputError(f"{path}: a list of points has no diagram; open the result of a grid of parameters")
     if isinstance(config, BranchConfig) and config.branch.along != "F":
         ends = (config.branch.start, config.branch.stop)
         axes[config.branch.along] = np.array([sum(ends) / 2])

@@ -123,7 +123,7 @@ def _load_comparison_sentence(plane: PlaneOfMotion, flutter: RangeOverDrags, loa
     if thresholds.end < F:
         end = load.range_of_forces_text(RangeOverDrags(thresholds.end, thresholds.end))
         unknown = f"whether the arm beats at {load.typed_text} is not known"
-        return f"Flutter is at {load_text}; {unknown}: changes were sought up to {end}."
+        return f"Flutter is at {load_text}; {unknown}: thresholds were searched only up to {end}."
     unstable = [drag.is_unstable_at(F) for drag in thresholds.by_drag]
     if flutter.high < F and not any(unstable):
         return f"{load.typed_text} is beyond flutter, at {load_text}: the straight arm is stable again."

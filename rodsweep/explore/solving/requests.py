@@ -114,7 +114,7 @@ def film_answer(state: PageState) -> AnswerVariables:
     Raises InputError if the rod has no cycle."""
     answer = state.subject().cycle(shapes=SHAPE_COUNT, progress=False)
     if not np.isfinite(answer.data["shape_x"].values).all():
-        raise InputError(f"there is no cycle to film: {answer.sentence}")
+        raise InputError(f"there is no cycle to film, choose a load above flutter: {answer.sentence}")
     return film_of_cycle(answer)
 
 

@@ -174,7 +174,8 @@ class _ValueTextConverter:
         if isinstance(value, FunctionType | BuiltinFunctionType):
             return _qualified_name(value)
         raise TypeError(
-            f"{_qualified_name(self.function)}: {value!r} has no digest; import the needed names from it"
+            f"{_qualified_name(self.function)} is compiled and reads {value!r}, which has no digest; pass it "
+            "as an argument, or import the needed names of a module"
         )
 
     def _class_text(self, kind: type) -> str:

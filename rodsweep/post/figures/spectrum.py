@@ -131,14 +131,17 @@ def _line_of_spectra(view: ResultView, request: FigureRequest) -> ResultView:
     """View of a file as a line of spectra, without infinite parameters. Raises InputError if the file is not
     a line of spectra."""
     if view.task != request.views[0].task:
-        raise InputError(f"{view.path} is of the task {view.task}; only lines of spectra can share a figure")
+        raise InputError(
+            f"{view.path} is of the task {view.task}; only lines of spectra can share a figure; plot it by "
+            "itself"
+        )
     view = as_grid_if_possible(view)
     style.require_content(view, np.isfinite(view.variables["growth_rate"]).any(), "computed point")
     view = without_infinite_values(view) if view.is_grid else view
     if not view.is_grid or sum(len(values) > 1 for values in view.parameter_values.values()) != 1:
         raise InputError(
             f"{view.path} is not a line of spectra, along which one parameter varies; only lines of spectra "
-            "can share a figure"
+            "can share a figure; plot it by itself, or select a line with --at"
         )
     return view
 

@@ -150,7 +150,9 @@ def require_content(view: ResultView, available: object, noun: str) -> None:
     if not available:
         if (view.variables["status"] == MISSING_STATUS).all():
             raise InputError(f"no point of {view.path} is computed yet; `rodsweep run` continues the run")
-        raise InputError(f"{view.path} holds no {noun} that could be drawn")
+        raise InputError(
+            f"{view.path} holds no {noun} that could be drawn; `rodsweep show` gives the statuses"
+        )
 
 
 def legend_below(figure: Figure, handles: list[Any], columns: int) -> None:

@@ -71,13 +71,15 @@ def _draw_files(request: FigureRequest) -> str:
     # A list over an arm's quantities has many.
     names = style.varied_axes(views[0]) if views[0].is_grid else []
     if len(views) > len(FILE_COLOURS):
-        room = f"a figure of thresholds has room for {len(FILE_COLOURS)}"
-        raise InputError(f"{len(views)} files are given; {room}")
+        raise InputError(
+            f"{len(views)} files are given; a figure of thresholds has room for {len(FILE_COLOURS)}; give "
+            "fewer files"
+        )
     for view in views:
         if view.task != views[0].task:
             raise InputError(
                 f"{view.path} is of the task {view.task} and {views[0].path} of the task {views[0].task}; "
-                "files of different tasks share no figure"
+                "files of different tasks share no figure; plot each file by itself"
             )
         if not view.is_grid or style.varied_axes(view) != names or names[1:]:
             raise InputError(

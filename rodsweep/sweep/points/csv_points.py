@@ -65,7 +65,9 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
     """Yields the lines of a text file; raises InputError for a line of LONGEST_LINE characters or more."""
     while line := file.readline(LONGEST_LINE):
         if len(line) == LONGEST_LINE:
-            raise InputError(f"{path}: a line has {LONGEST_LINE} characters or more, too many for a point")
+            raise InputError(
+                f"{path}: a line has {LONGEST_LINE} characters or more; write one point in each line"
+            )
         yield line
 
 

@@ -121,7 +121,9 @@ def chosen_cycles(view: ResultView, points: Sequence[int], variable_names: Seque
     for number in points:
         if statuses[number - 1] != "cycle":
             word = statuses[number - 1].replace("_", " ")
-            raise InputError(f"--point {number}: the point has no cycle to draw; its status is: {word}")
+            raise InputError(
+                f"--point {number}: the point has no cycle to draw; its status is {word}; choose another"
+            )
     return _selected_cycles(view, points, statuses == "cycle", "cycle")
 
 
@@ -134,8 +136,10 @@ def chosen_transients(view: ResultView, points: Sequence[int]) -> CycleSelection
     is_stored = np.isfinite(view.variables[TRANSIENT_VARIABLE_NAMES[0]][..., -1].ravel())
     for number in points:
         if not is_stored[number - 1]:
-            problem = "the motion of this point from its initial state is not stored"
-            raise InputError(f"--point {number}: {problem}")
+            raise InputError(
+                f"--point {number}: the motion of this point from its initial state is not stored; choose a "
+                "point that was integrated from its initial state"
+            )
     return _selected_cycles(view, points, is_stored, "transient")
 
 

@@ -82,7 +82,10 @@ class JoinedFile:
                 if not self._is_rounding_error(name, stored_records[i][name], records[i][name], pair):
                     text = _point_text(self.plan.points, index)
                     paths = " and ".join(str(source.path) for source in pair)
-                    raise InputError(f"{paths} disagree about the point {text}: the values of {name} differ")
+                    raise InputError(
+                        f"{paths} disagree about the point {text}: the values of {name} differ; repeat one "
+                        "of the runs, or merge without one of the files"
+                    )
 
     def _is_rounding_error(self, name: str, a: Any, b: Any, sources: Sequence[ResultHeader]) -> bool:
         """Whether two different values of the variable `name` are equal up to ROUNDING_FACTOR. Always True
@@ -114,11 +117,15 @@ def joined_file_of(sources: Sequence[ResultHeader], planner: FilePlanMaker) -> J
         names = (first.path.name, header.path.name)
         difference = config_difference(settings | {"together": None}, other, "", names)
         if difference:
-            raise InputError(f"{header.path} was made from another config than {first.path} ({difference})")
+            raise InputError(
+                f"{header.path} was made from another config than {first.path} ({difference}); leave one of "
+                "them out"
+            )
         kinds = kind_of_points(grids[0]), kind_of_points(points)
         if kinds[0] != kinds[1]:
             raise InputError(
-                f"{first.path} and {header.path} cannot be merged: one has {kinds[0]}, the other {kinds[1]}"
+                f"{first.path} and {header.path} cannot be merged: one has {kinds[0]}, the other {kinds[1]}; "
+                "leave one of them out"
             )
     if "arm" in settings:
         raise InputError(
