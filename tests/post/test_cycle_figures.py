@@ -273,7 +273,7 @@ GRID7 = (SWEEP[0], *SWEEP[1:4], list(np.arange(1, 8.0)))
         (few_shapes(), {"what": "animation"}, "5 shapes .* limit_cycle.shapes: 48"),
         (make_view(SWEEP, SWEPT), {"points": (9,)}, "points 1 to 8"),
         (make_view(SWEEP, SWEPT), {"points": (0,)}, "points 1 to 8"),
-        (make_view(SWEEP, SWEPT), {"points": (6,)}, "its status is: left the model"),
+        (make_view(SWEEP, SWEPT), {"points": (6,)}, "its status is left the model; choose another"),
         (make_view(SWEEP, SWEPT), {"points": (3, 4, 5, 7)}, "at most 3 points"),
         (make_view(SWEEP, SWEPT), {"points": (3,), "what": "amplitude"}, "--point is given, but"),
         (make_view(TWO, [1, 4]), {}, "no cycle that could be drawn"),

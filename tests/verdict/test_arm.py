@@ -425,6 +425,6 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
 def test_beyond_where_changes_were_sought_nothing_is_claimed():
     window = found(1.0, (20.0, ChangeKind.hopf, 2), end=25.0)
     assert verdict(arm(viscosity=1e3), window)[0] == (
-        "Flutter is at 1.25 kPa; whether the arm beats at 2 kPa is not known: thresholds were searched only up "
-        "to 1.56 kPa."
+        "Flutter is at 1.25 kPa; whether the arm beats at 2 kPa is not known: thresholds were searched "
+        "only up to 1.56 kPa."
     )
