@@ -149,14 +149,6 @@ class DependentItemQueue(ChunkQueue):
         """Range of the item that a rank is solving, by rank."""
         self._items_to_solve: list[int] | None = None
 
-    @property
-    def ready_items(self) -> list[int]:
-        """Items that `item_chooser` has chosen and that no rank is solving, the most urgent item first."""
-        if self._items_to_solve is None:
-            self._items_to_solve = self.item_chooser.items_to_solve(self.results)
-        taken_items = {start for start, _ in self.in_progress.values()}
-        return [item for item in self._items_to_solve if item not in taken_items]
-
     def add_report(self, rank: int, report: RankReport) -> None:
         """Adds the results in a rank's report; an item without a result can be chosen again."""
         with self.change:
@@ -172,10 +164,13 @@ class DependentItemQueue(ChunkQueue):
         with self.change:
             if self.is_stopped:
                 return NO_WORK_LEFT
-            items = self.ready_items
-            if items:
-                self.in_progress[rank] = (items[0], items[0] + 1)
-                return self.in_progress[rank]
+            if self._items_to_solve is None:
+                self._items_to_solve = self.item_chooser.items_to_solve(self.results)
+            taken_items = {start for start, _ in self.in_progress.values()}
+            for item in self._items_to_solve:
+                if item not in taken_items:
+                    self.in_progress[rank] = (item, item + 1)
+                    return self.in_progress[rank]
             return None if self.in_progress else NO_WORK_LEFT
 
     def next_chunk_in_advance(self, rank: int) -> IndexRange | None:

@@ -77,7 +77,11 @@ def arm_report(arm: SlenderArm) -> ArmReport:
     assessment = Assessment(first_plane.arm, first_plane.thresholds)
     checks = checks_of(assessment)
     is_applicable = assessment.validity_of_verdict < Validity.does_not_apply
-    doubtful_checks = tuple(check for check in checks if is_applicable and check.makes_verdict_doubtful)
+    doubtful_checks = tuple(
+        check
+        for check in checks
+        if is_applicable and check.can_change_verdict and check.validity == Validity.doubtful
+    )
     headline, *others = verdict_sentences(planes, assessment)
     if arm.share_of_flutter is not None:
         load = str(getattr(arm, str(arm.load))).strip()

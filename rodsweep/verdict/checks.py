@@ -36,12 +36,6 @@ class Check:
     only on the width of the range of drag."""
 
     @property
-    def makes_verdict_doubtful(self) -> bool:
-        """Whether the check makes the verdict doubtful. False for an effect beyond the limit of the model,
-        because the verdict itself then says that the model does not apply."""
-        return self.can_change_verdict and self.validity == Validity.doubtful
-
-    @property
     def is_negligible(self) -> bool:
         """Whether the effect is small enough to neglect."""
         return self.validity == Validity.applies

@@ -79,14 +79,10 @@ class ArmDeterminant:
             if min_W <= level[0] <= max_ratio * min_W:
                 return level
         W = ARM_ELEMENT_SETTINGS.W_reserve_factor * min_W
-        propagator_set = W, self._propagators(W)
+        elements = elements_for([self.rod], self._coefficient_samples, W)
+        propagator_set = W, element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
         self._known_propagators = sorted([*self._known_propagators, propagator_set], key=itemgetter(0))
         return propagator_set
-
-    def _propagators(self, W: float) -> Array:
-        """Propagators that are valid for |w| <= W, (elements, terms, PADDED), computed anew."""
-        elements = elements_for([self.rod], self._coefficient_samples, W)
-        return element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
 
 
 class CoefficientSamples(NamedTuple):

@@ -81,11 +81,6 @@ class Build:
         return list(LAWS).index((self.law, self.section))
 
     @cached_property
-    def is_continuous(self) -> bool:
-        """Whether no coefficient jumps along the arm."""
-        return not self.jump_positions
-
-    @cached_property
     def jump_positions(self) -> tuple[float, ...]:
         """The u at which factors of the profile jump: the profile has two rows for such a u."""
         u = () if self.profile is None else self.profile.u

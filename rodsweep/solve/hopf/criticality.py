@@ -111,7 +111,7 @@ def _status_and_message(
     failures = "; ".join(filter(None, (c.message for c in coefficients)))
     known_coefficients = [c for c in coefficients if c.are_known]
     is_inaccurate = any(c.error > request.accuracy * abs(c.value) for c in hopf_points.thresholds) or any(
-        c.largest_error > request.accuracy for c in known_coefficients
+        max(c.landau_error, c.growth_slope_error) > request.accuracy for c in known_coefficients
     )
     # From the most to the least serious.
     verdicts = {

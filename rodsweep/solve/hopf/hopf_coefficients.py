@@ -89,12 +89,6 @@ class HopfCoefficients:
             return 0.0
         return math.copysign(1.0, self.landau.real)
 
-    @property
-    def largest_error(self) -> float:
-        """The larger of the relative errors of landau and growth_slope, from which amplitude_coefficient and
-        frequency_slope are computed."""
-        return max(self.landau_error, self.growth_slope_error)
-
 
 def hopf_coefficients(rod: Rod, hopf: Threshold, accuracy: float) -> HopfCoefficients:
     """The normal form coefficients at the Hopf point `hopf`, with c to the relative `accuracy`; raises

@@ -84,11 +84,9 @@ def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
     lengths, u = _chebyshev_points_of_build(build)
     F = np.array([rod.F for rod in rods])
     coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
-    averaged = (
-        np.empty((len(rods), 0, 2))
-        if build.is_continuous
-        else _averaged_regions_by_arm(F, lengths, coefficients)
-    )
+    averaged = np.empty((len(rods), 0, 2))
+    if build.jump_positions:
+        averaged = _averaged_regions_by_arm(F, lengths, coefficients)
     return HullSamples(F, lengths, coefficients, averaged)
 
 

@@ -84,22 +84,14 @@ class CriticalModesOfPath:
         if p not in self.modes_by_p:
             try:
                 self.modes_by_p[p] = self._compute_modes(p, guesses)
-            except Unsolvable:
-                replacement = self._modes_just_outside(p)
-                if replacement is None:
+            except Unsolvable as reason:
+                if p not in self.outside_p_by_end:
                     raise
-                self.modes_by_p[p] = replacement
+                try:
+                    self.modes_by_p[p] = self._compute_modes(self.outside_p_by_end[p], None)
+                except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
+                    raise reason from None
         return self.modes_by_p[p]
-
-    def _modes_just_outside(self, p: float) -> CriticalModes | None:
-        """The modes slightly outside the end p of the searched range, used if the modes at p cannot be
-        counted; None if p is no end, or if these modes cannot be computed."""
-        if p not in self.outside_p_by_end:
-            return None
-        try:
-            return self._compute_modes(self.outside_p_by_end[p], None)
-        except (Unsolvable, ValueError):  # ValueError: no such rod, for example a crushed one
-            return None
 
     def _compute_modes(self, p: float, guesses: Complex | None) -> CriticalModes:
         """The modes near the imaginary axis if `has_many_modes(p)` and their count is decided, otherwise the
