@@ -1,6 +1,7 @@
 """The finest of the initial meshes of a sweep's rods, which `rodsweep check` reports."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
 from itertools import product
 
 import numpy as np
@@ -10,7 +11,7 @@ from ..discretization.elements.elements import Elements, equal_edges
 from ..discretization.elements.resolution import expected_wave_number, resolution_for
 from ..discretization.straight.arm_resolution import arm_mesh
 from ..model.dispersion import most_amplified_wave
-from ..model.rod import Rod
+from ..model.rod import Crushed, Rod
 from ..solve.changes.search_range import end_below_crushing
 from .cost_estimate import sampled_points
 from .points.points import Points
@@ -37,10 +38,18 @@ def largest_first_mesh(
     indices = {*sampled_points(points).tolist(), *_corners(points)}
     rods = (
         rod
-        for index in sorted(indices)
-        for rod in _rods_at_parameter_ends(points.rod(index), parameter_ends or {})
+        for point_rod in _uncrushed_rods(points, sorted(indices))
+        for rod in _rods_at_parameter_ends(point_rod, parameter_ends or {})
     )
     return max(map(mesh_of, rods), key=lambda mesh: mesh.node_count, default=None)
+
+
+def _uncrushed_rods(points: Points, indices: Iterable[int]) -> Iterator[Rod]:
+    """Yields the rods of the points at flat `indices`; rods crushed by their force, as in some rows of a
+    diagram, are omitted."""
+    for index in indices:
+        with suppress(Crushed):
+            yield points.rod(index)
 
 
 def _rods_at_parameter_ends(rod: Rod, parameter_ends: Mapping[str, Array]) -> Iterator[Rod]:

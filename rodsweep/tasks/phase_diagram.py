@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..config.task.phase_diagram import PhaseDiagramConfig
-from ..model.rod import Rod
+from ..model.rod import Crushed, Rod
 from ..results.layouts.phase_diagram import MAX_CYCLE_SPECIAL_POINTS
 from ..sweep.branch_cost import branches_cost
 from ..sweep.cost_estimate import CostEstimate, sampled_points
@@ -115,24 +115,22 @@ class PhaseDiagramTask(CertifiedTask):
         """The cost `lines` of rows along F with the further time of soft and of pulled rows."""
         soft = soft_searches_seconds(self.points, float(self.line_values[-1]), is_varying)
         rows = sampled_points(self.points, MAX_SAMPLED_ROWS)
-        rods = [self.rod_of_row(int(row)) for row in rows]
+        rods = [rod for row in rows if (rod := self.rod_of_row(int(row)))]
         pulled, doubt = pulled_rows_seconds(rods, self.line_values, self.points.count)
         return replace(lines, seconds=lines.seconds + soft + pulled, doubt=doubt)
 
     def solver(self) -> Solver:
-        from ..solve.changes.diagram.rows import solve_row
         from ..solve.changes.status import ThresholdStatus
         from ..solve.changes.thresholds import warm_up
         from ..solve.orbit.matrix.workspace import NewtonWorkspace
 
         options = self.config.phase_diagram
-        request = self.row_request()
         workspace = NewtonWorkspace()
         curves = DiagramCurves(self, workspace)
         row_solver = Solver(
             statuses=tuple(ThresholdStatus),
             warm_up=warm_up,
-            solve=lambda index: solve_row(self.rod_of_row(index), request),
+            solve=self.straight_row,
             record=lambda index, result: self.row_record(result),
             sweep_wide_solver=curves if options.curves else None,
         )
@@ -149,13 +147,22 @@ class PhaseDiagramTask(CertifiedTask):
             record=lambda index, result: self.coexistence_record(result),
         )
 
+    def straight_row(self, index: int) -> "DiagramRow":
+        """Solves a row without cycles. index: flat index of the row."""
+        from ..solve.changes.diagram.rows import crushed_row, solve_row
+
+        rod = self.rod_of_row(index)
+        return solve_row(rod, self.row_request()) if rod else crushed_row(self.line_values)
+
     def coexistence_row(
         self, index: int, workspace: "NewtonWorkspace", starts: "Sequence[SpecialPoint]" = ()
     ) -> "CoexistenceRow":
         """Solves a row with cycles. starts: special points from which further branches are followed."""
-        from ..solve.branch.coexistence import solve_coexistence
+        from ..solve.branch.coexistence import crushed_coexistence_row, solve_coexistence
 
         rod = self.rod_of_row(index)
+        if rod is None:
+            return crushed_coexistence_row(self.line_values)
         return solve_coexistence(rod, self.row_request(), MAX_CYCLE_SPECIAL_POINTS, workspace, starts)
 
     def row_record(self, result: "DiagramRow") -> dict[str, Any]:
@@ -168,10 +175,13 @@ class PhaseDiagramTask(CertifiedTask):
         cycles = cycles_record(result, self.row_request().parameter_name)
         return self.row_record(result.straight_rod_row) | cycles
 
-    def rod_of_row(self, index: int) -> Rod:
+    def rod_of_row(self, index: int) -> Rod | None:
         """The rod of a row, with the neutral value, such as F = 0 or k1 = inf, of the parameter that varies
-        along the row."""
-        return self.points.rod(index, gamma1=self.config.gamma1)
+        along the row; None if the force crushes this rod."""
+        try:
+            return self.points.rod(index, gamma1=self.config.gamma1)
+        except Crushed:
+            return None
 
     def row_request(self) -> "RowRequest":
         """The settings with which every row is solved."""

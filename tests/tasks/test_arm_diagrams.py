@@ -1,6 +1,7 @@
 """Phase diagrams of arms: their curves do not depend on what the process solved before."""
 
 import numpy as np
+import pytest
 
 import rodsweep as rs
 from rodsweep.determinant import parameter_plane
@@ -35,3 +36,24 @@ def test_curves_are_the_same_whatever_was_solved_before(monkeypatch):
     again = rs.sweep("phase_diagram", **DIAGRAM, profile=PROFILE, progress=False)
     for name in ("curve_F", "curve_k1", "curve_frequency", "fold_F", "fold_k1"):
         assert np.array_equal(alone[name].values, again[name].values)
+
+
+@pytest.mark.parametrize("cycles", [False, True])
+def test_a_row_of_crushed_cones_beside_other_rows_is_crushed(cycles):
+    """At the taper 0.6 the force crushes the tip whatever the shear stiffness, along which the row runs."""
+    plane = {"F": 75.0, "k1": 150.0, "k2": [1e3, 1e4], "gamma3": 1e-4, "taper": [0.6, 0.8]}
+    data = rs.sweep("phase_diagram", **plane, cycles=cycles, **({"cycle_accuracy": 1e-3} if cycles else {}))
+    assert data.status.values.ravel().tolist() == [0, 0]
+    words = dict(zip(data["class"].flag_values, data["class"].flag_meanings.split(), strict=True))
+    classes = data["class"].squeeze(drop=True).transpose("taper", "k2").values
+    assert [[words[value] for value in row] for row in classes] == [["crushed"] * 2, ["flutter"] * 2]
+
+
+def test_check_knows_rows_of_crushed_cones(command):
+    command.write(
+        "cones.yaml",
+        "task: phase_diagram\nparameters: {F: 75, k1: 150, k2: [1.0e3, 1.0e4], gamma3: 0, taper: [0.6, 1]}",
+    )
+    checked = command("check", "cones.yaml")
+    assert (checked.returncode, checked.stderr) == (0, "")
+    assert "2 rows, one for each taper" in checked.stdout

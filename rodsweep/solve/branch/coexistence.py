@@ -5,6 +5,7 @@ multipliers of a section lie inside the unit circle, a stable cycle exists at ev
 interval. The ends of an interval are located special points, not parameter values of the row.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...model.rod import Rod
 from ...wording import counted
-from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, solve_row
+from ..changes.diagram.rows import DiagramRow, RodClass, RowRequest, crushed_row, solve_row
 from ..changes.status import ThresholdStatus
 from ..orbit.matrix.workspace import NewtonWorkspace
 from .branch_curve import BranchCurve
@@ -48,9 +49,9 @@ class CoexistenceRow:
 
     straight_rod_row: DiagramRow
     stable_states: NDArray[np.int8]
-    special_points: tuple[SpecialPoint, ...]
+    special_points: tuple[SpecialPoint, ...] = ()
     status: CoexistenceStatus
-    followed_range: tuple[float, float]
+    followed_range: tuple[float, float] = (math.nan, math.nan)
     folds_beyond: tuple[SpecialPoint, ...] = ()
     """Located folds of the branches followed beyond the range of the row."""
     message: str = ""
@@ -90,6 +91,14 @@ def solve_coexistence(
         folds_beyond=branches.folds_beyond,
         message="; ".join(filter(None, [message, _undecided_values_text(request.parameter_name, undecided)])),
         seconds=row.seconds + branches.seconds,
+    )
+
+
+def crushed_coexistence_row(values: Array) -> CoexistenceRow:
+    """A row in which the force crushes the rod at all `values`, (values,): it has no cycles."""
+    states = np.full(len(values), StableStates.crushed, dtype=np.int8)
+    return CoexistenceRow(
+        straight_rod_row=crushed_row(values), stable_states=states, status=CoexistenceStatus.ok
     )
 
 

@@ -1,5 +1,7 @@
 """The last cycle of a branch, at an end of the parameter range."""
 
+from collections.abc import Callable
+
 from numpy.polynomial import Polynomial
 
 from ...model.parameters import PARAMETERS
@@ -38,9 +40,30 @@ def cycle_at_range_end(
         # Evaluated on the predicted cubic; only the final cycle is solved, below.
         return -range_end.residual(segment.predicted_orbit(length))
 
+    tolerance = BRANCH_END_SETTINGS.range_end_tolerance
     ends = beyond(0.0), beyond(segment.length)
-    length = zero_along_step(beyond, ends, segment.length, 0.0, BRANCH_END_SETTINGS.range_end_tolerance)
+    inner = 0.0
+    if abs(ends[0]) <= tolerance * abs(ends[1]):
+        inner = _length_within_range(beyond, segment.length)
+        ends = beyond(inner), ends[1]
+    length = inner + zero_along_step(
+        lambda part: beyond(inner + part), ends, segment.length - inner, 0.0, tolerance
+    )
     return _solved_at_range_end(start, segment.predicted_orbit(length), length, range_end, accuracy)
+
+
+def _length_within_range(beyond: Callable[[float], float], step: float) -> float:
+    """Length at which a step that begins at the end of the range lies within the range: the branch enters the
+    range there, and leaves it behind a fold. 0 if the step leads out of the range at once.
+
+    beyond: signed distance from the end of the range, by length. step: length of the step.
+    """
+    length = step / 2
+    while length > BRANCH_END_SETTINGS.range_end_tolerance * step:
+        if beyond(length) * beyond(step) < 0:
+            return length
+        length /= 2
+    return 0.0
 
 
 def cycle_at_zero_coordinate(start: BranchCycle, low: float, accuracy: float) -> BranchCycle | None:

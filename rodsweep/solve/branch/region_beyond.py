@@ -148,7 +148,7 @@ class RegionBeyond:
             return None
         if index_of_passed_range_end(first, self.limits.coordinate_range) != 1 - self.index:
             return self._entry(BranchCurve(start_hopf=number), first, accuracy)
-        # The Hopf point is so close to the range that the first cycle lies within the range.
+        # The first cycle already lies within the range.
         limits = replace(self.range_limits, accuracy=accuracy, locates_special_points=False)
         passage = follow_from_cycle(BranchCurve(start_hopf=-1), turned_back(first), limits).end_passage
         if passage is None or passage.index != self.index:

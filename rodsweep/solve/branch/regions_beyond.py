@@ -19,18 +19,18 @@ def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> 
 
 
 def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float) -> RegionBeyond | None:
-    """The region beyond the end with the given index of the range of `limits`; None if no branch leads on
-    from there, because the force crushes the rod, the force is 0 or a pull, or the coordinate is 0. margin:
-    smallest relative distance from the crushing force."""
+    """The region beyond the end `index` of the range, within the allowed values of the parameter; None at a
+    crushed rod and at a coordinate of 0 or less. margin: see `regions_beyond`."""
     end = limits.coordinate_range[index]
     if end <= 0 or limits.end_reasons[index] is BranchEndReason.crushed:
         return None
     far_end = _far_end(end, index, path.name)
     low, high = sorted(map(path.parameter.value, (end, far_end)))
+    bounds = path.parameter.allowed.schema_bounds
+    low, high = max(bounds.get("minimum", low), low), min(bounds.get("maximum", high), high)
     rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
     low, high = uncrushed_interval(path.rod.build, rod, (path.name, low, high), margin)
-    ends = [path.coordinate(low), path.coordinate(high)]
-    far_end = max(ends) if index == 1 else min(ends)
+    far_end = (min, max)[index](path.coordinate(low), path.coordinate(high))
     # The unknowns of a branch cannot change within the branch.
     is_small = has_small_rotational_drag(path.rod_at(far_end))
     if not low < high or is_small and not limits.keeps_omega:

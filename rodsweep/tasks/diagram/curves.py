@@ -230,6 +230,8 @@ class DiagramCurves:
         starts = items.starts_of_row(number)
         if (number, len(starts)) not in self.special_points_by_row:
             rod = self.task.rod_of_row(number)
+            if rod is None:
+                return ()
             request = self.task.row_request()
             branches = row_branches(rod, request, MAX_CYCLE_SPECIAL_POINTS, self.workspace, starts)
             return special_points_of(branches) + branches.folds_beyond

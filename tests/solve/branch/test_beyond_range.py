@@ -243,3 +243,19 @@ def test_a_narrow_diagram_equals_the_part_of_a_wide_one():
         assert 3 in wide
         for first, last in ((12, 20), (20, 26)):
             assert states(rod, np.linspace(20.0, 90.0, 29)[first:last]) == wide[first:last]
+
+
+def test_a_narrow_range_around_a_fold_holds_both_parts_of_the_branch():
+    """The branch enters and leaves at one end of the range within one step, whose first zero is its start."""
+    (curve,) = followed(Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4), 85.6055, 85.6056).curves
+    assert kinds(curve) == ["end", "fold", "end"]
+    ends = [point.parameter_value for point in curve.special_points]
+    np.testing.assert_allclose(ends, [85.6055, 85.6055767, 85.6055], rtol=1e-8)
+    first, last = (point.multiplier for point in (curve.points[0], curve.points[-1]))
+    assert first < 1 < last
+
+
+def test_branches_are_followed_up_to_the_last_allowed_taper():
+    found = followed(Rod(F=75.0, k1=150.0, k2=1e4, gamma3=1e-4), 0.6, 90.0, "taper")
+    assert kinds(found.curves[0]) == ["hopf", "fold", "hopf"]
+    assert max(found.followed_range) == 100.0

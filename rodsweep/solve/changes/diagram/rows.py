@@ -82,6 +82,11 @@ def solve_row(rod: Rod, request: RowRequest) -> DiagramRow:
     return outcome_or_failure(lambda: _search_row(rod, request), failed, more_failures=(ValueError,))
 
 
+def crushed_row(values: Array) -> DiagramRow:
+    """A row in which the force crushes the rod at all `values`, (values,), of the parameter."""
+    return _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
+
+
 def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     """The row, searched over the values at which the rod is not crushed and, along F or k1, on to the
     crushing force; a row of crushed rods is not searched."""
@@ -95,7 +100,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     crushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F
     nearly_crushed = ~is_uncrushed & ~crushed
     if not is_uncrushed.any():
-        row = _row_of_one_class(ThresholdStatus.ok, values, RodClass.crushed)
+        row = crushed_row(values)
         return replace(row, rod_class=np.where(crushed, RodClass.crushed, RodClass.undecided).astype(np.int8))
     start = float(values[is_uncrushed][0])
     stop = float(values[is_uncrushed][-1])
