@@ -199,12 +199,14 @@ def _add_special_points(
         return BranchEnd(
             special_point_between(SpecialKind.left_the_model, start, end, limits.accuracy), complete=True
         )
-    if not limits.locates_special_points:
-        if start.parameter_rate * end.parameter_rate < 0:
-            curve.add_special_point(special_point_between(SpecialKind.fold, start, end, limits.accuracy))
-        return None
-    cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
-    special_points, explained = special_points_between(start, end, cycle_at, limits.accuracy)
+    if limits.locates_special_points:
+        cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
+        special_points, explained = special_points_between(start, end, cycle_at, limits.accuracy)
+    else:
+        has_fold = start.parameter_rate * end.parameter_rate < 0
+        kinds = [SpecialKind.fold] if has_fold else []
+        special_points = [special_point_between(kind, start, end, limits.accuracy) for kind in kinds]
+        explained = True
     closing_index = curve.index_of_first_special_point(special_points)
     if closing_index < 0:
         curve.add_special_points(special_points, explained)

@@ -198,7 +198,9 @@ class RegionBeyond:
         return low < self.path.coordinate(start.parameter_value) < high
 
     def _add_folds(self, curve: BranchCurve) -> None:
-        self.folds += [p for p in curve.special_points if p.kind == SpecialKind.fold and not p.message]
+        # The last special point of a closed branch is its first one, located again.
+        points = curve.special_points[: -1 if curve.closed else None]
+        self.folds += [point for point in points if point.kind == SpecialKind.fold and not point.message]
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:

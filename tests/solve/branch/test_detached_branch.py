@@ -154,6 +154,14 @@ def test_a_branch_that_leaves_the_range_has_both_ends_there(starts):
 
 
 @pytest.mark.long
+def test_a_closed_branch_beyond_the_range_is_followed_once_around_and_left_out(starts):
+    found = row_branches(ROD, request(88, 100), 64, starts=starts)
+    assert (found.status, found.message, found.curves) == (BranchStatus.ok, "", ())
+    places = [fold.parameter_value for fold in found.folds_beyond]
+    assert sorted(places) == pytest.approx([FIRST, LAST], abs=1e-7)
+
+
+@pytest.mark.long
 def test_a_point_on_a_known_branch_starts_no_other(beside):
     folds = [point for point in beside if point.kind == SpecialKind.fold]
     found = row_branches(BESIDE, request(60, 86), 64, starts=folds)
