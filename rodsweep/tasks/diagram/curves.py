@@ -63,14 +63,16 @@ class DiagramCurves:
 
     def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
-        cached. number: number of the row."""
+        cached. number: number of the row.
+        """
         if len(self.special_points_by_row) < MAX_CACHED_ROWS:
             self.special_points_by_row[number, 0] = row.special_points
         return row
 
     def initial_data(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
         """Special points cached on this rank, for the rows on which the half curves numbered `item_numbers`
-        start. items: all half curves, or rows that are solved again, which need no special points."""
+        start. items: all half curves, or rows that are solved again, which need no special points.
+        """
         from ...solve.branch.special.special_curve_tracer import SpecialCurveTracer
 
         if not isinstance(items, SpecialCurveTracer):
