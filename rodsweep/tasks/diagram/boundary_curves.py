@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 
 def boundary_curves(plane: "Plane", view: ResultView, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
-    """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of every
-    row, (rows,)."""
+    """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
+    every row, (rows,).
+    """
     from ...solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 
     names = ("crossing_at", "crossing_kind", "crossing_frequency", "crossing_growth_rate")
@@ -58,7 +59,8 @@ def generalised_hopf_curves(
 ) -> list[FilledVariable]:
     """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities: of
     the Hopf curves of the plane. accuracy: relative accuracy of the linear results. third_axis: name and
-    values of the third parameter."""
+    values of the third parameter.
+    """
     from ...determinant.parameter_plane import PlaneAxis
     from ...solve.hopf.bautin_curves import (
         BautinCurve,

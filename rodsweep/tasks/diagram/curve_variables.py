@@ -39,7 +39,8 @@ def boundary_curve_values(
     traced: "TracedCurves[BoundaryCurve]", plane: tuple[str, str], **limit_values: Any
 ) -> list[FilledVariable]:
     """Variables of the boundary curves and of their folds. plane: (parameter along a row, parameter that
-    differs between rows). limit_values: values of the variables on the partial beam limit, by name."""
+    differs between rows). limit_values: values of the variables on the partial beam limit, by name.
+    """
     points = []
     folds = []
     for number, curve in enumerate(traced.curves, 1):
@@ -68,7 +69,8 @@ def criticality_record(
 ) -> list[FilledVariable]:
     """Variables of the criticality along each boundary curve, and of the generalised Hopf points.
     criticalities: criticality of each boundary curve, in order. plane: (parameter along a row, parameter that
-    differs between rows). gamma1: axial drag of all rods."""
+    differs between rows). gamma1: axial drag of all rods.
+    """
     rows = []
     start = 0
     for number, curve in enumerate(criticalities, 1):
@@ -90,7 +92,8 @@ def bautin_curve_values(
     curves: Sequence["BautinCurve"], plane: tuple[str, str], third_parameter: str
 ) -> list[FilledVariable]:
     """Variables of the curves of generalised Hopf points along the third parameter `third_parameter`. plane:
-    (parameter along a row, parameter that differs between rows)."""
+    (parameter along a row, parameter that differs between rows).
+    """
     rows = [
         _object_and_point(point, (*plane, third_parameter), curve=number, **reasons)
         for number, curve in enumerate(curves, 1)
@@ -108,7 +111,8 @@ def cycle_curve_values(
     traced: "TracedCurves[SpecialPointCurve]", plane: tuple[str, str]
 ) -> list[FilledVariable]:
     """Variables of the curves of folds and torus points of cycles, with the Hopf points at their ends. plane:
-    (parameter along a row, parameter that differs between rows)."""
+    (parameter along a row, parameter that differs between rows).
+    """
     rows: list[tuple[Any, ...]] = []
     for number, curve in enumerate(traced.curves, 1):
         start, end = ([({"tip_y_max": 0.0}, point)] if point else [] for point in curve.hopf_ends)
@@ -182,7 +186,8 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
 
 def special_points_of_rows(view: ResultView, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
     """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
-    rows. rows: parameter value of every row, (rows,)."""
+    rows. rows: parameter value of every row, (rows,).
+    """
     names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
     kinds, *columns = map(view.by_point, names)
     return [
@@ -223,7 +228,8 @@ def with_hopf_ends(
 ) -> "TracedCurves[SpecialPointCurve]":
     """The curves in `traced`, with ends at generalised Hopf points replaced by the points located on Hopf
     curves. criticalities: criticality along each boundary curve. unstored: number of special points that are
-    not stored, added to `untraced_count`."""
+    not stored, added to `untraced_count`.
+    """
     from ...solve.branch.special.special_curves import with_bautin_ends
 
     bautin_points = [point for curve in criticalities for point in curve.points]

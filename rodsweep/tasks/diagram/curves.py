@@ -67,7 +67,8 @@ class DiagramCurves:
 
     def cache_row(self, number: int, row: "CoexistenceRow") -> "CoexistenceRow":
         """Returns `row` unchanged, after caching its special points if fewer than MAX_CACHED_ROWS rows are
-        cached. number: number of the row."""
+        cached. number: number of the row.
+        """
         if len(self.special_points_by_row) < MAX_CACHED_ROWS:
             self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond
         return row
