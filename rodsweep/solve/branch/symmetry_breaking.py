@@ -47,13 +47,14 @@ def extended_to_whole_period(orbit: Orbit) -> Orbit:
     """A symmetric orbit, which stores half a period, extended by its symmetry to the whole period and to
     twice as many time intervals."""
     intervals = 2 * orbit.interval_count
-    times = 2 * node_times(intervals, orbit.stage_count)
+    grading = orbit.grading.doubled
+    times = 2 * node_times(intervals, orbit.stage_count, grading)
     is_second_half = times > 1
     points = orbit.states_at(np.where(is_second_half, times - 1, times))
     # The second half of the period is the mirror image of the first.
     points[is_second_half] = orbit.symmetry.apply(points[is_second_half], orbit.form.layout)
     values = np.append(points.ravel(), orbit.period)
-    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values)
+    return replace(orbit, symmetry=NO_SYMMETRY, interval_count=intervals, values=values, grading=grading)
 
 
 def asymmetry(orbit: Orbit) -> Array:

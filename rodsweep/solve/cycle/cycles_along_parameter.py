@@ -133,7 +133,7 @@ class CyclePredictor:
 def interpolated_change(orbit: Orbit, change: Array, target: OrbitMesh) -> Array:
     """The change `change` of the values of `orbit`, (N,), interpolated to the mesh `target` by a linear map,
     (N of the target,)."""
-    return orbit.change_on_mesh(change, target.space_mesh, target.interval_count, target.stage_count)
+    return orbit.change_on_mesh(change, target.space_mesh, target.time_mesh)
 
 
 def predictor_from(solved: ConvergedOrbit, previous: CyclePredictor | None, name: str) -> CyclePredictor:

@@ -40,13 +40,13 @@ TIP_EXTREMUM_SETTINGS = TipExtremumSettings()
 
 
 class TipPath(NamedTuple):
-    """Path of the tip over a period, and strains, as trigonometric polynomials through the states at the time
-    nodes.
+    """Path of the tip over a period, and strains, as trigonometric polynomials in the mesh time through the
+    states at the time nodes.
 
     strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
-    respect to t/T, T: period, for the solved states, (2, 3, K, nodes + elements). tip_coefficients: the
-    `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
-    equidistant times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least_tip_values,
+    respect to the mesh time in periods, for the solved states, (2, 3, K, nodes + elements). tip_coefficients:
+    the `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
+    equidistant mesh times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least_tip_values,
     largest_tip_values: smallest and largest (x, y, theta), (3,)."""
 
     strains_and_rates: Array
@@ -68,10 +68,11 @@ class OrbitMeans(NamedTuple):
 
 
 @compiled_for_vectors
-def tip_path(states: Array, period: float, p: OrbitEquations, m: TipMatrices) -> TipPath:
-    """Path of the tip. states: states at equidistant times of the solved part of the period, (K, n): half the
-    period for a symmetric orbit, otherwise the period. period: in tau2. p: equations of the orbit. m: result
-    of `tip_matrices`."""
+def tip_path(states: Array, time_scales: Array, p: OrbitEquations, m: TipMatrices) -> TipPath:
+    """Path of the tip. states: states at equidistant mesh times of the solved part of the period, (K, n): half
+    the period for a symmetric orbit, otherwise the period. time_scales: derivatives of the time, in tau2, with
+    respect to the mesh time in periods at these states, (K,). p: equations of the orbit. m: result of
+    `tip_matrices`."""
     size = len(p.node_matrices.weights)
     strains = np.empty((2, 3, len(states), len(m.element_nodes)))
     tip = np.empty((len(states), 3))
@@ -80,7 +81,10 @@ def tip_path(states: Array, period: float, p: OrbitEquations, m: TipMatrices) ->
     rates = np.empty((3, len(states), size))
     write_node_stresses(states, S)
     write_strain_rates(states, rates, p)
-    rates *= period
+    for a in range(len(rates)):
+        for k in range(len(states)):
+            for i in range(size):
+                rates[a, k, i] *= time_scales[k]
     write_element_strains(S, p.rod, m.element_nodes, strains[0])
     write_element_strain_rates(S, rates, p.rod, m.element_nodes, strains[1])
     write_tip_motion(strains[0], strains[1], m, tip, velocity)
@@ -100,22 +104,6 @@ def write_node_stresses(states: Array, out: Array) -> None:
                 out[a, k, i] = states[k, stress_index(a, i, n)]
             # The stress at the tip is prescribed: its deviation from the straight rod is 0.
             out[a, k, n] = 0.0
-
-
-@compiled_for_vectors
-def harmonic_sizes(values: Array, slopes: Array, sign: float) -> Array:
-    """Size of each harmonic from the first, (count - 1,): square root of the sum of squared moduli over all
-    columns of `values`.
-
-    values, slopes: values and time derivatives at equidistant nodes of a period, or of half a period, (nodes,
-    columns). sign: factor by which every column changes in half a period of a symmetric orbit; 0 for an orbit
-    without symmetry."""
-    c = hermite_coefficients_of_columns(values, slopes, np.full(values.shape[1], sign))
-    sizes = np.zeros(len(c) - 1)
-    for k in range(1, len(c)):
-        for a in range(c.shape[1]):
-            sizes[k - 1] += c[k, a].real ** 2 + c[k, a].imag ** 2
-    return np.sqrt(sizes)
 
 
 @compiled_for_vectors

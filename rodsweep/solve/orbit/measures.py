@@ -1,8 +1,8 @@
 """Measures of a cycle: extrema, harmonics, energy budget, path of the tip and shapes of the rod.
 
-At the starts of all intervals except the last, which are equidistant in time, strains and strain rates have
-the full order of the collocation. The trigonometric polynomial through strains and strain rates converges
-spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature of the
+At the starts of all intervals except the last, which are equidistant in mesh time, strains and strain rates
+have the full order of the collocation. The trigonometric polynomial in mesh time through strains and strain
+rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature of the
 collocation.
 """
 
@@ -17,15 +17,17 @@ from ...discretization.elements.elements import ELEMENT_SETTINGS
 from ...discretization.elements.mesh import Mesh, shape_from_strains
 from ...discretization.elements.quadrature import lobatto_points
 from ...discretization.elements.trigonometric import (
+    fourier_coefficients,
     hermite_coefficients,
     hermite_coefficients_of_columns,
     series_samples,
     time_of_rise_through_mean,
 )
 from ...discretization.stress.tip_motion import tip_matrices
-from .compiled_measures import REFLECTION_SIGNS, harmonic_sizes, tip_path, write_powers
+from .compiled_measures import REFLECTION_SIGNS, tip_path, write_powers
 from .least_stretch import least_stretch_between_nodes
 from .orbit import Orbit
+from .time_grading import coefficients_in_time, samples_in_time
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -57,18 +59,38 @@ class CycleMeasures:
 
 
 class CyclePath:
-    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_coefficients: Fourier
-    coefficients of the tip's (x, y, theta), (count, 3). tip_samples: (x, y, theta) at equidistant times of
-    the period, (m, 3)."""
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of the
+    tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
+    theta) in mesh time, (count, 3), whose size measures the error of the polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:
         self.orbit = orbit
         mesh = orbit.form.mesh
         self._equidistant_states = np.ascontiguousarray(orbit.equidistant_states)
         matrices = tip_matrices(mesh)
-        self._path = tip_path(self._equidistant_states, orbit.period, orbit.orbit_equations, matrices)
-        self.tip_coefficients = self._path.tip_coefficients
-        self.tip_samples = self._path.tip_samples
+        self._time_scales = orbit.period * orbit.equidistant_time_rates
+        self._path = tip_path(self._equidistant_states, self._time_scales, orbit.orbit_equations, matrices)
+        self.last_tip_coefficients = self._path.tip_coefficients
+        self.tip_samples = (
+            self._path.tip_samples
+            if orbit.grading.is_uniform
+            else samples_in_time(self._path.tip_coefficients, orbit.grading, self._parts)
+        )
+
+    @property
+    def _parts(self) -> int:
+        return self.orbit.symmetry.period_parts
+
+    def _in_time(self, c: Complex) -> Complex:
+        """Fourier coefficients in time from Fourier coefficients c in mesh time, (count, ...)."""
+        return coefficients_in_time(c, self.orbit.grading, self._parts)
+
+    @cached_property
+    def tip_coefficients(self) -> Complex:
+        """Fourier coefficients of the tip's (x, y, theta) in time, (count, 3)."""
+        if self.orbit.grading.is_uniform:
+            return self._path.tip_coefficients
+        return fourier_coefficients(self.tip_samples)
 
     @cached_property
     def strain_coefficients(self) -> Complex:
@@ -77,7 +99,7 @@ class CyclePath:
         K, size = self._path.strains_and_rates.shape[2:]
         values, slopes = self._path.strains_and_rates.swapaxes(1, 2).reshape(2, K, 3 * size)
         signs = np.repeat(REFLECTION_SIGNS if self.orbit.is_symmetric else np.zeros(3), size)
-        c: Complex = hermite_coefficients_of_columns(values, slopes, signs)
+        c = self._in_time(hermite_coefficients_of_columns(values, slopes, signs))
         return c.reshape(len(c), 3, size)
 
     @cached_property
@@ -85,7 +107,9 @@ class CyclePath:
         """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of
         squared moduli over the nodes of all elements."""
         values, slopes = self._path.strains_and_rates[:, 2]
-        sizes: Array = harmonic_sizes(values, slopes, REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
+        signs = np.full(values.shape[1], REFLECTION_SIGNS[2] * self.orbit.is_symmetric)
+        c = self._in_time(hermite_coefficients_of_columns(values, slopes, signs))
+        sizes: Array = np.linalg.norm(c[1:], axis=1)
         return sizes
 
     def resampled_tip(self, count: int) -> Array:
@@ -147,12 +171,12 @@ class CyclePath:
         U = self.orbit.form.elastic_energy(self._equidistant_states)
         power = np.empty((2, len(self._equidistant_states)))
         write_powers(self._equidistant_states, power, self.orbit.orbit_equations)
-        rates = (power[0] - power[1]) * period
+        rates = (power[0] - power[1]) * self._time_scales
         if self.orbit.is_symmetric:
             # Energy and power are even under the reflection, so they repeat after half a period.
             U = np.tile(U, 2)
             rates = np.tile(rates, 2)
-        c = hermite_coefficients(U, rates)
+        c = self._in_time(hermite_coefficients(U, rates))
         U, change = self._series_from_mean_crossing(np.stack([c, times[: len(c)] * c], axis=1), samples).T
         # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])

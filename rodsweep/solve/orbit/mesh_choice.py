@@ -3,12 +3,15 @@
 from dataclasses import replace
 from math import ceil, log
 
+import numpy as np
+
 from ...discretization.elements.elements import halve_elements
 from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from .element_order_ratios import element_order_ratios
-from .orbit import Orbit
+from .orbit import Orbit, interval_lengths
 from .orbit_mesh import ORBIT_MESH_SETTINGS, OrbitMesh, mesh_of, ratios_of_halves
-from .tails import tails_of
+from .tails import tails_of, tails_of_intervals
+from .time_grading import UNIFORM_TIME, TimeGrading, fitted_grading
 
 
 def cheapest_stage_count(accuracy: float) -> int:
@@ -41,10 +44,8 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
         edges = halve_elements(edges)
         ratios = ratios_of_halves(ratios)
-    # A tail is proportional to intervals**-stages. For a different number of stages the tail on the present
-    # number of intervals is about a power of the known tail.
-    time_tail = max(tails.time, ORBIT_MESH_SETTINGS.min_tail) ** (stages / current_mesh.stage_count)
-    intervals = ceil(current_mesh.interval_count * (time_tail / max_time_tail) ** (1 / stages))
+    grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stages)
+    intervals = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
         max(order, ORBIT_MESH_SETTINGS.min_order), current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase
     )
@@ -52,7 +53,26 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
         ORBIT_MESH_SETTINGS.max_interval_ratio * current_mesh.interval_count,
     )
-    return OrbitMesh(edges, order, intervals, stages, ratios)
+    return OrbitMesh(edges, order, intervals, stages, ratios, grading)
+
+
+def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stages: int) -> tuple[TimeGrading, float]:
+    """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
+    ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time. stages:
+    number of stages of an interval."""
+    # For a different number of stages the tail in an interval is about a power of the known tail.
+    tails = np.maximum(tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_tail) ** (
+        stages / orbit.stage_count
+    )
+    edges = np.append(0.0, np.cumsum(interval_lengths(*orbit.time_mesh[::2])))
+    fitted = fitted_grading(tails, edges, stages, 2 // orbit.symmetry.period_parts)
+    mesh_times = fitted.mesh_times((edges[1:] + edges[:-1]) / 2)
+    full_lengths = np.diff(edges) * (orbit.interval_count - 1)
+    # A tail is proportional to (length of the interval)**stages.
+    ratios = (tails / max_tail) ** (1 / stages) / full_lengths
+    graded_ratio = float((ratios * fitted.rates(mesh_times)).max())
+    uniform_ratio = float(ratios.max())
+    return (fitted, graded_ratio) if graded_ratio < uniform_ratio else (UNIFORM_TIME, uniform_ratio)
 
 
 def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:

@@ -20,6 +20,11 @@ from ...discretization.stress.form import StressForm
 from .compiled_measures import OrbitMeans, power_means_and_least_stretch
 from .equations import OrbitEquations
 from .symmetry import Symmetry
+from .time_grading import UNIFORM_TIME, TimeGrading
+
+
+TimeMesh = tuple[int, int, TimeGrading]
+"""Number of time intervals, number of stages of each interval, and grading of the intervals."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +33,7 @@ class Orbit:
     `stage_count` collocation stages in each interval.
 
     values: states at t = 0 and at the stages of all intervals, in order, then the period in tau2, (N,), N =
-    (1 + K s) n + 1, n: unknowns of a state.
+    (1 + K s) n + 1, n: unknowns of a state. grading: lengths of the intervals.
     """
 
     form: StressForm
@@ -36,6 +41,7 @@ class Orbit:
     interval_count: int
     stage_count: int
     values: Array
+    grading: TimeGrading = UNIFORM_TIME
 
     @classmethod
     def from_states(
@@ -72,9 +78,20 @@ class Orbit:
 
     @property
     def equidistant_states(self) -> Array:
-        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the solved
-        duration into K - 1 equal parts."""
+        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the mesh time
+        of the solved duration into K - 1 equal parts."""
         return self.states_at_interval_starts[:-1]
+
+    @property
+    def time_mesh(self) -> TimeMesh:
+        """Number of time intervals, number of stages of each, and grading."""
+        return self.interval_count, self.stage_count, self.grading
+
+    @property
+    def equidistant_time_rates(self) -> Array:
+        """dt/dtau at the equidistant mesh times tau of `equidistant_states`, (K - 1,)."""
+        full_intervals = self.interval_count - 1
+        return self.grading.rates(np.arange(full_intervals) / full_intervals)
 
     @property
     def collocation(self) -> CollocationMethod:
@@ -92,7 +109,9 @@ class Orbit:
 
     @property
     def orbit_equations(self) -> OrbitEquations:
-        return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count)
+        return _orbit_equations(
+            self.form, self.symmetry, self.interval_count, self.stage_count, self.grading
+        )
 
     @cached_property
     def means(self) -> OrbitMeans:
@@ -114,15 +133,16 @@ class Orbit:
 
     def states_at(self, times: Array) -> Array:
         """Interpolated states, (m, n), at `times`, (m,), in [0, 1], as fractions of the solved duration."""
-        states: Array = (
-            time_evaluation_matrix((self.interval_count, self.stage_count), times) @ self.all_states
-        )
+        states: Array = time_evaluation_matrix(self.time_mesh, times) @ self.all_states
         return states
 
-    def on_mesh(self, target: Mesh, intervals: int, stages: int) -> "Orbit":
+    def on_mesh(
+        self, target: Mesh, intervals: int, stages: int, grading: TimeGrading | None = None
+    ) -> "Orbit":
         """The orbit interpolated to the space mesh `target` and to `intervals` time intervals with `stages`
-        stages each."""
-        points = self._at_times_of(self.values, (intervals, stages))
+        stages each and the grading `grading`, or the grading of this orbit."""
+        grading = grading or self.grading
+        points = self._at_times_of(self.values, (intervals, stages, grading))
         if target != self.form.mesh:
             points = self.form.states_on_mesh(target, points)
         return replace(
@@ -131,77 +151,83 @@ class Orbit:
             interval_count=intervals,
             stage_count=stages,
             values=np.append(points.ravel(), self.period),
+            grading=grading,
         )
 
-    def change_on_mesh(self, change: Array, target: Mesh, intervals: int, stages: int) -> Array:
-        """The change `change` of the values, (N,), interpolated to the space mesh `target` and to `intervals`
-        time intervals with `stages` stages each by a linear map, (N on this mesh,)."""
-        points = self._at_times_of(change, (intervals, stages))
+    def change_on_mesh(self, change: Array, target: Mesh, time_mesh: TimeMesh) -> Array:
+        """The change `change` of the values, (N,), interpolated to the space mesh `target` and to the time
+        intervals `time_mesh` by a linear map, (N on this mesh,)."""
+        points = self._at_times_of(change, time_mesh)
         if target != self.form.mesh:
             points = self.form.increments_on_mesh(target, points)
         return np.append(points.ravel(), change[-1])
 
-    def _at_times_of(self, values: Array, target: tuple[int, int]) -> Array:
-        """Orbit values, (N,), interpolated to the start and the stages of other time intervals, (1 + K s, n).
-        target: (number K of intervals, number s of stages)."""
-        source = self.interval_count, self.stage_count
+    def _at_times_of(self, values: Array, target: TimeMesh) -> Array:
+        """Orbit values, (N,), interpolated to the start and the stages of the time intervals `target`, (1 + K
+        s, n)."""
+        source = self.time_mesh
         points: Array = values[:-1].reshape(1 + self.interval_count * self.stage_count, -1)
         return points if target == source else time_interpolation_matrix(source, target) @ points
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
-def _orbit_equations(form: StressForm, symmetry: Symmetry, intervals: int, stages: int) -> OrbitEquations:
+def _orbit_equations(
+    form: StressForm, symmetry: Symmetry, intervals: int, stages: int, grading: TimeGrading
+) -> OrbitEquations:
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
     d = radau_method(stages).differentiation_matrix
-    lengths = interval_lengths(intervals)
+    lengths = interval_lengths(intervals, grading)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.period_parts)
     return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def interval_lengths(intervals: int) -> Array:
-    """Lengths of the time intervals as fractions of the solved duration, (intervals,): the last two intervals
-    are half as long as the other intervals, which have equal lengths.
+def interval_lengths(intervals: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+    """Lengths of the time intervals as fractions of the solved duration, (intervals,). In the mesh time of
+    `grading` the last two intervals are half as long as the other intervals, which have equal lengths.
 
     Because modes decay within an interval, the error at the end of an interval depends mainly on the length
     of this interval. The largest y is taken at the end of the last interval, which is therefore short.
     """
-    return np.append(np.ones(intervals - 2), (0.5, 0.5)) / (intervals - 1)
+    lengths = np.append(np.ones(intervals - 2), (0.5, 0.5)) / (intervals - 1)
+    if grading.is_uniform:
+        return lengths
+    edges = np.append(np.append(0.0, np.cumsum(lengths[:-1])), 1.0)
+    return np.diff(grading.times(edges))
 
 
-def interval_starts(intervals: int) -> Array:
+def interval_starts(intervals: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
     """Start times of the time intervals as fractions of the solved duration, (intervals,)."""
-    return np.append(0.0, np.cumsum(interval_lengths(intervals)[:-1]))
+    return np.append(0.0, np.cumsum(interval_lengths(intervals, grading)[:-1]))
 
 
-def node_times(intervals: int, stages: int) -> Array:
+def node_times(intervals: int, stages: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
     """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K `intervals`
-    with s `stages` each."""
-    starts = interval_starts(intervals)[:, None]
-    lengths = interval_lengths(intervals)[:, None]
+    with s `stages` each and the grading `grading`."""
+    starts = interval_starts(intervals, grading)[:, None]
+    lengths = interval_lengths(intervals, grading)[:, None]
     return np.append(0.0, starts + lengths * radau_method(stages).nodes)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def time_interpolation_matrix(source: tuple[int, int], target: tuple[int, int]) -> csr_array:
-    """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. source,
-    target: (intervals K, stages s). Shape: (1 + K s of target, 1 + K s of source)."""
-    intervals, stages = target
-    return time_evaluation_matrix(source, node_times(intervals, stages))
+def time_interpolation_matrix(source: TimeMesh, target: TimeMesh) -> csr_array:
+    """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. Shape: (1
+    + K s of target, 1 + K s of source), for K intervals with s stages each."""
+    return time_evaluation_matrix(source, node_times(*target))
 
 
-def time_evaluation_matrix(source: tuple[int, int], times: Array) -> csr_array:
-    """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source` = (K, s) to `times` in
-    [0, 1], (m,).
+def time_evaluation_matrix(source: TimeMesh, times: Array) -> csr_array:
+    """Matrix, (m, 1 + K s), that interpolates states from the time nodes of `source`, K intervals with s
+    stages each, to `times` in [0, 1], (m,).
 
     A value depends on the nodes of one interval only. Therefore the matrix is sparse; a dense matrix of an
     orbit with many intervals would fill the memory.
     """
-    K, s = source
-    starts = interval_starts(K)
-    lengths = interval_lengths(K)
+    K, s, grading = source
+    starts = interval_starts(K, grading)
+    lengths = interval_lengths(K, grading)
     k = np.searchsorted(starts, times, side="right") - 1
     weights = np.empty((len(times), s + 1))
     for interval in np.unique(k):

@@ -1,6 +1,6 @@
 """Meshes of an orbit in space and time."""
 
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from math import ceil
 
 import numpy as np
@@ -12,7 +12,8 @@ from ...discretization.elements.resolution import RESOLUTION_SETTINGS
 from ...discretization.state_layout import plane_layout
 from ..unsolvable import MeshLimitReached
 from .matrix.workspace import WORKSPACE_SETTINGS, factors_size
-from .orbit import Orbit
+from .orbit import Orbit, TimeMesh
+from .time_grading import UNIFORM_TIME, TimeGrading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,13 +81,15 @@ def mesh_limit() -> MeshLimitReached:
 class OrbitMesh:
     """Mesh of an orbit. edges: edges of the elements in space, from 0 to 1. order: largest order of an
     element. order_ratios: order of each element divided by `order`; empty if all orders are equal.
-    interval_count: number of time intervals. stage_count: number of Radau stages of each interval."""
+    interval_count: number of time intervals. stage_count: number of Radau stages of each interval. grading:
+    grading of the time intervals."""
 
     edges: tuple[float, ...]
     order: int
     interval_count: int
     stage_count: int
     order_ratios: tuple[float, ...] = ()
+    grading: TimeGrading = UNIFORM_TIME
 
     @property
     def element_count(self) -> int:
@@ -96,6 +99,11 @@ class OrbitMesh:
     def has_elements_of(self, other: "OrbitMesh") -> bool:
         """Whether the elements of both meshes are equal but for their `order`."""
         return (self.edges, self.order_ratios) == (other.edges, other.order_ratios)
+
+    @property
+    def time_mesh(self) -> TimeMesh:
+        """Number of time intervals, number of stages of each, and grading."""
+        return self.interval_count, self.stage_count, self.grading
 
     @property
     def full_intervals(self) -> int:
@@ -115,18 +123,20 @@ class OrbitMesh:
 
     @property
     def as_array(self) -> Array:
-        """The mesh as one array for storage, (2 elements + 4,): order, intervals, stages, edges, ratios of
-        the orders."""
+        """The mesh as one array for storage, (2 elements + 7,): order, intervals, stages, grading, edges,
+        ratios of the orders."""
         ratios = self.order_ratios or (1.0,) * self.element_count
-        return np.array([self.order, self.interval_count, self.stage_count, *self.edges, *ratios])
+        counts = self.order, self.interval_count, self.stage_count
+        return np.array([*counts, *astuple(self.grading), *self.edges, *ratios])
 
     @classmethod
     def from_array(cls, numbers: Array) -> "OrbitMesh":
-        """The mesh from the array that the property `as_array` returns, (2 elements + 4,)."""
-        order, intervals, stages = map(int, numbers[:3])
-        elements = len(numbers) // 2 - 2
-        edges, ratios = (tuple(part.tolist()) for part in np.split(numbers[3:], [elements + 1]))
-        return cls(edges, order, intervals, stages, () if min(ratios) == 1 else ratios)
+        """The mesh from the array that the property `as_array` returns, (2 elements + 7,)."""
+        counts, amplitudes, (harmonic,), positions = np.split(numbers, [3, 5, 6])
+        order, intervals, stages = map(int, counts)
+        grading = TimeGrading(*amplitudes.tolist(), int(harmonic))
+        edges, ratios = (tuple(part.tolist()) for part in np.split(positions, [len(positions) // 2 + 1]))
+        return cls(edges, order, intervals, stages, () if min(ratios) == 1 else ratios, grading)
 
     @property
     def coarser(self) -> "OrbitMesh":
@@ -198,13 +208,13 @@ class OrbitMesh:
 
     def interpolated_orbit(self, orbit: Orbit) -> Orbit:
         """The orbit `orbit` interpolated to this mesh."""
-        return orbit.on_mesh(self.space_mesh, self.interval_count, self.stage_count)
+        return orbit.on_mesh(self.space_mesh, *self.time_mesh)
 
 
 def mesh_of(orbit: Orbit) -> OrbitMesh:
     """The mesh in space and time on which `orbit` is represented."""
     mesh = orbit.form.mesh
-    return OrbitMesh(mesh.edges, mesh.order, orbit.interval_count, orbit.stage_count, mesh.order_ratios)
+    return OrbitMesh(mesh.edges, mesh.order, *orbit.time_mesh[:2], mesh.order_ratios, orbit.grading)
 
 
 def ratios_of_halves(ratios: tuple[float, ...]) -> tuple[float, ...]:

@@ -35,4 +35,4 @@ def orbit_from_arrays(arrays: Mapping[str, Array], keeps_omega: bool = False) ->
     rod = Rod(**parameters, build=Build.from_json_text(bytes(arrays["build"]).decode()))
     form = StressForm(rod, mesh.space_mesh, keeps_omega)
     symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
-    return Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"])
+    return Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"], mesh.grading)

@@ -61,7 +61,7 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
     last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
-    return CoefficientTails(float(last_coefficients.max()), _tail_in_time(orbit), _coefficient_decay(finest))
+    return CoefficientTails(float(last_coefficients.max()), float(tails_of_intervals(orbit).max()), _coefficient_decay(finest))
 
 
 @compiled_for_vectors
@@ -134,7 +134,7 @@ def smooth_tails(orbit: Orbit) -> Array:
         axis=0,
     )
     space_tails = ends / np.maximum(max_stress, EXPONENT_SETTINGS.least_divisor)
-    return np.array([float(space_tails.max()), _tail_in_time(orbit)])
+    return np.array([float(space_tails.max()), float(tails_of_intervals(orbit).max())])
 
 
 def _stresses_of_elements(orbit: Orbit, states: Array) -> list[Array]:
@@ -178,11 +178,13 @@ def largest_norms(values: Array, analysis: Array) -> Array:
     return np.sqrt(norms)
 
 
-def _tail_in_time(orbit: Orbit) -> float:
-    """Largest relative tail in time of n1, n2 and m3 (see `largest_tail_in_time`)."""
-    return largest_tail_in_time(
+def tails_of_intervals(orbit: Orbit) -> Array:
+    """Largest relative tail in time of n1, n2 and m3 in each time interval, (K,) (see
+    `relative_tails_in_time`)."""
+    tails: Array = relative_tails_in_time(
         orbit.all_states, _last_coefficient_weights(orbit.stage_count), orbit.form.mesh.node_count
     )
+    return tails
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
@@ -195,35 +197,31 @@ def _last_coefficient_weights(stages: int) -> Array:
 
 
 @compiled_for_vectors
-def largest_tail_in_time(points: Array, row: Array, nodes: int) -> float:
-    """Largest relative tail in time of n1, n2 and m3: last Legendre coefficient of a field in a time
-    interval, divided by the largest value of this field. Coefficients and values are measured by their 2-norm
+def relative_tails_in_time(points: Array, row: Array, nodes: int) -> Array:
+    """Largest relative tail of n1, n2 and m3 in each time interval, (K,): last Legendre coefficient of a field
+    in time, divided by the largest value of this field. Coefficients and values are measured by their 2-norm
     over all nodes.
 
     points: states at the start and at all stages, (1 + K s, n). row: as returned by
     `_last_coefficient_weights`, (s + 1,). nodes: number of nodes without the tip."""
     s = len(row) - 1
-    max_relative_tail = 0.0
+    tails = np.zeros((len(points) - 1) // s)
     for a in range(PLANE_COMPONENT_COUNT):
-        max_value = 0.0
-        max_coefficient = 0.0
+        max_value = EXPONENT_SETTINGS.least_divisor
         for m in range(len(points)):
             size = 0.0
             for i in range(nodes):
                 size += points[m, stress_index(a, i, nodes)] ** 2
             max_value = max(max_value, size)
-        for k in range(0, len(points) - 1, s):
+        for k in range(len(tails)):
             size = 0.0
             for i in range(nodes):
                 top = 0.0
                 for j in range(s + 1):
-                    top += row[j] * points[k + j, stress_index(a, i, nodes)]
+                    top += row[j] * points[k * s + j, stress_index(a, i, nodes)]
                 size += top**2
-            max_coefficient = max(max_coefficient, size)
-        max_relative_tail = max(
-            max_relative_tail, np.sqrt(max_coefficient / max(max_value, EXPONENT_SETTINGS.least_divisor))
-        )
-    return float(max_relative_tail)
+            tails[k] = max(tails[k], np.sqrt(size / max_value))
+    return tails
 
 
 def legendre_analysis_matrix(nodes: Array) -> Array:

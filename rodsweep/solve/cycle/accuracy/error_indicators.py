@@ -43,7 +43,7 @@ def error_indicators(solved: ConvergedOrbit, path: CyclePath) -> Array:
     twice_energy = float((orbit.form.energy_norm(orbit.equidistant_states) ** 2).mean())
     relative_loss = loss / twice_energy
     amplitude_error = relative_loss / _decay_in_one_part(solved.matrix.multipliers_over_solved_part)
-    harmonics = float(np.linalg.norm(path.tip_coefficients[-LAST_HARMONIC_COUNT:]))
+    harmonics = float(np.linalg.norm(path.last_tip_coefficients[-LAST_HARMONIC_COUNT:]))
     indicators = np.array([relative_loss, amplitude_error, harmonics / abs(path.extrema["tip_y_max"])])
     return np.maximum(indicators, CYCLE_ERROR_SETTINGS.rounding_error)
 

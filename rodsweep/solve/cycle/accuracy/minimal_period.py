@@ -15,6 +15,7 @@ from ....arrays import Array
 from ....model.compiled.compilation import compiled
 from ...orbit.measures import CyclePath
 from ...orbit.orbit import Orbit, node_times
+from ...orbit.time_grading import UNIFORM_TIME
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,4 +78,5 @@ def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
         return orbit
     times = node_times(orbit.interval_count, orbit.stage_count)
     # A symmetric orbit bends in odd harmonics only, so its divisor is odd and the shorter orbit is symmetric.
-    return replace(orbit, values=np.append(orbit.states_at(times / g), orbit.period / g))
+    values = np.append(orbit.states_at(times / g), orbit.period / g)
+    return replace(orbit, values=values, grading=UNIFORM_TIME)

@@ -1,0 +1,137 @@
+"""Grading of the time intervals of an orbit: a smooth map from a mesh time, in which the intervals have equal
+lengths, to the time.
+
+Near the turning points of the tip an orbit changes faster than elsewhere. A smooth map keeps the spectral
+accuracy of trigonometric polynomials through the states at the starts of the intervals: these polynomials are
+functions of the mesh time.
+"""
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ...arrays import Array, Complex
+from ...discretization.elements.elements import ELEMENT_SETTINGS
+from ...discretization.elements.trigonometric import fourier_coefficients
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TimeGradingSettings:
+    """Settings for the grading of the time intervals of an orbit."""
+
+    step: float = 0.05
+    """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
+    max_amplitude: float = 0.6
+    """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the shortest."""
+    min_tail_ratio: float = 1e-4
+    """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding errors,
+    and have little effect on a smooth grading."""
+    oversampling: int = 4
+    """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
+    harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
+    bisections: int = 60
+    """Number of bisections that invert the map, down to rounding error."""
+
+
+TIME_GRADING_SETTINGS = TimeGradingSettings()
+
+
+@dataclass(frozen=True, slots=True)
+class TimeGrading:
+    """Map from the mesh time tau to the time t, both as fractions of the solved part of the period:
+
+        dt/dtau = 1 + cosine cos(2 pi harmonic tau) + sine sin(2 pi harmonic tau),   t(0) = 0.
+    """
+
+    cosine: float = 0.0
+    sine: float = 0.0
+    harmonic: int = 1
+
+    @property
+    def is_uniform(self) -> bool:
+        """Whether mesh time and time are equal."""
+        return self.cosine == 0 and self.sine == 0
+
+    @property
+    def doubled(self) -> "TimeGrading":
+        """The grading over two solved parts of the period."""
+        return replace(self, harmonic=2 * self.harmonic)
+
+    def times(self, mesh_times: Array) -> Array:
+        """Times at `mesh_times`; arrays of a common shape."""
+        if self.is_uniform:
+            return mesh_times
+        k = 2 * np.pi * self.harmonic
+        angles = k * mesh_times
+        times: Array = mesh_times + (self.cosine * np.sin(angles) + self.sine * (1 - np.cos(angles))) / k
+        return times
+
+    def rates(self, mesh_times: Array) -> Array:
+        """dt/dtau at `mesh_times`; arrays of a common shape."""
+        angles = 2 * np.pi * self.harmonic * mesh_times
+        rates: Array = 1 + self.cosine * np.cos(angles) + self.sine * np.sin(angles)
+        return rates
+
+    def mesh_times(self, times: Array) -> Array:
+        """Mesh times at `times` in [0, 1]; arrays of a common shape."""
+        if self.is_uniform:
+            return times
+        lower = np.zeros_like(times)
+        upper = np.ones_like(times)
+        for _ in range(TIME_GRADING_SETTINGS.bisections):
+            middle = (lower + upper) / 2
+            is_below = self.times(middle) < times
+            lower = np.where(is_below, middle, lower)
+            upper = np.where(is_below, upper, middle)
+        middles: Array = (lower + upper) / 2
+        return middles
+
+
+UNIFORM_TIME = TimeGrading()
+"""Intervals of equal length."""
+
+
+def fitted_grading(tails: Array, edges: Array, stages: int, harmonic: int) -> TimeGrading:
+    """The grading for which the tails of all intervals are as equal as possible. tails: last Legendre
+    coefficients in the intervals of an orbit, (K,). edges: mesh times of their ends with the present grading,
+    as times, (K + 1,). stages: number of stages of an interval. harmonic: harmonic of the grading."""
+    lengths = np.diff(edges)
+    limited = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
+    # A coefficient of degree s in an interval of length h, over h^(s + 1), is a measure of the error density.
+    increments = limited ** (1 / (stages + 1))
+    ends = np.cumsum(increments) / increments.sum()
+    angles = 2 * np.pi * harmonic * (ends - increments / (2 * increments.sum()))
+    # With equal tails tau grows by the increments; these are the Fourier coefficients of dt/dtau.
+    cosine = 2 * float(lengths @ np.cos(angles))
+    sine = 2 * float(lengths @ np.sin(angles))
+    factor = min(1.0, TIME_GRADING_SETTINGS.max_amplitude / max(float(np.hypot(cosine, sine)), 1e-300))
+    step = TIME_GRADING_SETTINGS.step
+    return TimeGrading(step * round(factor * cosine / step), step * round(factor * sine / step), harmonic)
+
+
+def coefficients_in_time(c: Complex, grading: TimeGrading, parts: int) -> Complex:
+    """Fourier coefficients in time, (l, ...), of the function Re sum_k c_k exp(2 pi i k tau) of the mesh time
+    tau in periods. c: (k, ...). parts: number of solved parts in a period."""
+    if grading.is_uniform:
+        return c
+    return fourier_coefficients(samples_in_time(c, grading, parts))
+
+
+def samples_in_time(c: Complex, grading: TimeGrading, parts: int) -> Array:
+    """Values at equidistant times of the period, (m, ...), of the function of `coefficients_in_time`."""
+    cosines, sines = _waves_at_equal_times(len(c), grading, parts)
+    columns = c.reshape(len(c), -1)
+    samples: Array = cosines @ columns.real - sines @ columns.imag
+    return samples.reshape(len(samples), *c.shape[1:])
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _waves_at_equal_times(count: int, grading: TimeGrading, parts: int) -> tuple[Array, Array]:
+    """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m
+    equidistant times of the period."""
+    samples = TIME_GRADING_SETTINGS.oversampling * (count - 1)
+    part, times = np.divmod(parts * np.arange(samples), samples)
+    mesh_times = (part + grading.mesh_times(times / samples)) / parts
+    angles = 2 * np.pi * np.outer(mesh_times, np.arange(count))
+    return np.cos(angles), np.sin(angles)
