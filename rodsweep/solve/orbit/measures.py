@@ -102,6 +102,12 @@ class CyclePath:
         c = self._in_time(hermite_coefficients_of_columns(values, slopes, signs))
         return c.reshape(len(c), 3, size)
 
+    @property
+    def tip_angle_harmonics(self) -> Array:
+        """Size of each harmonic of the tip's theta from the first, (count - 1,)."""
+        sizes: Array = np.abs(self.tip_coefficients[1:, 2])
+        return sizes
+
     @cached_property
     def bending_harmonics(self) -> Array:
         """Size of each harmonic of the curvature Pi from the first, (count - 1,): square root of the sum of

@@ -37,8 +37,11 @@ MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
 def common_harmonic_divisor(path: CyclePath, min_ratio: float) -> int:
-    """Greatest common divisor of the numbers of all harmonics larger than `min_ratio` times the largest
-    harmonic; 0 if all harmonics are 0."""
+    """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
+    times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
+    the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
+    if _divisor_from_harmonic_sizes(path.tip_angle_harmonics, min_ratio) == 1:
+        return 1
     return int(_divisor_from_harmonic_sizes(path.bending_harmonics, min_ratio))
 
 
