@@ -46,8 +46,8 @@ class TipPath(NamedTuple):
     strains_and_rates: (h1, h2, Pi) at the nodes of every element, and the derivatives of these strains with
     respect to the mesh time in periods, for the solved states, (2, 3, K, nodes + elements). tip_coefficients:
     the `count` Fourier coefficients of (x, y, theta) of the tip, (count, 3). tip_samples: (x, y, theta) at
-    equidistant mesh times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3). least_tip_values,
-    largest_tip_values: smallest and largest (x, y, theta), (3,)."""
+    equidistant mesh times of the period, (`TIP_EXTREMUM_SETTINGS.oversampling` (count - 1), 3).
+    least_tip_values, largest_tip_values: smallest and largest (x, y, theta), (3,)."""
 
     strains_and_rates: Array
     tip_coefficients: Complex
@@ -69,10 +69,10 @@ class OrbitMeans(NamedTuple):
 
 @compiled_for_vectors
 def tip_path(states: Array, time_scales: Array, p: OrbitEquations, m: TipMatrices) -> TipPath:
-    """Path of the tip. states: states at equidistant mesh times of the solved part of the period, (K, n): half
-    the period for a symmetric orbit, otherwise the period. time_scales: derivatives of the time, in tau2, with
-    respect to the mesh time in periods at these states, (K,). p: equations of the orbit. m: result of
-    `tip_matrices`."""
+    """Path of the tip. states: states at equidistant mesh times of the solved part of the period, (K, n):
+    half the period for a symmetric orbit, otherwise the period. time_scales: derivatives of the time, in
+    tau2, with respect to the mesh time in periods at these states, (K,). p: equations of the orbit. m: result
+    of `tip_matrices`."""
     size = len(p.node_matrices.weights)
     strains = np.empty((2, 3, len(states), len(m.element_nodes)))
     tip = np.empty((len(states), 3))

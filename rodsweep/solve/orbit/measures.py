@@ -2,8 +2,8 @@
 
 At the starts of all intervals except the last, which are equidistant in mesh time, strains and strain rates
 have the full order of the collocation. The trigonometric polynomial in mesh time through strains and strain
-rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature of the
-collocation.
+rates converges spectrally; extrema are computed from this polynomial. Means are integrals by the quadrature
+of the collocation.
 """
 
 from dataclasses import dataclass, field
@@ -59,8 +59,8 @@ class CycleMeasures:
 
 
 class CyclePath:
-    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of the
-    tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
+    """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of
+    the tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
     theta) in mesh time, (count, 3), whose size measures the error of the polynomials."""
 
     def __init__(self, orbit: Orbit) -> None:

@@ -22,7 +22,6 @@ from .equations import OrbitEquations
 from .symmetry import Symmetry
 from .time_grading import UNIFORM_TIME, TimeGrading
 
-
 TimeMesh = tuple[int, int, TimeGrading]
 """Number of time intervals, number of stages of each interval, and grading of the intervals."""
 
@@ -78,8 +77,8 @@ class Orbit:
 
     @property
     def equidistant_states(self) -> Array:
-        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the mesh time
-        of the solved duration into K - 1 equal parts."""
+        """States at the starts of all intervals except the last, (K - 1, n): these starts divide the mesh
+        time of the solved duration into K - 1 equal parts."""
         return self.states_at_interval_starts[:-1]
 
     @property
@@ -109,9 +108,7 @@ class Orbit:
 
     @property
     def orbit_equations(self) -> OrbitEquations:
-        return _orbit_equations(
-            self.form, self.symmetry, self.interval_count, self.stage_count, self.grading
-        )
+        return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count, self.grading)
 
     @cached_property
     def means(self) -> OrbitMeans:
@@ -213,8 +210,8 @@ def node_times(intervals: int, stages: int, grading: TimeGrading = UNIFORM_TIME)
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
 def time_interpolation_matrix(source: TimeMesh, target: TimeMesh) -> csr_array:
-    """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. Shape: (1
-    + K s of target, 1 + K s of source), for K intervals with s stages each."""
+    """Matrix that interpolates states from the time nodes of `source` to the time nodes of `target`. Shape:
+    (1 + K s of target, 1 + K s of source), for K intervals with s stages each."""
     return time_evaluation_matrix(source, node_times(*target))
 
 

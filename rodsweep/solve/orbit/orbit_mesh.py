@@ -134,7 +134,7 @@ class OrbitMesh:
         """The mesh from the array that the property `as_array` returns, (2 elements + 7,)."""
         counts, amplitudes, (harmonic,), positions = np.split(numbers, [3, 5, 6])
         order, intervals, stages = map(int, counts)
-        grading = TimeGrading(*amplitudes.tolist(), int(harmonic))
+        grading = TimeGrading(float(amplitudes[0]), float(amplitudes[1]), int(harmonic))
         edges, ratios = (tuple(part.tolist()) for part in np.split(positions, [len(positions) // 2 + 1]))
         return cls(edges, order, intervals, stages, () if min(ratios) == 1 else ratios, grading)
 

@@ -61,7 +61,9 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
     last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
     finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
-    return CoefficientTails(float(last_coefficients.max()), float(tails_of_intervals(orbit).max()), _coefficient_decay(finest))
+    return CoefficientTails(
+        float(last_coefficients.max()), float(tails_of_intervals(orbit).max()), _coefficient_decay(finest)
+    )
 
 
 @compiled_for_vectors
@@ -198,9 +200,9 @@ def _last_coefficient_weights(stages: int) -> Array:
 
 @compiled_for_vectors
 def relative_tails_in_time(points: Array, row: Array, nodes: int) -> Array:
-    """Largest relative tail of n1, n2 and m3 in each time interval, (K,): last Legendre coefficient of a field
-    in time, divided by the largest value of this field. Coefficients and values are measured by their 2-norm
-    over all nodes.
+    """Largest relative tail of n1, n2 and m3 in each time interval, (K,): last Legendre coefficient of a
+    field in time, divided by the largest value of this field. Coefficients and values are measured by their
+    2-norm over all nodes.
 
     points: states at the start and at all stages, (1 + K s, n). row: as returned by
     `_last_coefficient_weights`, (s + 1,). nodes: number of nodes without the tip."""

@@ -23,10 +23,11 @@ class TimeGradingSettings:
     step: float = 0.05
     """The two numbers of a grading are multiples of this step, so that similar orbits share their meshes."""
     max_amplitude: float = 0.6
-    """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the shortest."""
+    """Largest amplitude of dt/dtau - 1: the longest interval is at most four times as long as the
+    shortest."""
     min_tail_ratio: float = 1e-4
-    """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding errors,
-    and have little effect on a smooth grading."""
+    """Lower limit of the tail of an interval divided by the largest tail: smaller tails may be rounding
+    errors, and have little effect on a smooth grading."""
     oversampling: int = 4
     """Number of equidistant times per node at which a function of the mesh time is evaluated to find its
     harmonics in time. A function of the time has fewer harmonics than the same function of the mesh time."""
@@ -41,7 +42,7 @@ TIME_GRADING_SETTINGS = TimeGradingSettings()
 class TimeGrading:
     """Map from the mesh time tau to the time t, both as fractions of the solved part of the period:
 
-        dt/dtau = 1 + cosine cos(2 pi harmonic tau) + sine sin(2 pi harmonic tau),   t(0) = 0.
+    dt/dtau = 1 + cosine cos(2 pi harmonic tau) + sine sin(2 pi harmonic tau),   t(0) = 0.
     """
 
     cosine: float = 0.0

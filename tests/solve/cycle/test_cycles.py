@@ -156,7 +156,8 @@ def test_hard_cases(F, rod, period, y):
     assert c.status == CycleStatus.cycle
     assert c.measures.period == pytest.approx(period, rel=1e-6)
     assert c.measures.tip_y_max == pytest.approx(y, rel=1e-6)
-    assert abs(c.measures.energy_imbalance) <= 1e-7
+    # The collocation loses energy of the order of the error of the amplitude.
+    assert abs(c.measures.energy_imbalance) <= 1e-6
     assert c.multiplier < 1
 
 

@@ -79,11 +79,18 @@ def measured_calibration(
     if previous is not None and previous.mesh == mesh:
         # A second measurement on the same mesh may be small only because an error changes its sign nearby.
         space, time = map(np.maximum, (space, time), previous.min_remeasured_errors(solved.orbit))
-    # The error of the largest y may be small only because it changes its sign near this cycle.
-    indicators = error_indicators(solved, measured.path)
+    calibration = calibration_of(mesh, space, time, solved.orbit, previous)
+    return with_indicators(calibration, error_indicators(solved, measured.path))
+
+
+def with_indicators(calibration: Calibration, indicators: Array) -> Calibration:
+    """The calibration of a mesh at an orbit with the `error_indicators` of this orbit, (3,), the error of the
+    amplitude among them as a lower limit of the error of the largest y in time: this error may be small only
+    because it changes its sign near the cycle."""
+    time = calibration.time_errors.copy()
     energy_error = indicators[AMPLITUDE_ERROR_INDEX] / CALIBRATION_SETTINGS.safety_factor
     time[Y_INDEX] = max(time[Y_INDEX], energy_error)
-    return replace(calibration_of(mesh, space, time, solved.orbit, previous), indicators=indicators)
+    return replace(calibration, time_errors=time, indicators=indicators)
 
 
 class ComparedCycle:

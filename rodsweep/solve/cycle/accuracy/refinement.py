@@ -29,7 +29,8 @@ from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
 from .cycle_verdict import RefinedCycle
-from .finer_meshes import measured_calibration
+from .error_indicators import error_indicators
+from .finer_meshes import measured_calibration, with_indicators
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
 from .refinement_settings import REFINEMENT_SETTINGS
 
@@ -81,12 +82,8 @@ def refined_cycle_of_any_period(
                 first = mesh_from_tails(
                     near_orbit, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * mesh_accuracy, stages
                 )
-                first = replace(
-                    first,
-                    interval_count=max(
-                        first.interval_count, REFINEMENT_SETTINGS.min_intervals_for_prediction
-                    ),
-                )
+                fewest = REFINEMENT_SETTINGS.min_intervals_for_prediction
+                first = replace(first, interval_count=max(first.interval_count, fewest))
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near_orbit, accuracy, workspace)
             solved = _solve_on_mesh(
@@ -135,18 +132,20 @@ def _predicted_cycle(
         if not coarser_meshes.can_predict(mesh):
             coarser_meshes = CoarserMeshes(mesh, orbit, accuracy, workspace)
         orbit, calibration = coarser_meshes.predicted_orbit_and_errors(mesh)
-    orbit, calibration = best
-    solved = require_similar_size(newton(orbit, newton_tolerance(accuracy), workspace), start.max_energy_norm)
+    solved = require_similar_size(
+        newton(best[0], newton_tolerance(accuracy), workspace), start.max_energy_norm
+    )
     if solved.matrix_distance > max(
         REFINEMENT_SETTINGS.max_prediction_distance_ratio * accuracy,
         REFINEMENT_SETTINGS.min_prediction_distance,
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
-    return cycle_with_calibrated_errors(
-        calibration,
-        with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance)),
-        accuracy,
-    )
+    solved = with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
+    path = CyclePath(solved.orbit)
+    calibration = with_indicators(best[1], error_indicators(solved, path))
+    if calibration.errors(accuracy).largest_weighted_error > accuracy >= error:
+        raise Unsolvable("coarser meshes do not predict the error of the amplitude")
+    return cycle_with_calibrated_errors(calibration, solved, accuracy, path)
 
 
 def cycle_with_measured_errors(
