@@ -12,7 +12,7 @@ from ..cycle.accuracy.refinement import (
     cycle_with_calibrated_errors,
     newton_tolerance,
 )
-from ..orbit.mesh_choice import finer_mesh
+from ..orbit.mesh_choice import finer_mesh, regraded
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit, mesh_of
 from ..unsolvable import MeshLimitReached
@@ -135,7 +135,8 @@ def solve_on_sufficient_mesh(
             point = with_measured_errors(point, accuracy)
         calibration = point.calibration
         is_accurate = calibration.largest_weighted_error(accuracy) <= accuracy
-        target = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+        cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+        target = regraded(cheapest, point.orbit)
         # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
         if is_accurate and (
             finest or target.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * calibration.mesh.cost

@@ -18,6 +18,7 @@ from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.measures import CyclePath
+from ..orbit.mesh_choice import regraded
 from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..orbit.stored_orbit import orbit_arrays, orbit_from_arrays
@@ -48,7 +49,7 @@ class NextMeshSettings:
     max_error_ratio_of_same_mesh: float = 0.9
     """A mesh is sufficient for the next cycle if the error of the current cycle is at most this fraction of
     the accuracy."""
-    max_new_mesh_cost_ratio: float = 0.8
+    max_new_mesh_cost_ratio: float = 0.85
     """A sufficient mesh is replaced by a new mesh if (cost of the new mesh)/(cost of the sufficient mesh) is
     at most this number."""
     max_new_mesh_cost_ratio_if_measured: float = 0.5
@@ -132,7 +133,7 @@ def _next_mesh_and_calibration(
         # Errors scaled from an earlier cycle, if too large, are first measured on this mesh.
         return current_mesh, calibration.with_outdated_errors
     max_cost = inf if not is_accurate else _max_cost_ratio(refined, previous, name)
-    target_mesh = cheapest_mesh(calibration, accuracy) if max_cost else current_mesh
+    target_mesh = regraded(cheapest_mesh(calibration, accuracy), refined.orbit) if max_cost else current_mesh
     if max_cost and target_mesh.cost <= max_cost * current_mesh.cost:
         return target_mesh, calibration.with_outdated_errors
     return current_mesh, calibration

@@ -66,19 +66,36 @@ def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stages: int) -> tu
     )
     edges = np.append(0.0, np.cumsum(interval_lengths(*orbit.time_mesh[::2])))
     fitted = fitted_grading(tails, edges, stages, 2 // orbit.symmetry.period_parts)
-    mesh_times = fitted.mesh_times((edges[1:] + edges[:-1]) / 2)
+    middles = (edges[1:] + edges[:-1]) / 2
     full_lengths = np.diff(edges) * (orbit.interval_count - 1)
     # A tail is proportional to (length of the interval)**stages.
     ratios = (tails / max_tail) ** (1 / stages) / full_lengths
-    graded_ratio = float((ratios * fitted.rates(mesh_times)).max())
-    uniform_ratio = float(ratios.max())
-    return (fitted, graded_ratio) if graded_ratio < uniform_ratio else (UNIFORM_TIME, uniform_ratio)
+    candidates = {
+        grading: float((ratios * grading.rates(grading.mesh_times(middles))).max())
+        for grading in (orbit.grading, UNIFORM_TIME, fitted)
+    }
+    best = min(candidates, key=lambda grading: candidates[grading])
+    return best, candidates[best]
+
+
+def regraded(mesh: OrbitMesh, orbit: Orbit) -> OrbitMesh:
+    """The mesh `mesh`, which has the grading of the solved `orbit`, with the best grading for this orbit and
+    fewer intervals, unless the present grading is almost as good."""
+    stages = orbit.stage_count
+    # The present grading needs as many intervals as the orbit has with its own largest tail.
+    grading, ratio = grading_and_interval_ratio(orbit, float(tails_of_intervals(orbit).max()), stages)
+    if ratio > ORBIT_MESH_SETTINGS.max_regraded_ratio or grading == mesh.grading:
+        return mesh
+    intervals = max(ORBIT_MESH_SETTINGS.min_intervals, ceil(ratio * mesh.full_intervals) + 1)
+    return replace(mesh, interval_count=intervals, grading=grading)
 
 
 def finer_mesh(mesh: OrbitMesh, target: OrbitMesh) -> OrbitMesh:
     """A mesh that is at least as fine as `target` and finer than the current mesh `mesh`."""
     order = max(target.order, mesh.order) if target.has_elements_of(mesh) else target.order
-    intervals = max(target.interval_count, mesh.interval_count)
+    # With another grading the target may be finer in time with fewer intervals.
+    min_intervals = mesh.interval_count if target.grading == mesh.grading else 0
+    intervals = max(target.interval_count, min_intervals)
     stages = max(target.stage_count, mesh.stage_count)
     refined = replace(target, order=order, interval_count=intervals, stage_count=stages)
     if refined != mesh:

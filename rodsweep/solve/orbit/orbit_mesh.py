@@ -24,7 +24,7 @@ class OrbitMeshSettings:
     """Predicted error of period and extrema due to the mesh in space, divided by the squared tail in space.
     With `space_error_factor` and `time_error_factor` the first mesh suffices for five rods in six, and costs
     a fifth more than necessary."""
-    time_error_factor: float = 1.5
+    time_error_factor: float = 3.0
     """Predicted error of period and extrema due to the mesh in time, divided by the squared tail in time."""
     min_tail: float = 1e-15
     """Lower limit of the tails from which a mesh is chosen; smaller tails are rounding errors."""
@@ -52,6 +52,9 @@ class OrbitMeshSettings:
     max_interval_ratio: int = 4
     """Largest ratio of the new number of time intervals to the current number; the tail cannot be
     extrapolated to larger ratios."""
+    max_regraded_ratio: float = 0.9
+    """The grading of the time intervals changes with a new mesh if the ratio of the numbers of intervals, new
+    grading to present grading, is at most this number."""
     interval_factor: float = 1.2
     """Factor on the number of time intervals for the mesh `finer`, and if the mesh chosen from the tails is
     not finer than the current mesh."""

@@ -159,7 +159,7 @@ def calibration_of(
     time_order = nearby.time_order
     if previous_mesh.order != mesh.order and previous_mesh.has_elements_of(mesh):
         space_decay = _measured_space_decay(nearby.space_errors, space, mesh.order - previous_mesh.order)
-    if previous_mesh.interval_count != mesh.interval_count:
+    if previous_mesh.interval_count != mesh.interval_count and previous_mesh.grading == mesh.grading:
         time_order = _measured_time_order(nearby.time_errors, time, previous_mesh, mesh)
     return Calibration(mesh, space, time, space_decay, time_order, tails, 0.0)
 

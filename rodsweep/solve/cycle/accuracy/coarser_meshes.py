@@ -108,7 +108,7 @@ class CoarserMeshes:
         order_factor = np.exp(_pessimistic_space_decay(space.orbit) * (mesh.order - self.coarse_mesh.order))
         # Between the time nodes the order is smaller: near the largest theta, local errors of fast modes
         # remain.
-        orders = mesh.stage_count + np.array([1.0, 1.0, 0.0, 0.0])
+        orders = mesh.stage_count + np.array([1.0, 1.0, -1.0, -1.0])
         interval_factors = self._interval_ratio(mesh) ** orders
         # The error of the multipliers may decrease more slowly than the errors of the paths. The difference
         # between the multipliers on the two finer meshes bounds this error.

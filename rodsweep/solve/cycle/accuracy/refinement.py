@@ -12,7 +12,7 @@ import numpy as np
 
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CyclePath
-from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails
+from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails, regraded
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
     ConvergedOrbit,
@@ -170,7 +170,8 @@ def cycle_with_measured_errors(
         if cycle.errors.largest_weighted_error <= accuracy or cycle.errors.largest_weighted_error > max_error:
             break
         max_error = REFINEMENT_SETTINGS.max_error_increase * cycle.errors.largest_weighted_error
-        finer = finer_mesh(calibration.mesh, cheapest_mesh(calibration, accuracy))
+        target = regraded(cheapest_mesh(calibration, accuracy), solved.orbit)
+        finer = finer_mesh(calibration.mesh, target)
         if not finer.is_allowed:
             break
         solved = _solve_on_mesh(finer, solved, accuracy, parameter)
