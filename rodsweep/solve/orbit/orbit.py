@@ -106,7 +106,7 @@ class Orbit:
         """Whether the solved part is shorter than the period (`symmetry.period_parts` > 1)."""
         return self.symmetry.period_parts > 1
 
-    @property
+    @cached_property
     def orbit_equations(self) -> OrbitEquations:
         return _orbit_equations(self.form, self.symmetry, self.interval_count, self.stage_count, self.grading)
 

@@ -29,7 +29,11 @@ class CalibrationSettings:
     mesh. Without this limit, the error of one cycle in a thousand exceeded its estimate, by a factor of up to
     4.5."""
     planned_error_ratio: float = 0.5
-    """A mesh is planned for a predicted error of at most this fraction of the accuracy."""
+    """A mesh is planned for predicted errors of period and largest y of at most this fraction of the
+    accuracy."""
+    planned_extrema_error_ratio: float = 0.75
+    """A mesh is planned for a predicted error of the other extrema of at most this fraction of their
+    tolerance. This error changes less along a chain: it contains the distance between the tip's paths."""
     error_to_coefficient_decay_ratio: float = 1.6
     """Assumed decrease of ln(error) in space per order, divided by the decrease of ln(coefficient) per order.
     The errors are proportional to squared coefficients; ratios from 1.4 to 2 were measured."""

@@ -40,7 +40,9 @@ def cheapest_mesh(calibration: Calibration, accuracy: float) -> OrbitMesh:
     )
     time = calibration.time_errors[:, None] * (calibrated.full_intervals / (intervals - 1)) ** time_order
     errors = errors_with_safety_factors(space[:, :, None], time[:, None, :], accuracy)
-    is_accurate = largest_weighted_error(*errors[:3]) <= CALIBRATION_SETTINGS.planned_error_ratio * accuracy
+    period_error, y_error = errors[:2] / CALIBRATION_SETTINGS.planned_error_ratio
+    extrema_error = errors[2] / CALIBRATION_SETTINGS.planned_extrema_error_ratio
+    is_accurate = largest_weighted_error(period_error, y_error, extrema_error) <= accuracy
     meshes = [
         replace(calibrated, order=int(orders[i]), interval_count=int(intervals[np.argmax(is_accurate[i])]))
         for i in np.flatnonzero(is_accurate.any(axis=1))

@@ -31,6 +31,10 @@ class CycleErrorSettings:
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
     min_error_ratio: float = 0.1
     """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
+    min_largest_y_error_ratio: float = 0.2
+    """Lower limit of the error estimate of the largest y, divided by the accuracy: this error changes its
+    sign along a chain, so that a small error may be measured at one cycle and used at the next cycles. With a
+    limit of 0.1, two of 1500 errors exceeded their estimates, by a factor of 1.5."""
     extrema_tolerance_ratio: float = 100.0
     """Tolerance of the tip's other extrema divided by the tolerance of period and largest y. Period and
     largest y converge fastest, because a time node lies at the largest y."""
@@ -79,7 +83,10 @@ def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Ar
     parts = [np.maximum(part[PERIOD_INDEX], part[Y_INDEX]) for part in (space, time)]
     min_errors = CALIBRATION_SETTINGS.min_ratio_to_larger_error * (parts[0] + parts[1])
     min_period_error = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + time_path_error
-    min_height_error = CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + time_path_error
+    min_height_error = np.maximum(
+        CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + time_path_error,
+        CYCLE_ERROR_SETTINGS.min_largest_y_error_ratio * accuracy,
+    )
     stated_errors = [
         np.maximum(np.maximum(scaled_errors[PERIOD_INDEX], min_period_error), min_errors),
         np.maximum(np.maximum(scaled_errors[Y_INDEX], min_height_error), min_errors),
