@@ -185,7 +185,7 @@ def test_what_was_compiled_of_an_outdated_value_is_not_kept(made, monkeypatch):
 
 
 def test_a_value_that_has_no_digest_is_refused(made):
-    with pytest.raises(TypeError, match=r"scaled: <object.* has no digest"):
+    with pytest.raises(TypeError, match=r"scaled is compiled and reads <object.* has no digest"):
         made(INNER.replace("FACTOR = 2.0", "FACTOR = object()"))
     with pytest.raises(TypeError, match="kernels take no functions as arguments"):
         made(outer=OUTER.replace("difference(Pair(5.0, 3.0))", "difference(shifted)"))

@@ -237,11 +237,9 @@ def _end_error_sign(point: SpecialPoint) -> int:
 
 
 def stable_states(rod_classes: NDArray[np.int8], cycles: NDArray[np.int8]) -> NDArray[np.int8]:
-    """`StableStates` at each parameter value, (values,).
-
-    rod_classes: `RodClass` of the straight rod at each parameter value, (values,). cycles: 1 if a stable
-    cycle exists at the parameter value, 0 if none exists, -1 if undecided, (values,).
-    """
+    """`StableStates` at each parameter value, (values,). rod_classes: `RodClass` of the straight rod at each
+    parameter value, (values,). cycles: 1 if a stable cycle exists at the parameter value, 0 if none exists,
+    -1 if undecided, (values,)."""
     straight = (rod_classes == RodClass.monotone) | (rod_classes == RodClass.oscillatory)
     states = np.where(straight, StableStates.straight, StableStates.neither_known).astype(np.int8)
     # 1 for a straight rod plus 2 for a cycle is 3, both.

@@ -47,8 +47,8 @@ def _hatched_note(
     if not number:
         return ""
     is_alone = len(views) == 1 and views[0].is_grid  # not a list, nor the rows of a diagram
-    values = views[0].parameter_values if is_alone else {}
-    names = [name for name in values if len(values[name]) > 1]
+    values = views[0].parameter_values
+    names = [name for name in views[0].parameters if is_alone and len(values[name]) > 1]
     word, sentence = NOTES[validity]
     if names and _hatch_points(figure, views[0], names, outside[0], HATCHES[validity]):
         judged = ", judged at each row's first Hopf point or at rest"
