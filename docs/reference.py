@@ -25,7 +25,6 @@ from rodsweep.config.tasks import CONFIGS
 from rodsweep.model.arm.quantities import ALL_QUANTITIES
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.results.file.validation import FORMAT
-from rodsweep.results.layouts.arm import VALIDITY_VARIABLES
 from rodsweep.results.layouts.curve_extrema import curve_extremum_variables
 from rodsweep.results.layouts.detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES
 from rodsweep.results.layouts.phase_diagram import (
@@ -37,6 +36,7 @@ from rodsweep.results.layouts.phase_diagram import (
     curve_variables,
     cycle_curve_variables,
 )
+from rodsweep.results.layouts.si_variables import VALIDITY_VARIABLES
 from rodsweep.results.layouts.spectrum import FORCE_CHANGE_VARIABLES
 from rodsweep.results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from rodsweep.results.layouts.variables import DIMENSIONS, MISSING_STATUS, Variable
@@ -431,8 +431,8 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     assert isinstance(job.config, PhaseDiagramConfig)
     line, row = job.config.plane_parameters
     for variable in curve_variables(line, row).values():
-        beam = variable.name.startswith(("partial_beam", "filament"))
-        yield "diagrams over F and k1" if beam else "", variable_row(variable, list(variable.extra))
+        system = variable.name.startswith(("partial_beam", "filament"))
+        yield "diagrams over F and k1" if system else "", variable_row(variable, list(variable.extra))
     for variable in criticality_variables(line, row).values():
         yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
     cycle_curves = cycle_curve_variables(line, row) | curve_extremum_variables(line, row)

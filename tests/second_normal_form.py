@@ -36,7 +36,7 @@ def cos_sin(angle):
     return c, s
 
 
-class Shape:
+class ArmGeometry:
     """d(x, y, theta)/dt of a rod with F, k1, k2, gamma3, gamma1 at n nodes beyond the clamp."""
 
     def __init__(self, F, k1, k2, gamma3, gamma1, n):
@@ -86,7 +86,7 @@ class Shape:
 
 def coefficients(rod, w, n):
     """(c, dw/dF) of the eigenvalue nearest to w; rod: (F, k1, k2, gamma3, gamma1)."""
-    shape = Shape(*rod, n)
+    shape = ArmGeometry(*rod, n)
     A = shape.linear()
     values, vectors = np.linalg.eig(A)
     at = np.argmin(abs(values - w))
@@ -99,5 +99,5 @@ def coefficients(rod, w, n):
     h11 = np.linalg.solve(-A, shape.second(q, q.conj()))
     c = p @ (shape.third(q) + shape.second(q.conj(), h20) + 2 * shape.second(q, h11)) / 2
     step = 1e-4 * rod[0]
-    ends = [Shape(rod[0] + side * step, *rod[1:], n).linear() for side in (-1, 1)]
+    ends = [ArmGeometry(rod[0] + side * step, *rod[1:], n).linear() for side in (-1, 1)]
     return c, p @ ((ends[1] - ends[0]) / (2 * step)) @ q

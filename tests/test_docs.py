@@ -19,7 +19,7 @@ from printed import ROUNDING
 from surveyed import RODS
 
 from rodsweep.cli import commands
-from rodsweep.config import load_config
+from rodsweep.config import read_config
 from rodsweep.config.document.parsing import parsed_yaml
 from rodsweep.config.tasks import CONFIGS
 from rodsweep.errors import InputError
@@ -145,7 +145,7 @@ def test_configs_are_accepted(page, tmp_path):
     for number, text in enumerate(blocks(page, "yaml")):
         path = tmp_path / f"{number}.yaml"
         path.write_text(text)
-        load_config(path)
+        read_config(path)
 
 
 @each_page
@@ -257,7 +257,7 @@ def test_other_parameters_are_refused(task, tmp_path):
     for name in ("F", "k1", "k2", "gamma3", "gamma1"):
         if getattr(config.parameters, name) is None:
             with pytest.raises(InputError, match=name):
-                load_config(path, (f"parameters.{name}=1",))
+                read_config(path, (f"parameters.{name}=1",))
 
 
 @pytest.mark.long

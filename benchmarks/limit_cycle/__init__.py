@@ -4,7 +4,7 @@ from functools import partial
 from pathlib import Path
 
 from rodsweep.bench.limit_cycle.study import FOLLOWING_RACE, WAITING_RACE
-from rodsweep.bench.peers import Peers
+from rodsweep.bench.peers import PeerContribution
 
 from ..auto import AUTO_SKIPPED, auto_program
 from .auto_equations import EQUATIONS
@@ -12,11 +12,11 @@ from .continuation import compare_with_auto
 from .integrators import CVODE, CVODE_SKIPPED, installed_families
 
 
-def peers(quick: bool, folder: Path) -> Peers:
+def peers(quick: bool, folder: Path) -> PeerContribution:
     """All installed integrators, and AUTO-07p, compiled in `folder`. quick: fewer settings of AUTO-07p."""
     every, program = installed_families(), auto_program(folder, EQUATIONS)
     skipped = [] if CVODE in [family.name for family in every] else [CVODE_SKIPPED]
-    return Peers(
+    return PeerContribution(
         contenders={
             FOLLOWING_RACE: [contender for family in every for contender in family.following_contenders()],
             WAITING_RACE: [contender for family in every for contender in family.settling_contenders()],

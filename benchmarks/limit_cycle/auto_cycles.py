@@ -14,7 +14,7 @@ import numpy as np
 
 from rodsweep.arrays import Array, Complex
 from rodsweep.bench.limit_cycle.tracking import largest_y_near, state_on_cycle
-from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.solve.motion.integrator import EndReason, Trajectory
 from rodsweep.solve.orbit.orbit import Orbit
@@ -113,12 +113,12 @@ def start_file(orbit: Orbit, pieces: int) -> bytes:
     The file has F, the period in tau2, and the states z at `pieces` + 1 equidistant times of one period, both
     ends included.
     """
-    beam, _ = state_on_cycle(orbit)
+    system, _ = state_on_cycle(orbit)
     turns = np.arange(pieces + 1) / pieces * orbit.symmetry.period_parts
     states = orbit.states_at(np.where(turns > 1, turns - 1, turns))
     states[turns > 1] = orbit.symmetry.apply(states[turns > 1], orbit.form.layout)
-    z = states * beam.sqrt_compliance[:, :-1].ravel()
-    return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([beam.rod.F, orbit.period]), z))
+    z = states * system.sqrt_compliance[:, :-1].ravel()
+    return b"".join(part.tobytes() for part in (np.int32(pieces), np.array([system.rod.F, orbit.period]), z))
 
 
 def last_solution(fort8: str) -> tuple[Array, Array]:
@@ -145,7 +145,7 @@ def largest_y(form: StressForm, times: Array, states: Array) -> float:
 
     times: in tau2, (m,). states: z, (m, unknowns); the last state repeats the first.
     """
-    beam = Beam(form.rod, form.mesh)
+    system = ExplicitSystem(form.rod, form.mesh)
     twice = np.concatenate([times, times[-1] + times[1:]]), np.concatenate([states, states[1:]])
-    y = beam.tip_coordinates(twice[1])[1]
-    return largest_y_near(beam, Trajectory(EndReason.reached, *twice), 1 + int(np.argmax(y[1:-1])))
+    y = system.tip_coordinates(twice[1])[1]
+    return largest_y_near(system, Trajectory(EndReason.reached, *twice), 1 + int(np.argmax(y[1:-1])))

@@ -38,15 +38,15 @@ def scipy_run(method: str, tolerance: float, leg: IntegrationTask) -> Trajectory
     SciPy's implicit methods stop Newton's method at sqrt(rtol) times the tolerance. Hence `rtol` is set to
     `tolerance` too.
     """
-    beam, z, duration = leg
+    system, z, duration = leg
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # LSODA warns of a failure that `found.success` reports too
         found = scipy.integrate.solve_ivp(
-            lambda _, x: beam.state_derivative(x),
+            lambda _, x: system.state_derivative(x),
             (0.0, duration),
             z,
             method,
-            jac=lambda _, x: beam.jacobian(x),
+            jac=lambda _, x: system.jacobian(x),
             rtol=tolerance,
             atol=tolerance * np.abs(z).max(),
             first_step=(FIRST_STEP if method == "Radau" else FIRST_MULTISTEP_STEP) * duration,
@@ -61,8 +61,8 @@ def cvode_run(cvode: Any, tolerance: float, leg: IntegrationTask) -> Trajectory:
 
     cvode: the module CVODE_MODULE.
     """
-    beam, z, duration = leg
-    arguments = beam.sqrt_compliance, beam.nodal_rod, beam.mesh.matrices
+    system, z, duration = leg
+    arguments = system.sqrt_compliance, system.nodal_rod, system.mesh.matrices
     buffer = np.empty((len(z), len(z)))
 
     def right_side(_: float, x: Array, out: Array) -> None:

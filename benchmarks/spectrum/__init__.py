@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from rodsweep.bench.peers import Peers
+from rodsweep.bench.peers import PeerContribution
 from rodsweep.bench.spectrum.arms import ARM_RACE
 from rodsweep.bench.spectrum.study import SPECTRUM_RACE
 
 from .eigensolvers import arm_contenders, contenders
 
 
-def peers(quick: bool, folder: Path) -> Peers:
+def peers(quick: bool, folder: Path) -> PeerContribution:
     """All eigensolvers at all sizes. A quick study skips sizes itself; nothing is compiled in `folder`."""
-    return Peers({SPECTRUM_RACE: contenders(), ARM_RACE: arm_contenders()})
+    return PeerContribution({SPECTRUM_RACE: contenders(), ARM_RACE: arm_contenders()})

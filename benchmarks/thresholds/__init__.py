@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from rodsweep.bench.peers import Peers
+from rodsweep.bench.peers import PeerContribution
 from rodsweep.bench.thresholds.study import HOPF, ONSET
 
 from ..auto import AUTO
@@ -29,14 +29,14 @@ CODE_NOTES = {
 """Remarks on the continuation codes for the report, by code."""
 
 
-def peers(quick: bool, folder: Path) -> Peers:
+def peers(quick: bool, folder: Path) -> PeerContribution:
     """Grids and root finding for the onset; for the Hopf point also continuation codes.
 
     quick: fewer settings. folder: directory in which AUTO-07p is compiled.
     """
     codes, skipped = continuation_codes(folder, quick)
     names = dict.fromkeys(code.method for code in codes)
-    return Peers(
+    return PeerContribution(
         contenders={ONSET: contenders(ONSET, quick), HOPF: contenders(HOPF, quick) + codes},
         notes=(SEARCHES, *(CODE_NOTES[name] for name in names)),
         skipped=tuple(skipped),

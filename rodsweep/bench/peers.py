@@ -39,7 +39,7 @@ MakePeerSection = Callable[[int], tuple[list[str], list[Measurement]]]
 
 
 @dataclass(frozen=True, slots=True)
-class Peers:
+class PeerContribution:
     """Contribution of the peers to one study."""
 
     contenders: Mapping[str, Sequence[TimedMethod]] = field(default_factory=dict)
@@ -57,7 +57,7 @@ class Peers:
         return list(self.contenders.get(race, ()))
 
 
-NO_PEERS = Peers()
+NO_PEERS = PeerContribution()
 """Empty contribution, for a study without peers."""
 
 
@@ -94,13 +94,13 @@ def _import_directory(directory: Path) -> ModuleType:
     return package
 
 
-def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> Peers:
+def peers_of_study(package: ModuleType | None, study: str, quick: bool, folder: Path) -> PeerContribution:
     """Contribution of the installed peers to the study with the name `study`. folder: empty directory in
     which programs are compiled. NO_PEERS if there is no package, or the package has no such study."""
     module = f"{PEER_PACKAGE_NAME}.{study}"
     if package is None or find_spec(module) is None:
         return NO_PEERS
-    peers: Peers = import_module(module).peers(quick, folder)
+    peers: PeerContribution = import_module(module).peers(quick, folder)
     return peers
 
 

@@ -33,7 +33,7 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
     """
     try:
         from ..bench.limit_cycle.study import limit_cycle_study
-        from ..bench.peers import Peers, peer_package, peers_left_out, peers_of_study
+        from ..bench.peers import PeerContribution, peer_package, peers_left_out, peers_of_study
         from ..bench.spectrum.study import spectrum_study
         from ..bench.study import BenchmarkReport
         from ..bench.sweep.study import sweep_study
@@ -43,7 +43,7 @@ def run_benchmarks(study_name: str | None, is_quick: bool, output: Path, directo
         raise EnvironmentIncomplete(hint) from None
     from ..results.file.benchmark_file import write_measurements
 
-    studies: dict[str, Callable[[bool, Peers], BenchmarkReport]] = {
+    studies: dict[str, Callable[[bool, PeerContribution], BenchmarkReport]] = {
         "spectrum": spectrum_study,
         "thresholds": thresholds_study,
         "limit_cycle": limit_cycle_study,

@@ -2,6 +2,6 @@
 
 from .base_config import Config
 from .document.parsing import refusals_with_file
-from .document.reading import load_config
+from .document.reading import read_config
 
-__all__ = ["Config", "load_config", "refusals_with_file"]
+__all__ = ["Config", "read_config", "refusals_with_file"]

@@ -29,7 +29,7 @@ class ExponentSettings(KernelConstants):
     sinh_series_below: float = 0.25
     """For |q^2| below this number, sinh(q)/q and its slope are computed by series, because the closed form of
     the slope would cancel."""
-    ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
+    field_ranges: ClassVar = {"max_exponent": (0.0, 709.0)}
 
 
 EXPONENT_SETTINGS = ExponentSettings()

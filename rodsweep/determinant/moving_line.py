@@ -25,7 +25,7 @@ from .certificate.covering import (
     mean_growth_rates,
 )
 from .certificate.discs import DISC_BOUND_SETTINGS, bidisc_centre
-from .parameter_path import coefficient_derivatives, determinant_along_path
+from .parameter_path import determinant_along_path, dispersion_coefficient_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +44,7 @@ class MovingLineSettings(KernelConstants):
     min_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
-    ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "max_half_height": (0.0, 1.0)}
+    field_ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "max_half_height": (0.0, 1.0)}
 
 
 MOVING_LINE_SETTINGS = MovingLineSettings()
@@ -105,7 +105,7 @@ def examine_rectangle(
     D, D_w, D_p, S, rounding_error = determinant_along_path(w, centre_end.coefficients, direction)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     centre = bidisc_centre(
-        w, centre_end.coefficients, coefficient_derivatives(centre_end.coefficients, direction), S
+        w, centre_end.coefficients, dispersion_coefficient_derivatives(centre_end.coefficients, direction), S
     )
     radii = (math.hypot(half_y, line_slope * half_p), half_p)
     if abs(D) > 2 * rounding:

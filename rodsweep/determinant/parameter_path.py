@@ -15,7 +15,7 @@ from .even_parts import even_parts
 from .value import ExponentDerivatives, determinant_from_parts
 
 
-class CoefficientDerivatives(NamedTuple):
+class DispersionCoefficientDerivatives(NamedTuple):
     """First and second derivatives by p of T = c2 + gamma3, N = F g, G = g nu and X = c2 gamma3, the
     coefficients of D(w). T is linear in p."""
 
@@ -103,14 +103,16 @@ def coefficients_at(p: float, origin: Coefficients, direction: Coefficients) -> 
 
 
 @compiled
-def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients) -> CoefficientDerivatives:
+def dispersion_coefficient_derivatives(
+    coefficients: Coefficients, direction: Coefficients
+) -> DispersionCoefficientDerivatives:
     """Derivatives of T, N, G and X by p at a rod; F and c2 must not both vary along the path."""
     F, nu, c2, gamma3 = coefficients
     F1, nu1, c21, gamma31 = direction
     g = nu + F * c2
     # Product rule; the second derivatives below are constants, because the coefficients are linear in p.
     g1 = nu1 + F1 * c2 + F * c21
-    return CoefficientDerivatives(
+    return DispersionCoefficientDerivatives(
         c21 + gamma31,
         F1 * g + F * g1,
         2 * F1 * g1,
@@ -123,15 +125,21 @@ def coefficient_derivatives(coefficients: Coefficients, direction: Coefficients)
 
 @compiled
 def exponent_slopes(
-    w: complex, exponents: ExponentDerivatives, coefficient_derivatives: CoefficientDerivatives
+    w: complex,
+    exponents: ExponentDerivatives,
+    dispersion_coefficient_derivatives: DispersionCoefficientDerivatives,
 ) -> tuple[complex, complex]:
-    """(dz+/dp, dz-/dp) at w. exponents: of `exponent_derivatives` at w. coefficient_derivatives: by p."""
+    """(dz+/dp, dz-/dp) at w. exponents: of `exponent_derivatives` at w."""
     P_p = 0j
     if exponents.P != 0:
-        P_p = w * (coefficient_derivatives.G_p + coefficient_derivatives.X_p * w) / (2 * exponents.P)
+        P_p = (
+            w
+            * (dispersion_coefficient_derivatives.G_p + dispersion_coefficient_derivatives.X_p * w)
+            / (2 * exponents.P)
+        )
     return (
-        coefficient_derivatives.T_p * w - coefficient_derivatives.N_p + 2 * P_p,
-        coefficient_derivatives.T_p * w - coefficient_derivatives.N_p - 2 * P_p,
+        dispersion_coefficient_derivatives.T_p * w - dispersion_coefficient_derivatives.N_p + 2 * P_p,
+        dispersion_coefficient_derivatives.T_p * w - dispersion_coefficient_derivatives.N_p - 2 * P_p,
     )
 
 
@@ -145,7 +153,7 @@ def determinant_along_path(
     parts = even_parts(w, coefficients)
     D, D_w, S, rounding_error = determinant_from_parts(w, coefficients, parts)
     even = parts[0]
-    T_p, N_p, _, G_p, _, X_p, _ = coefficient_derivatives(coefficients, direction)
+    T_p, N_p, _, G_p, _, X_p, _ = dispersion_coefficient_derivatives(coefficients, direction)
     T = c2 + gamma3
     N = (nu + F * c2) * nu + 2 * (c2 * gamma3) * w
     M_p = T_p * w - N_p

@@ -81,7 +81,7 @@ class ValueOnPlane(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Plane:
+class ParameterPlane:
     """All rods that differ from `rod` only in the two parameters of `axes`."""
 
     rod: Rod

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from .exponents import EXPONENT_SETTINGS
-from .parameter_plane import CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS, Plane
+from .parameter_plane import CENTRAL_STENCIL, PLANE_DIFFERENCE_SETTINGS, ParameterPlane
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,11 +55,11 @@ class BoundarySolution(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Boundary:
+class StabilityBoundary:
     """A stability boundary in a plane: all Hopf points, or all double real eigenvalues of one sign.
     eigenvalue_sign: 0 for Hopf points; -1 or 1 for double eigenvalues of this sign."""
 
-    plane: Plane
+    plane: ParameterPlane
     eigenvalue_sign: float
 
     def eigenvalue(self, h: float) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Array
 from ..model.balance import Material
-from ..model.material.build import Build, Sections
+from ..model.material.build import Build, CrossSections
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
 from .elements.elements import ELEMENT_SETTINGS
@@ -96,7 +96,7 @@ def _indices_beside_jumps(build: Build, mesh: Mesh) -> tuple[IntegerArray, Integ
     return np.stack([right_indices - 1, right_indices], axis=-1), nodes
 
 
-def _mean_coefficients_at_nodes(sections: Sections, mesh: Mesh) -> tuple[Array, Array, Array]:
+def _mean_coefficients_at_nodes(sections: CrossSections, mesh: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each. sections: the
     coefficients at the `points_inside_elements` of the mesh, or derivatives of the coefficients."""
     rest_strain = np.zeros_like(sections.drag)

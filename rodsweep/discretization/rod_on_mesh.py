@@ -1,7 +1,7 @@
 """One nonlinear rod on one mesh: its strains, shape and energy, computed from its stresses.
 
-`RodOnMesh` is the base class of `StressForm`, whose unknowns are stresses, and of `Beam`, whose unknowns are
-stresses times the square roots of the compliances.
+`RodOnMesh` is the base class of `StressForm`, whose unknowns are stresses, and of `ExplicitSystem`, whose
+unknowns are stresses times the square roots of the compliances.
 """
 
 from abc import ABC, abstractmethod

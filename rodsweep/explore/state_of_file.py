@@ -10,7 +10,7 @@ import numpy as np
 
 from ..api.dataset import open_result
 from ..config.base_config import Config
-from ..config.document.reading import config_from_resolved, load_config
+from ..config.document.reading import config_from_resolved, read_config
 from ..config.task.branch import BranchConfig
 from ..errors import InputError
 from ..results import RESULT_ENDINGS
@@ -44,7 +44,7 @@ def page_state_of_file(path: Path) -> tuple[PageState, AnswersFromFile | None]:
     Raises InputError for any other file, and for an arm that the page cannot show.
     """
     if path.suffix not in RESULT_ENDINGS:
-        return state_from_config(load_config(path)[0], path), None
+        return state_from_config(read_config(path)[0], path), None
     data = open_result(path)
     try:
         state = state_from_config(config_from_resolved(json.loads(data.attrs["config_resolved"])), path)

@@ -16,7 +16,7 @@ SparsityPattern = tuple[tuple[bool, ...], ...]
 """Sparsity pattern of a matrix: pattern[row][column] is True where the matrix element may be nonzero."""
 
 
-class Algebra(NamedTuple):
+class LieAlgebra(NamedTuple):
     """Structure constants of a Lie algebra, and the sparsity patterns of ad and ad*.
 
     components: indices of the components. structure_constants: the nonzero ones. ad_pattern: pattern of ad;
@@ -40,7 +40,7 @@ class Algebra(NamedTuple):
         return [(a, b) for a in self.components for b in self.components if a != b]
 
 
-def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra:
+def algebra_from_constants(size: int, terms: list[StructureConstant]) -> LieAlgebra:
     """The Lie algebra of dimension `size` whose nonzero structure constants are `terms`."""
     # Loops over the Jacobian skip all blocks that are not in these patterns.
     ad_pairs = {(a, c) for a, _, c, _ in terms}
@@ -49,7 +49,7 @@ def algebra_from_constants(size: int, terms: list[StructureConstant]) -> Algebra
         tuple(tuple((i, j) in pairs for j in range(size)) for i in range(size))
         for pairs in (ad_pairs, coad_pairs)
     )
-    return Algebra(range(size), tuple(terms), ad_pattern, coad_pattern)
+    return LieAlgebra(range(size), tuple(terms), ad_pattern, coad_pattern)
 
 
 def _cross_product_constants(out: int, left: int, right: int) -> list[StructureConstant]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..arrays import Array
 from .balance import Material, axial_vector
-from .material.build import DEFAULT_BUILD, Build, LocalCoefficients, Sections
+from .material.build import DEFAULT_BUILD, Build, CrossSections, LocalCoefficients
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameter_fields
 from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
@@ -215,11 +215,11 @@ class Rod:
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
         return Material(compliance, drag, self.F, axial_vector(self.nu, 3))
 
-    def sections(self, u: Array) -> Sections:
+    def sections(self, u: Array) -> CrossSections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
         return self.build.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
-    def section_derivatives(self, name: str, u: Array) -> Sections:
+    def section_derivatives(self, name: str, u: Array) -> CrossSections:
         """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
         slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
         return self.build.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)

@@ -18,7 +18,7 @@ from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
 from .cycle.reference_rod import REFERENCE_REQUEST
 from .orbit.matrix.linearisation import parameter_derivatives, reduced_variation_sides
-from .orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
+from .orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from .orbit.orbit import Orbit
 from .orbit.symmetry import REFLECTION
 from .spectrum.path.carried_count import widest_gap
@@ -75,7 +75,7 @@ def warm_up_uniform() -> None:
     form = StressForm(SAMPLE_ROD, uniform_mesh(1, 4))
     states = np.zeros((1 + SAMPLE_TIME_INTERVALS * SAMPLE_COLLOCATION_STAGES, form.unknown_count))
     orbit = Orbit.from_states(form, REFLECTION, 1.0, states, SAMPLE_COLLOCATION_STAGES)
-    memory = MatrixMemory(
+    memory = FactorStorage(
         NewtonWorkspace(), SAMPLE_TIME_INTERVALS, SAMPLE_COLLOCATION_STAGES, form.unknown_count
     )
     variations = np.zeros((1, len(orbit.values) + 1))

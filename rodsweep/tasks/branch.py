@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from ..solve.branch.branch_curve import BranchCurve, BranchPoint
     from ..solve.branch.branches import BranchesOfRod
     from ..solve.branch.special.special_point import SpecialPoint
-    from ..solve.changes.kinds import Threshold
+    from ..solve.changes.threshold_kinds import Threshold
 
 
 @dataclass(frozen=True, slots=True)

@@ -51,14 +51,14 @@ def bent_shape(job: Job, tip: tuple[float, float] | None) -> Array:
 
     tip: position (x, y) in L at which the tip is held; None for the straight rod.
     """
-    from ..discretization.beam import Beam
+    from ..discretization.explicit_system import ExplicitSystem
     from ..solve.cycle.transient.motion_mesh import integrable_rod, motion_mesh
     from ..solve.motion.fixed_tip import bent_state_with_tip_at
 
     rod = job.points.rod(0)
-    beam = Beam(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
-    state = np.zeros(beam.unknown_count) if tip is None else bent_state_with_tip_at(beam, *tip)
-    shape: Array = beam.shape(state)[:2] @ beam.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
+    system = ExplicitSystem(integrable_rod(rod), motion_mesh(rod, MOTION_ACCURACY))
+    state = np.zeros(system.unknown_count) if tip is None else bent_state_with_tip_at(system, *tip)
+    shape: Array = system.shape(state)[:2] @ system.mesh.evaluation_matrix(lobatto_points(NODE_COUNT)).T
     return shape
 
 

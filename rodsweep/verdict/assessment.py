@@ -17,7 +17,7 @@ from ..model.arm.neglected import (
     worst_validity,
 )
 from ..model.arm.quantities import LOADS, SECTION_SIZE_NAMES
-from ..solve.changes.kinds import ChangeKind, Threshold
+from ..solve.changes.threshold_kinds import Threshold, ThresholdKind
 from ..solve.solve_lock import exclusive_solve
 from .flutter import ThresholdsOverDrags, thresholds_with_drag
 
@@ -86,7 +86,9 @@ class Assessment:
 
 def first_hopf_point(thresholds: ThresholdsOverDrags) -> Threshold | None:
     """First Hopf point for the most likely drag for which the arm flutters; None if it does not flutter."""
-    return next((change for c in thresholds.by_drag if (change := c.first_threshold(ChangeKind.hopf))), None)
+    return next(
+        (change for c in thresholds.by_drag if (change := c.first_threshold(ThresholdKind.hopf))), None
+    )
 
 
 def effects_at_flutter(arm: SlenderArm, thresholds: ThresholdsOverDrags) -> tuple[Effect, ...]:

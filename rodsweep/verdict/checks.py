@@ -11,7 +11,7 @@ from ..model.material.laws import LINEAR
 if TYPE_CHECKING:
     from .assessment import Assessment  # for annotations only: the module imports solvers
 
-MIN_SLENDERNESS = 20.0
+MIN_ACCURATE_SLENDERNESS = 20.0
 """Smallest ratio of length to radius at which slender-body theory is accurate to about ten percent."""
 THRESHOLD_DECREASE_BY_INERTIA = 0.64
 """Estimated relative decrease of the flutter threshold by inertia, per radian of phase between drag and
@@ -62,12 +62,12 @@ def checks_of(assessment: "Assessment") -> list[Check]:
 
 
 def slenderness_check(arm: SlenderArm) -> Check:
-    """Check of the ratio of the arm's length to its radius against MIN_SLENDERNESS."""
+    """Check of the ratio of the arm's length to its radius against MIN_ACCURATE_SLENDERNESS."""
     ratio = arm.si.length / arm.shape.largest_drag_radius
-    is_slender = ratio >= MIN_SLENDERNESS
+    is_slender = ratio >= MIN_ACCURATE_SLENDERNESS
     reason = "slender enough for local drag"
     if not is_slender:
-        reason = f"below {MIN_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
+        reason = f"below {MIN_ACCURATE_SLENDERNESS:g} local drag is inaccurate, and the range of drag is wide"
     return Check(_doubtful_if(not is_slender), f"Slenderness: the arm is {ratio:.3g} radii long; {reason}.")
 
 

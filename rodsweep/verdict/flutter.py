@@ -5,8 +5,8 @@ from math import inf, pi
 
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
-from ..solve.changes.kinds import ChangeKind, Threshold
 from ..solve.changes.status import ThresholdStatus
+from ..solve.changes.threshold_kinds import Threshold, ThresholdKind
 from ..solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from ..solve.solve_lock import exclusive_solve
 from .relative_load import SEARCH_END, SEARCH_ENDS_OF_VARYING_ARM, rod_with_drag
@@ -17,10 +17,10 @@ MIN_SEARCH_RATIO = 2.0
 """For an arm that is not uniform or not of linear material, the search is extended until its largest force is
 at least this number times the first flutter force and this number times the load."""
 KINDS_USED_BY_VERDICT = (
-    ChangeKind.onset,
-    ChangeKind.hopf,
-    ChangeKind.hopf_reverse,
-    ChangeKind.restabilization,
+    ThresholdKind.onset,
+    ThresholdKind.hopf,
+    ThresholdKind.hopf_reverse,
+    ThresholdKind.restabilization,
 )
 """Kinds of the thresholds that a verdict uses; other exchanges of the leading eigenvalue do not matter."""
 
@@ -59,16 +59,16 @@ class ThresholdsWithDrag:
             return ""
         return search.message or "the list of thresholds is not proved complete"
 
-    def first_threshold(self, kind: ChangeKind) -> Threshold | None:
+    def first_threshold(self, kind: ThresholdKind) -> Threshold | None:
         """The threshold of the given kind at the smallest force; None if no threshold has this kind."""
         return next((c for c in self.thresholds.thresholds if c.kind == kind), None)
 
-    def first_frequency(self, kind: ChangeKind) -> float | None:
+    def first_frequency(self, kind: ThresholdKind) -> float | None:
         """Frequency, in Hz, at the first threshold of the given kind; None if no threshold has this kind."""
         change = self.first_threshold(kind)
         return None if change is None else abs(change.frequency) / (2 * pi * self.tau2)
 
-    def first_force(self, kind: ChangeKind) -> float | None:
+    def first_force(self, kind: ThresholdKind) -> float | None:
         """Force, in k3/L^2, at the first threshold of the given kind; None if no threshold has this kind."""
         change = self.first_threshold(kind)
         return None if change is None else change.value
@@ -77,8 +77,8 @@ class ThresholdsWithDrag:
     def second_flutter_force(self) -> float | None:
         """Force, in k3/L^2, at which the arm flutters again after its first restabilization; None if the arm
         does not flutter again."""
-        stable_from = self.first_force(ChangeKind.restabilization)
-        hopf_forces = (c.value for c in self.thresholds.thresholds if c.kind == ChangeKind.hopf)
+        stable_from = self.first_force(ThresholdKind.restabilization)
+        hopf_forces = (c.value for c in self.thresholds.thresholds if c.kind == ThresholdKind.hopf)
         return None if stable_from is None else next((F for F in hopf_forces if stable_from < F), None)
 
     def is_unstable_at(self, F: float) -> bool:
@@ -130,7 +130,7 @@ class ThresholdsOverDrags:
         """Largest force of the search, in k3/L^2; the same for all drags."""
         return self.by_drag[0].thresholds.end
 
-    def first_forces(self, kind: ChangeKind) -> RangeOverDrags | None:
+    def first_forces(self, kind: ThresholdKind) -> RangeOverDrags | None:
         """Range, over the drags, of the force at the first threshold of the given kind, in k3/L^2; None if no
         drag has such a threshold."""
         return range_over_drags([f.first_force(kind) for f in self.by_drag])
@@ -141,7 +141,7 @@ class ThresholdsOverDrags:
         for any drag."""
         return range_over_drags([f.second_flutter_force for f in self.by_drag])
 
-    def first_frequencies(self, kind: ChangeKind) -> RangeOverDrags | None:
+    def first_frequencies(self, kind: ThresholdKind) -> RangeOverDrags | None:
         """Range, over the drags, of the frequency at the first threshold of the given kind, in Hz; None if no
         drag has such a threshold."""
         return range_over_drags([f.first_frequency(kind) for f in self.by_drag])
@@ -180,7 +180,7 @@ def _first_search(arm: SlenderArm, drag: Drag) -> tuple[float, ThresholdsWithDra
     known_load = arm.load is not None and arm.share_of_flutter is None
     for end in SEARCH_ENDS_OF_VARYING_ARM if arm.shape.varies else (SEARCH_END,):
         thresholds = thresholds_with_drag(arm, drag, end)
-        flutter = thresholds.first_force(ChangeKind.hopf)
+        flutter = thresholds.first_force(ThresholdKind.hopf)
         min_end = max(inf if flutter is None else flutter, arm.F if known_load else 0.0)
         if MIN_SEARCH_RATIO * min_end <= end or thresholds.thresholds.end < end:
             break

@@ -8,7 +8,7 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.quantities import UNITS
 from ..model.units import with_si_prefix
-from ..solve.changes.kinds import ChangeKind
+from ..solve.changes.threshold_kinds import ThresholdKind
 from .flutter import ThresholdsOverDrags, thresholds_over_drags
 from .relative_load import with_exchanged_sides
 
@@ -29,12 +29,12 @@ class PlaneOfMotion:
     @property
     def flutter_load_by_drag(self) -> list[float]:
         """Force of the first flutter, in N, for each drag; inf for a drag without flutter."""
-        forces = [thresholds.first_force(ChangeKind.hopf) for thresholds in self.thresholds.by_drag]
+        forces = [thresholds.first_force(ThresholdKind.hopf) for thresholds in self.thresholds.by_drag]
         return [inf if force is None else force * self.arm.force_scale for force in forces]
 
 
 @dataclass(frozen=True, slots=True)
-class Planes:
+class PlanesOfMotion:
     """Planes in which an arm can bend. first: plane with the smaller flutter load for the most likely drag.
     second: the other plane; None if all planes are equivalent."""
 
@@ -51,20 +51,20 @@ class Planes:
         return all(first_load <= second_load for first_load, second_load in loads)
 
 
-def planes_of(arm: SlenderArm) -> Planes:
+def planes_of(arm: SlenderArm) -> PlanesOfMotion:
     """Planes of motion of an arm, each with its solved thresholds: two for a rectangular section with unequal
     sides, in order of the flutter load for the likeliest drag; otherwise one."""
     if arm.is_equally_stiff_in_all_planes:
-        return Planes(PlaneOfMotion(arm, thresholds_over_drags(arm)))
+        return PlanesOfMotion(PlaneOfMotion(arm, thresholds_over_drags(arm)))
     exchanged = with_exchanged_sides(arm)
     height_plane = PlaneOfMotion(arm, thresholds_over_drags(arm), "the plane of its height")
     width_plane = PlaneOfMotion(exchanged, thresholds_over_drags(exchanged), "the plane of its width")
     if width_plane.flutter_load_by_drag[0] < height_plane.flutter_load_by_drag[0]:
-        return Planes(width_plane, height_plane)
-    return Planes(height_plane, width_plane)
+        return PlanesOfMotion(width_plane, height_plane)
+    return PlanesOfMotion(height_plane, width_plane)
 
 
-def with_absolute_load(planes: Planes) -> Planes:
+def with_absolute_load(planes: PlanesOfMotion) -> PlanesOfMotion:
     """The planes with a load relative to the flutter load replaced by the load in a physical unit. The
     flutter load is the smallest over all planes, for the most likely drag. Raises InputError if the arm does
     not flutter."""
@@ -73,7 +73,7 @@ def with_absolute_load(planes: Planes) -> Planes:
     load = first.arm.load
     if ratio is None or load is None:
         return planes
-    force = first.thresholds.by_drag[0].first_force(ChangeKind.hopf)
+    force = first.thresholds.by_drag[0].first_force(ThresholdKind.hopf)
     scale = first.arm.load_scale
     if force is None:
         end = f"{float(f'{first.thresholds.end * scale:.3g}'):g} {UNITS[load][0]}"
@@ -84,7 +84,7 @@ def with_absolute_load(planes: Planes) -> Planes:
     factor, unit = with_si_prefix(ratio * force * scale, UNITS[load][0])
     keywords: dict[str, Any] = {load: f"{ratio * force * scale * factor:.15g} {unit}"}
     second = planes.second and replace(planes.second, arm=replace(planes.second.arm, **keywords))
-    return Planes(replace(first, arm=replace(first.arm, **keywords)), second)
+    return PlanesOfMotion(replace(first, arm=replace(first.arm, **keywords)), second)
 
 
 def arm_with_absolute_load(arm: A) -> A:

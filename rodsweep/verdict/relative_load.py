@@ -21,8 +21,8 @@ from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
 from ..model.material.build import Build
 from ..model.rod import Rod
-from ..solve.changes.kinds import ChangeKind
 from ..solve.changes.search_range import end_below_crushing
+from ..solve.changes.threshold_kinds import ThresholdKind
 
 A = TypeVar("A", bound=SlenderArm)
 SEARCH_END = 1000.0
@@ -134,7 +134,8 @@ def _first_hopf_force_of_varying_arm(path: ParameterPath, end: float) -> float:
             f"{cause_of(error)}; give an absolute load"
         ) from error
     force = min(
-        (crossing.value for crossing in located.thresholds if crossing.kind == ChangeKind.hopf), default=inf
+        (crossing.value for crossing in located.thresholds if crossing.kind == ThresholdKind.hopf),
+        default=inf,
     )
     if not located.proved or (located.ended_early and force == inf):
         raise FlutterSearchFailed(

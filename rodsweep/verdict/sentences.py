@@ -5,16 +5,16 @@ so, and the sentences on flutter are conditional: "Without inertia the arm would
 """
 
 from ..model.arm.neglected import Validity
-from ..solve.changes.kinds import ChangeKind
+from ..solve.changes.threshold_kinds import ThresholdKind
 from .assessment import Assessment
 from .flutter import RangeOverDrags, ThresholdsOverDrags
 from .load import LoadFormatter
-from .planes import PlaneOfMotion, Planes
+from .planes import PlaneOfMotion, PlanesOfMotion
 from .remedies import effect_kind, not_applicable_sentences
 from .rounded_numbers import percent_range_text, range_text
 
 
-def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
+def verdict_sentences(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
     """Sentences of the verdict on an arm, over the range of drag: whether the model applies, why thresholds
     are uncertain (if they are), flutter in the plane with the smaller flutter load, then in the second plane.
     The second plane is left out if the model applies at flutter but not under the load. If a search in the
@@ -28,14 +28,14 @@ def verdict_sentences(planes: Planes, assessment: Assessment) -> list[str]:
     return [headline, *_doubt_sentences(planes), *others]
 
 
-def _doubt_sentences(planes: Planes) -> list[str]:
+def _doubt_sentences(planes: PlanesOfMotion) -> list[str]:
     """List of one sentence on why the thresholds of some plane are uncertain; empty if they are certain."""
     thresholds_of_planes = [plane.thresholds for plane in (planes.first, planes.second) if plane is not None]
     doubts = sorted({doubt for thresholds in thresholds_of_planes for doubt in thresholds.doubts})
     return [f"For some drags this is not certain: {'; '.join(doubts)}."] if doubts else []
 
 
-def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
+def _sentences_on_flutter(planes: PlanesOfMotion, assessment: Assessment) -> list[str]:
     """Sentences of the verdict if no search in the first plane failed: see `verdict_sentences`."""
     plane = planes.first
     invalid_effects = assessment.effects_with(Validity.does_not_apply)
@@ -49,7 +49,7 @@ def _sentences_on_flutter(planes: Planes, assessment: Assessment) -> list[str]:
             *_flutter_without_effects(plane, kinds),
             *_second_plane_sentences(planes, "would be"),
         ]
-    flutter = plane.thresholds.first_forces(ChangeKind.hopf)
+    flutter = plane.thresholds.first_forces(ThresholdKind.hopf)
     flutter_text = (
         "No flutter was found" if flutter is None else f"Flutter, at {_flutter_load_text(plane, flutter)},"
     )
@@ -61,14 +61,14 @@ def _valid_arm_sentences(plane: PlaneOfMotion) -> list[str]:
     arm = plane.arm
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = thresholds.first_forces(ChangeKind.hopf)
-    returns = thresholds.first_forces(ChangeKind.restabilization)
+    flutter = thresholds.first_forces(ThresholdKind.hopf)
+    returns = thresholds.first_forces(ThresholdKind.restabilization)
     if flutter is None:
         stay = f": it stays straight at {load.typed_text}" if load.typed_text else ""
         if thresholds.end < arm.F:
             stay = f": whether the arm beats at {load.typed_text} is not known"
         return [f"The arm does not flutter {_search_end_clause(plane, load)}{stay}."]
-    rate = thresholds.first_frequencies(ChangeKind.hopf)
+    rate = thresholds.first_frequencies(ThresholdKind.hopf)
     beats = "" if rate is None else f" begins to beat at {range_text(rate.low, rate.high)} Hz"
     if arm.load is None:
         sentences = [
@@ -145,8 +145,8 @@ def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     arm = plane.arm
     thresholds = plane.thresholds
     load = LoadFormatter(plane.arm)
-    flutter = thresholds.first_forces(ChangeKind.hopf)
-    rate = thresholds.first_frequencies(ChangeKind.hopf)
+    flutter = thresholds.first_forces(ThresholdKind.hopf)
+    rate = thresholds.first_frequencies(ThresholdKind.hopf)
     if flutter is None:
         return [f"Without {neglected} the arm would not flutter {_search_end_clause(plane, load)}."]
     frequency = "" if rate is None else f" and begin to beat at {range_text(rate.low, rate.high)} Hz"
@@ -164,7 +164,7 @@ def _flutter_without_effects(plane: PlaneOfMotion, neglected: str) -> list[str]:
     return [*sentences, f"{load.typed_text} would be {position} that threshold."]
 
 
-def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
+def _second_plane_sentences(planes: PlanesOfMotion, verb: str) -> list[str]:
     """List of one sentence on flutter in the second plane of a rectangular section; empty for other sections.
     verb: "is" or "would be"."""
     second_plane = planes.second
@@ -173,7 +173,7 @@ def _second_plane_sentences(planes: Planes, verb: str) -> list[str]:
     if second_plane.thresholds.failures:
         return [f"The threshold in {second_plane.name} could not be found."]
     load = LoadFormatter(second_plane.arm)
-    flutter = second_plane.thresholds.first_forces(ChangeKind.hopf)
+    flutter = second_plane.thresholds.first_forces(ThresholdKind.hopf)
     if flutter is None:
         return [f"In {second_plane.name} there {verb} no flutter {_search_end_clause(second_plane, load)}."]
     drag_clause = ""
@@ -192,7 +192,7 @@ def _search_end_clause(plane: PlaneOfMotion, load: LoadFormatter) -> str:
 
 def _oscillation_sentences(thresholds: ThresholdsOverDrags, load: LoadFormatter) -> list[str]:
     """Sentence on the load above which a decaying disturbance oscillates; empty if no such load was found."""
-    onset = thresholds.first_forces(ChangeKind.onset)
+    onset = thresholds.first_forces(ThresholdKind.onset)
     if onset is None:
         return []
     return [f"From {load.range_of_forces_text(onset)} on, a disturbed arm oscillates as it returns to rest."]

@@ -11,7 +11,7 @@ from hard.page import as_stated, page_of
 
 import rodsweep as rs
 from rodsweep.api.dataset import view_of_dataset
-from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
 
@@ -19,7 +19,7 @@ THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "
 def test_thresholds_of_an_arm_need_no_load_and_ignore_one():
     arm = rs.Arm(**THICK)
     answer = arm.thresholds()
-    flutter = arm.flutter.by_drag[0].first_threshold(ChangeKind.hopf)
+    flutter = arm.flutter.by_drag[0].first_threshold(ThresholdKind.hopf)
     assert answer.F_hopf == pytest.approx(flutter.value, rel=1e-6)
     assert answer.data["F_hopf"].size == 1
     loaded = rs.Arm(**THICK, pressure="1 kPa").thresholds()

@@ -12,7 +12,7 @@ from surveyed import few
 import rodsweep as rs
 from rodsweep.post.rod_portrait.paragraph import paragraph
 from rodsweep.post.rod_portrait.picture import portrait_figure
-from rodsweep.results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_VARIABLES
+from rodsweep.results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_VARIABLES
 from rodsweep.tasks import rod_portrait
 from rodsweep.tasks.rod_portrait import cycle_forces
 

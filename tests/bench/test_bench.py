@@ -16,7 +16,14 @@ from rods import rod_of
 from surveyed import survey_only
 
 from rodsweep.bench import peers as bench_peers
-from rodsweep.bench.peers import NO_PEERS, PEER_NAMES, Peers, peer_package, peers_left_out, peers_of_study
+from rodsweep.bench.peers import (
+    NO_PEERS,
+    PEER_NAMES,
+    PeerContribution,
+    peer_package,
+    peers_left_out,
+    peers_of_study,
+)
 from rodsweep.bench.spectrum import arms
 from rodsweep.bench.spectrum import study as spectrum
 from rodsweep.bench.spectrum.arms import (
@@ -173,7 +180,9 @@ def test_study_of_the_spectrum_has_a_row_for_every_method(monkeypatch, tmp_path)
     monkeypatch.setattr(spectrum, "FORCE_COUNT", 1)
     monkeypatch.setattr(arms, "ARM_RODS", {"cone": ARM_RODS["cone"]})
     exact = TimedMethod("a peer", "7", "g", partial(rodsweep_spectrum, certify=False))
-    study = spectrum_study(quick=True, peers=Peers({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."]))
+    study = spectrum_study(
+        quick=True, peers=PeerContribution({SPECTRUM_RACE: [exact]}, skipped=["Another is skipped."])
+    )
     for name in ("rodsweep, certificate on", "rodsweep, certificate off", KRYLOV_SCHUR, "a peer"):
         assert study.text.count(f"| {name} |") == (2 if name == "a peer" else 3)
         assert f"| {name} | 4 |" in study.text

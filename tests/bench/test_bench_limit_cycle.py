@@ -35,7 +35,7 @@ from rodsweep.bench.limit_cycle.tracking import (
     solve_reference,
     tip_returns,
 )
-from rodsweep.bench.peers import NO_PEERS, Peers
+from rodsweep.bench.peers import NO_PEERS, PeerContribution
 from rodsweep.bench.study import Measurement, TimedMethod, TimedRuns
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.motion.integrator import integrator
@@ -53,19 +53,19 @@ def test_error_of_an_exact_run_is_that_of_the_measurement():
     at = cycle()
     steps = int(128 * FOLLOWED_PERIODS)
     duration = steps / 128 * at.period
-    run = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, duration, at.period / 128)
+    run = integrator(at.system.mesh, PERIOD_MAP).run(at.system, at.state, duration, at.period / 128)
     assert run_errors(at, run)["error"] < 1e-8
 
 
 def test_returns_lie_on_the_section():
     at = cycle()
     steps = DEFAULT_INTEGRATOR.integrate(
-        1e-5, IntegrationTask(at.beam, at.state, FOLLOWED_PERIODS * at.period)
+        1e-5, IntegrationTask(at.system, at.state, FOLLOWED_PERIODS * at.period)
     )
-    found = tip_returns(at.beam, steps)
-    angle = at.beam.tip_coordinates(found.states)[2]
+    found = tip_returns(at.system, steps)
+    angle = at.system.tip_coordinates(found.states)[2]
     assert len(found.times) >= 6
-    assert np.abs(angle).max() < 1e-9 * np.abs(at.beam.tip_coordinates(steps.states)[2]).max()
+    assert np.abs(angle).max() < 1e-9 * np.abs(at.system.tip_coordinates(steps.states)[2]).max()
 
 
 def test_interpolation_in_the_logarithms():
@@ -165,7 +165,7 @@ def test_the_benchmark_times_peers_beside_rodsweep(monkeypatch):
     double = replace(DEFAULT_INTEGRATOR, name="double", tolerances=(1e-5, 1e-8), waiting_tolerances=(1e-7,))
     failing = [TimedMethod("failing", tolerance, "failing", gives_up) for tolerance in ("1e-05", "1e-07")]
     further = Measurement("30", "continuation", "p = 14", 1.0, 1e-6)
-    peers = Peers(
+    peers = PeerContribution(
         contenders={
             FOLLOWING_RACE: double.following_contenders() + failing,
             WAITING_RACE: double.settling_contenders() + failing,

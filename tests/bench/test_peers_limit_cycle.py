@@ -93,11 +93,11 @@ def test_every_method_follows_the_cycle_and_gains_from_a_tighter_tolerance(famil
 def test_order_of_the_errors(name):
     order, *tolerances = ORDERS[name]
     family, at = next(f for f in FAMILIES if f.name == name), cycle()
-    over = integrator(at.beam.mesh, PERIOD_MAP).run(at.beam, at.state, at.period, at.period / 128)
+    over = integrator(at.system.mesh, PERIOD_MAP).run(at.system, at.state, at.period, at.period / 128)
     error, steps = np.zeros((2, PHASES)), np.zeros((2, PHASES))
     for phase, state in enumerate(over.states[: 128 : 128 // PHASES + 1]):
         for i, tolerance in enumerate(tolerances):
-            run = family.integrate(tolerance, IntegrationTask(at.beam, state, FOLLOWED_PERIODS * at.period))
+            run = family.integrate(tolerance, IntegrationTask(at.system, state, FOLLOWED_PERIODS * at.period))
             error[i, phase] = run_errors(replace(at, state=state), run)["error"]
             steps[i, phase] = len(run.times) - 1
     (loose, tight), (few, many) = np.sqrt((error**2).mean(axis=1)), steps.mean(axis=1)
@@ -142,7 +142,7 @@ def auto(tmp_path_factory):
 
 @pytest.mark.skipif(shutil.which("gfortran") is None, reason="gfortran is not installed")
 def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
-    beam, z = state_on_cycle(soft_rod())
+    system, z = state_on_cycle(soft_rod())
     n = len(z)
     (tmp_path / "rod").write_bytes(rod_file(soft_rod().form))
     # A library of its own, which finds the rod where it was written.
@@ -158,11 +158,11 @@ def test_equations_in_fortran_are_those_of_the_beam(tmp_path):
         func(size, *(a.ctypes for a in (u, icp, par)), which, *(a.ctypes for a in out))
         return out
 
-    F = beam.rod.F
+    F = system.rod.F
     rate, jacobian, by_force = call(F, 2)
-    matrix = beam.jacobian(z)
+    matrix = system.jacobian(z)
     terms = np.abs(matrix) @ np.abs(z)  # of the rate, which cancel on a cycle
-    assert np.abs(rate - beam.state_derivative(z)).max() < 1e-14 * terms.max()
+    assert np.abs(rate - system.state_derivative(z)).max() < 1e-14 * terms.max()
     assert np.abs(jacobian.T - matrix).max() < 1e-14 * np.abs(matrix).max()
     difference = (call(F + 1, 0)[0] - call(F - 1, 0)[0]) / 2  # exact: the rate is quadratic in F
     assert np.abs(by_force - difference).max() < 1e-14 * terms.max()

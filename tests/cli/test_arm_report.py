@@ -16,14 +16,14 @@ from rodsweep.model.arm.neglected import (
     neglected_effects,
     worst_validity,
 )
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import empty_thresholds
 from rodsweep.verdict.arm import arm_report
 from rodsweep.verdict.checks import THRESHOLD_DECREASE_BY_INERTIA, rubber_stiffening
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
 from rodsweep.verdict.load import LoadFormatter
-from rodsweep.verdict.planes import PlaneOfMotion, Planes, with_absolute_load
+from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion, with_absolute_load
 
 WATER = {"length": "12 cm", "radius": "6 mm", "young": "80 kPa", "poisson": 0.49, "viscosity": "1 mPa s"}
 THICK = {"length": "15 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "100 Pa s"}
@@ -166,10 +166,10 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
             (rod, rs.Arm(**{n: getattr(rod, n) for n in QUANTITIES if getattr(rod, n) is not None}))
             for rod in planes(arm)
         ),
-        key=lambda each: each[1].flutter.by_drag[0].first_force(ChangeKind.hopf) * each[0].force_scale,
+        key=lambda each: each[1].flutter.by_drag[0].first_force(ThresholdKind.hopf) * each[0].force_scale,
     )
     first, found = plane[0], plane[1].flutter
-    hopf = found.by_drag[0].first_threshold(ChangeKind.hopf)
+    hopf = found.by_drag[0].first_threshold(ThresholdKind.hopf)
     effects = neglected_effects(
         first, angular_frequency_at_smallest_drag(first, abs(hopf.frequency)), hopf.value
     )
@@ -181,7 +181,7 @@ def test_the_headline_agrees_with_the_neglected_effects_of_random_arms(seed):
     assert report.verdict[0].startswith("The model does not apply") == (worst == 2)
     assert bool(report.warnings) == (worst == 1)
     if worst < 2 and arm.share_of_flutter is not None:
-        spans = found.first_forces(ChangeKind.hopf)
+        spans = found.first_forces(ThresholdKind.hopf)
         at = arm.share_of_flutter * hopf.value
         words = "stays straight" if at < spans.low else "drag decides" if at < spans.high else "the arm beats"
         assert words in report.verdict[0]
@@ -200,7 +200,10 @@ def test_a_tall_rectangle_flutters_first_in_the_plane_of_its_width():
     tall = rs.Arm(**TALL, pressure="2 kPa")
     flat = tall.turned
     assert (flat.width, flat.height) == ("12 mm", "8 mm")
-    found, other = flat.flutter.first_forces(ChangeKind.hopf), tall.flutter.first_forces(ChangeKind.hopf)
+    found, other = (
+        flat.flutter.first_forces(ThresholdKind.hopf),
+        tall.flutter.first_forces(ThresholdKind.hopf),
+    )
     low, high = (F * flat.pressure_scale / 1000 for F in (found.low, found.high))
     report = tall.report()
     assert report.verdict[0] == headline(flat).replace("plane of its height", "plane of its width")
@@ -221,14 +224,17 @@ def test_a_square_has_one_plane():
 def test_a_tall_arm_that_is_stiff_in_its_plane_of_motion_beats_in_the_other():
     """Below flutter in the plane that was meant, and above in the one that goes first."""
     tall = rs.Arm(**TALL, pressure="2 kPa")
-    assert tall.flutter.first_forces(ChangeKind.hopf).low > tall.F
-    assert tall.turned.flutter.first_forces(ChangeKind.hopf).high < tall.turned.F
+    assert tall.flutter.first_forces(ThresholdKind.hopf).low > tall.F
+    assert tall.turned.flutter.first_forces(ThresholdKind.hopf).high < tall.turned.F
 
 
 @pytest.mark.long
 def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
     arm = rs.Arm(**THICK)
-    flutter, rate = arm.flutter.first_forces(ChangeKind.hopf), arm.flutter.first_frequencies(ChangeKind.hopf)
+    flutter, rate = (
+        arm.flutter.first_forces(ThresholdKind.hopf),
+        arm.flutter.first_frequencies(ThresholdKind.hopf),
+    )
     said = headline(arm)
     stated = numbers_in(said)
     assert said.startswith("The arm flutters at ")
@@ -246,7 +252,7 @@ def test_no_load_is_needed_to_ask_when_an_arm_flutters(command):
 def test_a_load_may_be_relative_to_flutter(load):
     arm = rs.Arm(**THICK, **{load: "1.25 of flutter"})
     same = rs.Arm(**THICK, **{load: "125% of flutter"})
-    likeliest = arm.flutter.by_drag[0].first_force(ChangeKind.hopf)
+    likeliest = arm.flutter.by_drag[0].first_force(ThresholdKind.hopf)
     assert pytest.approx(1.25 * likeliest, rel=1e-12) == arm.loaded.F
     assert same.loaded == arm.loaded
     report = arm.report()
@@ -260,7 +266,7 @@ def test_a_load_may_be_relative_to_flutter(load):
 
 def test_a_load_relative_to_the_flutter_of_a_rectangle_is_so_in_the_plane_that_goes_first():
     tall = rs.Arm(**TALL, pressure="1.5 of flutter")
-    flutter = tall.turned.flutter.by_drag[0].first_force(ChangeKind.hopf) * tall.turned.pressure_scale
+    flutter = tall.turned.flutter.by_drag[0].first_force(ThresholdKind.hopf) * tall.turned.pressure_scale
     assert tall.loaded.si.pressure == pytest.approx(1.5 * flutter)
     assert tall.loaded.height == tall.height
 
@@ -280,7 +286,7 @@ def test_a_load_relative_to_no_flutter_is_refused():
     with pytest.raises(
         rs.InputError, match="^pressure = '1.2 of flutter' cannot be computed: .* up to 5560 Pa"
     ):
-        with_absolute_load(Planes(PlaneOfMotion(arm, ThresholdsOverDrags((none,)))))
+        with_absolute_load(PlanesOfMotion(PlaneOfMotion(arm, ThresholdsOverDrags((none,)))))
 
 
 def test_the_report_is_a_table_in_a_notebook():

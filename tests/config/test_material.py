@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import rodsweep as rs
-from rodsweep.config import load_config
+from rodsweep.config import read_config
 from rodsweep.errors import InputError
 from rodsweep.model.material.profile import Profile
 from rodsweep.tasks.running.job import job_of_file
@@ -24,7 +24,7 @@ STEPPED = "u,k3,gamma3\n0,1,1\n0.4,1,1\n0.4,0.2,0.5\n1,0.2,0.5\n"
 def config(directory, rest="", more="", task="spectrum"):
     path = directory / "arm.yaml"
     path.write_text(BASE.format(task=task, more=more, rest=rest))
-    return load_config(path)[0]
+    return read_config(path)[0]
 
 
 def test_profile_of_a_file_is_part_of_the_config(tmp_path):

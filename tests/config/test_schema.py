@@ -9,7 +9,7 @@ import pytest
 from conftest import ROOT
 from faults import small
 
-from rodsweep.config import load_config
+from rodsweep.config import read_config
 from rodsweep.config.document.parsing import parsed_yaml
 from rodsweep.config.json_schema import json_schema
 from rodsweep.config.tasks import CONFIGS
@@ -159,10 +159,10 @@ def test_schema_and_check_agree_on_keys_together_and_on_bounds(tmp_path, task, p
     (tmp_path / "c.yaml").write_text(text)
     assert fits_schema(text) == good
     if good:
-        job_of_config(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
+        job_of_config(tmp_path / "c.yaml", *read_config(tmp_path / "c.yaml"))
     else:
         with pytest.raises(InputError):
-            job_of_config(tmp_path / "c.yaml", *load_config(tmp_path / "c.yaml"))
+            job_of_config(tmp_path / "c.yaml", *read_config(tmp_path / "c.yaml"))
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "configs").glob("*.yaml")), ids=lambda path: path.stem)
@@ -211,10 +211,10 @@ def test_schema_and_command_agree(tmp_path, changed, good):
     path.write_text(text)
     assert fits_schema(text) == good
     if good:
-        load_config(path)
+        read_config(path)
     else:
         with pytest.raises(InputError):
-            load_config(path)
+            read_config(path)
 
 
 def test_every_key_has_its_sentence():

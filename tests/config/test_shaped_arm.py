@@ -2,7 +2,7 @@
 
 import pytest
 
-from rodsweep.config import load_config
+from rodsweep.config import read_config
 from rodsweep.config.document.reading import config_from_resolved, config_yaml, resolved_config
 from rodsweep.errors import InputError
 
@@ -14,7 +14,7 @@ RUBBER = "law: neo_hookean, section: swelling"
 def config(directory, arm, more="", beside="", task="thresholds"):
     path = directory / "arm.yaml"
     path.write_text(f"task: {task}\nparameters: {{arm: {{{arm}}}{beside}}}\n{more}\n")
-    return load_config(path)[0]
+    return read_config(path)[0]
 
 
 @pytest.mark.parametrize(
@@ -31,7 +31,7 @@ def test_an_arm_that_varies_is_read_again_from_its_file_and_its_text(tmp_path, a
     read = config(tmp_path, arm)
     again = config_from_resolved(resolved_config(read))
     (tmp_path / "text.yaml").write_text(config_yaml(read))
-    for other in (again, load_config(tmp_path / "text.yaml")[0]):
+    for other in (again, read_config(tmp_path / "text.yaml")[0]):
         assert other.build == read.build
         assert other.settings_of_results == read.settings_of_results
         assert other.parameter_names == read.parameter_names

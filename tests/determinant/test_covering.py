@@ -17,9 +17,9 @@ from rodsweep.determinant.certificate.discs import bidisc_centre, bound_on_bidis
 from rodsweep.determinant.certificate.first_boxes import first_boxes, path_intervals
 from rodsweep.determinant.parameter_path import (
     ParameterPath,
-    coefficient_derivatives,
     coefficients_at,
     determinant_along_path,
+    dispersion_coefficient_derivatives,
 )
 from rodsweep.determinant.roots.newton import eigenvalue_newton
 from rodsweep.determinant.value import scaled_determinant
@@ -80,7 +80,7 @@ def test_bound_on_a_bidisc_holds_for_the_determinant_in_complex_p(path):
     for eta in (2.0, 190.0, 2500.0):
         w = complex(0.0, eta)
         D, D_w, D_p, S, _ = determinant_along_path(w, c, direction)
-        centre = bidisc_centre(w, c, coefficient_derivatives(c, direction), S)
+        centre = bidisc_centre(w, c, dispersion_coefficient_derivatives(c, direction), S)
         for share in (0.3, 0.05):
             for rates in ((0j, 0j), (D_w / D, D_p / D)):
                 radii = share * eta, share * abs(p)

@@ -138,7 +138,7 @@ def test_determinant_is_one_at_rest():
 
 
 def test_filament_roots_are_those_of_the_cantilever():
-    """F = 0, rigid in stretch and shear: w = -b^4 with cosh b cos b = -1, the clamped-free beam."""
+    """F = 0, rigid in stretch and shear: w = -b^4 with cosh b cos b = -1, the clamped-free system."""
     rod = Rod(F=0.0, k1=np.inf, k2=np.inf, gamma3=0.0)
     for n in range(1, 5):
         b = mp.findroot(lambda b: mp.cosh(b) * mp.cos(b) + 1, (n - 0.5) * mp.pi)

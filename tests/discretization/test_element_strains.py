@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_with_edges
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
@@ -89,11 +89,11 @@ def test_changes_of_strains_are_their_derivatives(names, rigid, ratios):
 def test_an_arm_leaves_the_model_where_its_softer_side_is_crushed():
     """The mean stretch of both sides is still positive."""
     form = arm(6)
-    beam = Beam(form.rod, form.mesh)
+    system = ExplicitSystem(form.rod, form.mesh)
     S = np.zeros((3, form.mesh.node_count + 1))
     for pull, crushed in ((-39.0, False), (-41.0, True)):  # k1 is 60 behind the jump, and F is 20
         S[0, 6] = pull
-        z = beam.state_of_stresses(S)
-        assert beam.strains(z)[0].min() > 0
-        assert (beam.least_stretch(z) < 0) == crushed
-        assert (z[6] <= beam.crushing_z1[6]) == crushed
+        z = system.state_of_stresses(S)
+        assert system.strains(z)[0].min() > 0
+        assert (system.least_stretch(z) < 0) == crushed
+        assert (z[6] <= system.crushing_z1[6]) == crushed

@@ -9,10 +9,10 @@ from mixed_motion import mixed_form
 from pointwise_balance import strain, velocity
 from rods import rod_of
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
 
@@ -215,7 +215,9 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
     root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
     X = consistent(form, some_state(form))
     z = root * X[: form.stress_count]
-    expected = Beam(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(z)
+    expected = ExplicitSystem(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(
+        z
+    )
     rate = root * mixed.rate(form, X)[: form.stress_count] / form.M[: form.stress_count]
     assert rate == pytest.approx(expected, rel=1e-10, abs=1e-12 * np.abs(expected).max())
 
@@ -223,16 +225,16 @@ def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, 
 @pytest.mark.parametrize("rod", [SOFT, Rod(F=-20.0, k1=30.0, k2=20.0, gamma3=0.5)])
 @pytest.mark.parametrize("elements, order", [(1, 24), (3, 10)])
 def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, order):
-    form, beam = (
+    form, system = (
         mixed_form(rod.with_values(gamma1=GAMMA1), elements, order),
-        Beam(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)),
+        ExplicitSystem(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)),
     )
     u, root = (
         form.mesh.node_positions[:-1],
         np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count),
     )
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
-    exact = beam.tip_position_and_velocity(np.zeros(beam.layout.unknown_count), root * S)[1][1]
+    exact = system.tip_position_and_velocity(np.zeros(system.layout.unknown_count), root * S)[1][1]
     assert form.tip_y_row @ np.append(S, np.zeros(form.unknown_count - len(S))) == pytest.approx(
         exact, rel=1e-12
     )

@@ -15,8 +15,8 @@ import pytest
 from rods import rod_of
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
 from rodsweep.solve.spectrum.status import SpectrumStatus
@@ -69,7 +69,7 @@ def test_thresholds_leave_the_limit_at_first_order(path):
     assert limit.status == ThresholdStatus.ok
     for i, there in enumerate(limit.thresholds[:2]):
         here = (there.value, *path[1:])
-        if there.kind == ChangeKind.onset:
+        if there.kind == ThresholdKind.onset:
             slope = float(mp.re(onset_slope(here, there.growth_rate)))
         else:
             slope = float(hopf_slope(here, 1j * there.frequency))

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.status import SpectrumStatus
 
@@ -61,8 +61,8 @@ def mirrored(k1, end):
     at = np.array([c.value for c in found.thresholds])
     assert at + at[::-1] == pytest.approx(np.full(len(at), k1), rel=1e-12)
     opposite = {
-        ChangeKind.onset: {ChangeKind.real_again},
-        ChangeKind.hopf: {ChangeKind.hopf_reverse, ChangeKind.restabilization},
+        ThresholdKind.onset: {ThresholdKind.real_again},
+        ThresholdKind.hopf: {ThresholdKind.hopf_reverse, ThresholdKind.restabilization},
     }
     for first, last in zip(found.thresholds[: len(at) // 2], found.thresholds[::-1], strict=False):
         assert last.kind in opposite[first.kind]
@@ -91,5 +91,5 @@ def test_the_last_threshold_before_a_rod_is_crushed_keeps_its_digits():
     )
     assert found.status == ThresholdStatus.ok
     assert found.end < 100.0
-    assert found.thresholds[-1].kind == ChangeKind.onset
+    assert found.thresholds[-1].kind == ThresholdKind.onset
     assert found.thresholds[-1].value == pytest.approx(98.9023098589847539, rel=1e-12)

@@ -31,10 +31,10 @@ import rodsweep.discretization
 import rodsweep.solve
 from rodsweep.determinant.certificate.box import box_from_sqrt_bound
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.determinant.stability_changes import crossings_between
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.kernel_constants import KernelConstants
@@ -206,9 +206,9 @@ def coefficients(accuracy: float) -> Answer:
 
 
 @cache
-def hopf_curve() -> tuple[Plane, Any]:
+def hopf_curve() -> tuple[ParameterPlane, Any]:
     axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
-    plane = Plane(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), axes)
+    plane = ParameterPlane(Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4), axes)
     start = tuple(axis.coordinate(value) for axis, value in zip(axes, GENERALISED_HOPF_AT[:2], strict=True))
     return plane, trace_boundary(0.0, plane, start, GENERALISED_HOPF_AT[2])
 
@@ -353,7 +353,7 @@ def thresholds_of_a_slender_cone(accuracy: float) -> Answer:
 def curves_of_changes(accuracy: float) -> Answer:
     """Curves through the changes of two rows of a plane, and their folds."""
     rod = Rod(F=60.0, k1=155.0, k2=1e4, gamma3=1e-4)
-    plane = Plane(rod, (PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)))
+    plane = ParameterPlane(rod, (PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)))
     request = RowRequest("F", np.linspace(60.0, 110.0, 5), accuracy, True, 10)
     seeds = []
     for k1 in (150.0, 155.0):
@@ -410,12 +410,12 @@ def modes_of_a_cone(accuracy: float) -> Answer:
 
 def on_mesh(accuracy: float) -> Answer:
     """Tip, its velocity and the energy of a rod that turns by two radians in one element."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknown_count))
-    z = beam.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
-    tip = np.concatenate(beam.tip_position_and_velocity(z, 0.1 * z))
-    numbers = [*tip, beam.elastic_energy(z)]
+    system = ExplicitSystem(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
+    u = system.mesh.node_positions
+    rest = system.strains(np.zeros(system.layout.unknown_count))
+    z = system.state_of_strains(rest + (1 - u) * np.array([0 * u, 0.1 * np.sin(2 * u), 4 * np.cos(u)]))
+    tip = np.concatenate(system.tip_position_and_velocity(z, 0.1 * z))
+    numbers = [*tip, system.elastic_energy(z)]
     return {f"number {i}": (float(value), 1e-12) for i, value in enumerate(numbers)}
 
 
@@ -427,12 +427,12 @@ def longitudinal(accuracy: float) -> Answer:
 
 def held_tip(accuracy: float) -> Answer:
     """Energy and tip of a rod bent by its tip, which Newton's method places far better than asked here."""
-    beam = Beam(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    z = bent_state_with_tip_at(beam, 0.5, 0.4)
-    x, y, _ = beam.tip_coordinates(z)
+    system = ExplicitSystem(Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
+    z = bent_state_with_tip_at(system, 0.5, 0.4)
+    x, y, _ = system.tip_coordinates(z)
     if np.hypot(x - 0.5, y - 0.4) > 1e-6:
         return None
-    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (beam.elastic_energy(z), 1e-6)}
+    return {"x": (x, 1e-8), "y": (y, 1e-8), "energy": (system.elastic_energy(z), 1e-6)}
 
 
 def small_drag(accuracy: float) -> Answer:
@@ -442,13 +442,13 @@ def small_drag(accuracy: float) -> Answer:
 
 def motion(accuracy: float) -> Answer:
     """State after a free motion. Its error is that of the scheme's tolerance, some steps' worth."""
-    beam = Beam(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
-    u = beam.mesh.node_positions
-    rest = beam.strains(np.zeros(beam.layout.unknown_count))
+    system = ExplicitSystem(Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), uniform_mesh(1, 16))
+    u = system.mesh.node_positions
+    rest = system.strains(np.zeros(system.layout.unknown_count))
     wave = np.array([0 * u, 0.1 * np.sin(2 * u), np.cos(4 * u)])
-    start = beam.state_of_strains(rest + 0.1 * (1 - u) * wave)
+    start = system.state_of_strains(rest + 0.1 * (1 - u) * wave)
     destroy_integrators()
-    run = integrator(beam.mesh, TimeScheme(tolerance=accuracy)).run(beam, start, 0.05)
+    run = integrator(system.mesh, TimeScheme(tolerance=accuracy)).run(system, start, 0.05)
     if run.ending is not EndReason.reached:
         return None
     size = float(np.abs(run.states[0]).max())
@@ -624,7 +624,7 @@ CASES = {
     "CYCLE_PREDICTION_SETTINGS": CHAIN,
     "PARAMETER_STEP_CONTROL": CHAIN,
     "HOPF_START_SETTINGS": BESIDE_HOPF,
-    "SMALL_MOTION_SETTINGS": BESIDE_HOPF,
+    "MOTION_DECAY_SETTINGS": BESIDE_HOPF,
     "STRAIGHT_ROD_SETTINGS": BESIDE_HOPF,
     "AMPLITUDE_EQUATION_SETTINGS": BESIDE_HOPF,
     "TIME_SCHEME_SETTINGS": BESIDE_HOPF,

@@ -12,9 +12,9 @@ from pointwise_balance import (
     velocity,
 )
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_legendre_rule
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.balance import ad, coad
 from rodsweep.model.rod import Rod
 
@@ -142,51 +142,51 @@ def test_energy_law(material, size):
 # --- the compiled kernels ---------------------------------------------------------------------------------
 
 
-def stress_of(beam, z):
+def stress_of(system, z):
     """Sigma of z at all nodes, (3, nodes + 1), the tip's load included; complex for a complex z."""
-    Sigma = np.zeros((3, beam.mesh.node_count + 1), z.dtype)
-    Sigma[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
-    Sigma[0] -= beam.rod.F
+    Sigma = np.zeros((3, system.mesh.node_count + 1), z.dtype)
+    Sigma[:, :-1] = z.reshape(3, -1) / system.sqrt_compliance[:, :-1]
+    Sigma[0] -= system.rod.F
     return Sigma
 
 
-def collocated(beam, z):
+def collocated(system, z):
     """dz/dt by the balance at the nodes of a mesh of one element, where the clamp is natural."""
-    D, w = beam.mesh.matrices.D, beam.mesh.quadrature
-    Sigma = stress_of(beam, z)
+    D, w = system.mesh.matrices.D, system.mesh.quadrature
+    Sigma = stress_of(system, z)
     V = velocity(PLANE, Sigma, Sigma @ D.T)
     rate = (V @ D.T + ad(strain(PLANE, Sigma), V))[:, :-1]
     rate[:, 0] += V[:, 0] / w[0]
-    return (rate / beam.sqrt_compliance[:, :-1]).ravel()
+    return (rate / system.sqrt_compliance[:, :-1]).ravel()
 
 
-def rough(beam):
-    return np.random.default_rng(3).standard_normal(beam.layout.unknown_count)
+def rough(system):
+    return np.random.default_rng(3).standard_normal(system.layout.unknown_count)
 
 
 def test_compiled_rate_is_the_balance_at_the_nodes():
-    beam = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 16))
-    z = rough(beam)
-    rate = collocated(beam, z)
-    assert beam.state_derivative(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
+    system = ExplicitSystem(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 16))
+    z = rough(system)
+    rate = collocated(system, z)
+    assert system.state_derivative(z) == pytest.approx(rate, rel=1e-10, abs=1e-12 * np.abs(rate).max())
 
 
 def test_compiled_jacobian_is_the_derivative_of_the_balance():
-    beam, step = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 12)), 1e-30
-    z = rough(beam)
-    J = beam.jacobian(z)
+    system, step = ExplicitSystem(ROD.with_values(gamma1=GAMMA1), uniform_mesh(1, 12)), 1e-30
+    z = rough(system)
+    J = system.jacobian(z)
     for k, direction in enumerate(1j * step * np.eye(len(z))):
-        column = collocated(beam, z + direction).imag / step
+        column = collocated(system, z + direction).imag / step
         assert np.abs(J[:, k] - column).max() <= 1e-11 * np.abs(column).max()
 
 
 @pytest.mark.parametrize("elements, order", [(1, 26), (3, 14)])
 def test_compiled_rate_of_a_smooth_rod_is_that_of_the_balance(elements, order):
     """But at the clamp: V(0) of an arbitrary field is not 0, and the natural condition answers with 1/w."""
-    beam = Beam(ROD.with_values(gamma1=GAMMA1), uniform_mesh(elements, order))
-    u = beam.mesh.node_positions
+    system = ExplicitSystem(ROD.with_values(gamma1=GAMMA1), uniform_mesh(elements, order))
+    u = system.mesh.node_positions
     Sigma, dSigma, ddSigma = stresses(u, 3)
     _, exact = rates(PLANE, Sigma, dSigma, ddSigma)
-    z = beam.state_of_strains(strain(PLANE, Sigma))
-    rate = beam.state_derivative(z).reshape(3, -1) * beam.sqrt_compliance[:, :-1]
+    z = system.state_of_strains(strain(PLANE, Sigma))
+    rate = system.state_derivative(z).reshape(3, -1) * system.sqrt_compliance[:, :-1]
     assert np.abs(rate - exact[:, :-1])[:, 1:].max() <= 1e-7 * np.abs(exact).max()

@@ -718,7 +718,7 @@ def figure_of(task, **words):
 
 
 def test_a_diagram_far_from_crushing_has_neither_its_edge_nor_the_partial_beam():
-    """Both lay beyond its axes, and the legend told of the beam."""
+    """Both lay beyond its axes, and the legend told of the system."""
     rows = {"k1": [480.0, 1e4, 1e6], "k2": 1e5, "gamma3": 1e-5, "F": {"start": 0.0, "stop": 90.0, "num": 7}}
     figure = figure_of("phase_diagram", **rows)
     texts = [text.get_text() for legend in figure.legends for text in legend.get_texts()]

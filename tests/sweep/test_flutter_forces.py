@@ -10,7 +10,7 @@ from contents import content, same
 from ranks import PATIENCE, pause_until
 from surveyed import few
 
-from rodsweep.config import load_config
+from rodsweep.config import read_config
 from rodsweep.config.arm.status import FLUTTER_UNKNOWN
 from rodsweep.errors import BUG_STATUS, InputError
 from rodsweep.model.rod import Rod
@@ -63,7 +63,7 @@ def searches(command, rank):
 @pytest.fixture
 def rods(command):
     """The rods of the config `a.yaml`, in the order in which the ranks share them."""
-    config, _ = load_config(command.write("a.yaml", ARMS.format(task="spectrum")))
+    config, _ = read_config(command.write("a.yaml", ARMS.format(task="spectrum")))
     return rods_needing_flutter_force(config.parameters.arm)
 
 
@@ -127,7 +127,7 @@ def test_arms_of_which_none_has_a_known_flutter_are_refused(command, rods):
     path = command.directory / "a.yaml"
     unknown = dict.fromkeys(rods, FlutterForce(float("nan"), "no box is left"))
     with pytest.raises(InputError, match=r"parameters\.arm\.pressure: no box is left"):
-        job_of_config(path, *load_config(path), unknown)
+        job_of_config(path, *read_config(path), unknown)
 
 
 @pytest.mark.parametrize("error", [OverflowError("too large"), ZeroDivisionError()])

@@ -16,7 +16,7 @@ from rodsweep.api.keyword_arguments import config_tree, job_of_tree
 from rodsweep.model.arm.arm import SlenderArm
 from rodsweep.post.figures import draw
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import quantities_at_points, si_name_of
+from rodsweep.results.layouts.si_variables import quantities_at_points, si_name_of
 
 SILICONE = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "1.4 Pa s"}
 LOADED = SILICONE | {"pressure": "2 kPa"}

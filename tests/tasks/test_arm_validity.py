@@ -22,8 +22,8 @@ from rodsweep.post.figures import draw
 from rodsweep.post.summary.arm.answer import arm_answer
 from rodsweep.post.summary.arm.validity_sentences import row_clause, validity_sentence
 from rodsweep.results.file.view import read_view
-from rodsweep.results.layouts.arm import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
+from rodsweep.results.layouts.si_variables import VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from rodsweep.results.layouts.thresholds import HOPF_CROSSING_CODES
 from rodsweep.tasks.arm.validity import MOTION_OF_TASK, ArmValidity
 

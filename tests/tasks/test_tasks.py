@@ -213,9 +213,9 @@ def test_words_are_stored_as_flags_with_their_meanings(tmp_path, task):
 
 
 def test_kinds_of_crossings_have_the_numbers_of_the_solver():
-    from rodsweep.solve.changes.kinds import ChangeKind
+    from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 
-    assert {kind.name: int(kind) for kind in ChangeKind} == {
+    assert {kind.name: int(kind) for kind in ThresholdKind} == {
         name: number for number, name in enumerate(CROSSING_KINDS) if number
     }
 

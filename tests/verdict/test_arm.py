@@ -14,14 +14,14 @@ from rodsweep.model.arm.drag import cox_drag, drag_estimates, gray_hancock_drag,
 from rodsweep.model.arm.section import Circle, Rectangle, Tube
 from rodsweep.model.rod import Rod
 from rodsweep.model.units import load_over_flutter
-from rodsweep.solve.changes.kinds import ChangeKind, Threshold
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import Threshold, ThresholdKind
 from rodsweep.solve.changes.thresholds import Thresholds, empty_thresholds
 from rodsweep.solve.changes.thresholds_along_path import ThresholdSearchResult
 from rodsweep.verdict import flutter
 from rodsweep.verdict.assessment import Assessment
 from rodsweep.verdict.flutter import ThresholdsOverDrags, ThresholdsWithDrag
-from rodsweep.verdict.planes import PlaneOfMotion, Planes
+from rodsweep.verdict.planes import PlaneOfMotion, PlanesOfMotion
 from rodsweep.verdict.sentences import verdict_sentences
 
 OK = ThresholdStatus.ok
@@ -206,7 +206,7 @@ def test_bad_quantities_are_refused_in_one_sentence(changes, sentence):
 def test_silicone_arm_is_just_below_flutter():
     """A filament's F** = 37.695 would be 2.356 kPa, shear and drag lower it; frequencies as 1/viscosity."""
     rod = arm(viscosity=THICK)
-    flutter = rod.flutter.first_forces(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ThresholdKind.hopf)
     assert rod.F < flutter.low < flutter.high < 37.695
     assert flutter.for_every_drag
     verdict = rod.report().verdict
@@ -217,8 +217,8 @@ def test_silicone_arm_is_just_below_flutter():
 def test_frequency_follows_from_tau2():
     rod = arm()
     for drag, found in zip(rod.drags, rod.flutter.by_drag, strict=True):
-        rate = found.first_threshold(ChangeKind.hopf).frequency
-        assert found.first_frequency(ChangeKind.hopf) == pytest.approx(
+        rate = found.first_threshold(ThresholdKind.hopf).frequency
+        assert found.first_frequency(ThresholdKind.hopf) == pytest.approx(
             abs(rate) / (2 * math.pi * rod.tau2_with(drag))
         )
 
@@ -243,14 +243,14 @@ def test_thresholds_inside_the_range_of_drag_lie_in_that_of_forces():
     from rodsweep.verdict.flutter import SEARCH_REQUEST
 
     rod = arm()
-    flutter = rod.flutter.first_forces(ChangeKind.hopf)
+    flutter = rod.flutter.first_forces(ThresholdKind.hopf)
     all_gamma3 = [rod.gamma3_with(drag) for drag in rod.drags]
     low, high = min(all_gamma3), max(all_gamma3)
     for share in (0.1, 0.3, 0.5, 0.7, 0.9):
         found = solve_thresholds(
             Rod(F=0.0, k1=rod.k1, k2=rod.k2, gamma3=low * (high / low) ** share), SEARCH_REQUEST
         )
-        first = next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
+        first = next(c.value for c in found.thresholds if c.kind == ThresholdKind.hopf)
         assert flutter.low <= first <= flutter.high
 
 
@@ -315,7 +315,7 @@ def found(tau2, *changes, end=200.0):
 def verdict(rod, *forces):
     """The verdict on an arm with changes that are given for each drag."""
     plane = PlaneOfMotion(rod, ThresholdsOverDrags(forces))
-    return verdict_sentences(Planes(plane), Assessment(plane.arm, plane.thresholds))
+    return verdict_sentences(PlanesOfMotion(plane), Assessment(plane.arm, plane.thresholds))
 
 
 @pytest.mark.parametrize(
@@ -339,15 +339,15 @@ def verdict(rod, *forces):
     ],
 )
 def test_return_is_told_for_all_or_part_of_the_range(second, sentences):
-    window = found(1.0, (20.0, ChangeKind.hopf, 2), (40.0, ChangeKind.restabilization, 0))
-    other = [(25.0, ChangeKind.hopf, 2), (45.0, ChangeKind.restabilization, 0)] if second else []
+    window = found(1.0, (20.0, ThresholdKind.hopf, 2), (40.0, ThresholdKind.restabilization, 0))
+    other = [(25.0, ThresholdKind.hopf, 2), (45.0, ThresholdKind.restabilization, 0)] if second else []
     told = " ".join(verdict(arm(viscosity=1e3), window, found(2.0, *other)))
     assert all(words in told for words in sentences)
 
 
 def test_a_second_window_of_flutter_is_told():
-    window = ((20.0, ChangeKind.hopf, 2), (40.0, ChangeKind.restabilization, 0))
-    twice = found(1.0, *window, (60.0, ChangeKind.hopf, 2), (70.0, ChangeKind.hopf, 4))
+    window = ((20.0, ThresholdKind.hopf, 2), (40.0, ThresholdKind.restabilization, 0))
+    twice = found(1.0, *window, (60.0, ThresholdKind.hopf, 2), (70.0, ThresholdKind.hopf, 4))
     told = " ".join(verdict(arm(viscosity=1e3), twice, twice))
     assert "is stable again above 2.5 kPa, and flutters again above 3.75 kPa." in told
     told = " ".join(verdict(arm(viscosity=1e3), found(1.0, *window), twice))
@@ -356,7 +356,7 @@ def test_a_second_window_of_flutter_is_told():
 
 
 def test_thresholds_without_proof_are_told_with_the_doubt():
-    known = found(1.0, (20.0, ChangeKind.hopf, 2))
+    known = found(1.0, (20.0, ThresholdKind.hopf, 2))
     unproved = replace(known.thresholds.search_result, proved=False)
     thresholds = replace(
         known.thresholds,
@@ -371,9 +371,9 @@ def test_thresholds_without_proof_are_told_with_the_doubt():
     ]
 
 
-@pytest.mark.parametrize(("kind", "certain"), [(ChangeKind.real_leads, True), (ChangeKind.hopf, False)])
+@pytest.mark.parametrize(("kind", "certain"), [(ThresholdKind.real_leads, True), (ThresholdKind.hopf, False)])
 def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certain):
-    known = found(1.0, (20.0, kind, 2), (40.0, ChangeKind.hopf, 2))
+    known = found(1.0, (20.0, kind, 2), (40.0, ThresholdKind.hopf, 2))
     inaccurate = tuple(replace(c, error=0.1 if c.value == 20.0 else 0.0) for c in known.thresholds.thresholds)
     thresholds = replace(
         known.thresholds,
@@ -385,7 +385,7 @@ def test_an_inaccurate_threshold_matters_only_if_the_verdict_uses_it(kind, certa
 
 
 def test_beyond_the_return_the_arm_is_straight_again():
-    window = found(1.0, (20.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
+    window = found(1.0, (20.0, ThresholdKind.hopf, 2), (30.0, ThresholdKind.restabilization, 0))
     told = verdict(arm(viscosity=1e3), window)
     assert told[0] == "2 kPa is beyond flutter, at 1.25 kPa: the straight arm is stable again."
 
@@ -404,9 +404,9 @@ def test_arm_without_flutter_and_failed_search_are_told():
 def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatch):
     """With one drag the search ends before the arm returns with another, and before the load."""
     early = replace(
-        found(1.0, (20.0, ChangeKind.hopf, 2), end=25.0).thresholds, status=ThresholdStatus.ended_early
+        found(1.0, (20.0, ThresholdKind.hopf, 2), end=25.0).thresholds, status=ThresholdStatus.ended_early
     )
-    whole = found(1.0, (21.0, ChangeKind.hopf, 2), (30.0, ChangeKind.restabilization, 0))
+    whole = found(1.0, (21.0, ThresholdKind.hopf, 2), (30.0, ThresholdKind.restabilization, 0))
 
     def forces(arm, drag, end=200.0):
         return whole if drag == arm.drags[0] else ThresholdsWithDrag(tau2=2.0, thresholds=early)
@@ -423,7 +423,7 @@ def test_a_search_that_ended_early_limits_the_verdict_with_every_drag(monkeypatc
 
 
 def test_beyond_where_changes_were_sought_nothing_is_claimed():
-    window = found(1.0, (20.0, ChangeKind.hopf, 2), end=25.0)
+    window = found(1.0, (20.0, ThresholdKind.hopf, 2), end=25.0)
     assert verdict(arm(viscosity=1e3), window)[0] == (
         "Flutter is at 1.25 kPa; whether the arm beats at 2 kPa is not known: thresholds were searched "
         "only up to 1.56 kPa."

@@ -23,7 +23,7 @@ from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_threshold
 from rodsweep.sweep.points.arm_grid import grid_of_arms
 from rodsweep.sweep.points.flutter_forces import FlutterForce
 from rodsweep.tasks.arm.point_solver import rod_numbers
-from rodsweep.verdict.flutter import ChangeKind
+from rodsweep.verdict.flutter import ThresholdKind
 from rodsweep.verdict.relative_load import first_hopf_force, rods_by_plane
 
 SILICONE = {"length": "14 cm", "radius": "4 mm", "young": "100 kPa", "viscosity": "20 Pa s"}
@@ -50,10 +50,10 @@ def test_thresholds_over_the_drags_are_those_of_the_verdict():
     assert data.drag.values.tolist() == [0, 1, 2, 3, 4]
     for drag, found in zip(DRAG_NAMES, arm.flutter.by_drag, strict=True):
         here = data.sel(drag=DRAG_NAMES.index(drag))
-        force = found.first_force(ChangeKind.hopf) * arm.pressure_scale
+        force = found.first_force(ThresholdKind.hopf) * arm.pressure_scale
         assert here.pressure_hopf.item() == pytest.approx(force, rel=1e-9)
         assert here.frequency_hopf_hz.item() == pytest.approx(
-            found.first_frequency(ChangeKind.hopf), rel=1e-9
+            found.first_frequency(ThresholdKind.hopf), rel=1e-9
         )
         assert here.tau2.item() == arm.replace(drag=drag).tau2
 
@@ -140,7 +140,7 @@ def test_a_relative_load_is_one_of_the_arm_as_it_is_built(kind):
     arm = {name: value for name, value in (SILICONE | VARIED[kind]).items() if value is not None}
     given = arm | {"pressure": ["0.9999 of flutter", "1.0001 of flutter"]}
     data = rs.sweep("modes", arm=given, modes=1, nodes=5)
-    flutter = rs.Arm(**arm).flutter.by_drag[0].first_force(ChangeKind.hopf)
+    flutter = rs.Arm(**arm).flutter.by_drag[0].first_force(ThresholdKind.hopf)
     assert data.F.values.ravel() == pytest.approx([0.9999 * flutter, 1.0001 * flutter], rel=2e-6)
     below, above = data.growth_rate.values.ravel()
     assert below < 0 < above
@@ -165,7 +165,7 @@ def test_a_taper_beside_an_arm_moves_the_flutter_of_relative_loads():
     own = SlenderArm(**SILICONE)
     cone = Rod(F=0.0, k1=own.k1, k2=own.k2, gamma3=own.gamma3, taper=0.5)
     found = solve_thresholds(cone, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(each.value for each in found.thresholds if each.kind == ChangeKind.hopf)
+    hopf = next(each.value for each in found.thresholds if each.kind == ThresholdKind.hopf)
     assert data.F.sel(taper=0.5).values == pytest.approx([0.9999 * hopf, 1.0001 * hopf], rel=1e-9)
     assert (np.sign(data.growth_rate[..., 0].values) == [[-1, -1], [1, 1]]).all()
 

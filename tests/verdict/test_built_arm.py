@@ -7,7 +7,7 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.model.arm.neglected import Validity
-from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 
 ARM = {"length": "12 cm", "radius": "6 mm", "young": "100 kPa", "viscosity": "50 Pa s"}
 CONE = ARM | {"tip_radius": "3 mm"}
@@ -55,7 +55,7 @@ def test_flutter_of_a_cone_is_that_of_the_rod_converted_by_hand():
     tau2 = 4 * math.pi * 50 / logarithm * 0.12**2 / unit
     assert own.pressure_hopf == pytest.approx(own.F_hopf * unit / (math.pi * 0.003**2), rel=1e-12)
     assert own.frequency_hopf_hz == pytest.approx(found.hopf_frequency / (2 * math.pi * tau2), rel=5e-4)
-    assert arm.flutter.by_drag[0].first_force(ChangeKind.hopf) == pytest.approx(own.F_hopf, rel=1e-6)
+    assert arm.flutter.by_drag[0].first_force(ThresholdKind.hopf) == pytest.approx(own.F_hopf, rel=1e-6)
     assert rs.Rod(arm=arm).thresholds(F_max=30).F_hopf == own.F_hopf
 
 
@@ -63,7 +63,7 @@ def test_flutter_of_a_cone_is_that_of_the_rod_converted_by_hand():
 def test_report_on_a_cone():
     arm = rs.Arm(**CONE, pressure="5 kPa", density_difference="2 kg/m^3")
     report = arm.report()
-    flutter = arm.flutter.first_forces(ChangeKind.hopf)
+    flutter = arm.flutter.first_forces(ThresholdKind.hopf)
     assert flutter.high < arm.F
     assert report.verdict[0].startswith("5 kPa is ")
     assert report.verdict[0].endswith(": the arm beats.")
@@ -77,8 +77,8 @@ def test_the_law_of_rubber_moves_the_threshold_and_is_not_crushed():
     linear, rubber = rs.Arm(**SEGMENTED), rs.Arm(**SEGMENTED | RUBBER, pressure="200 kPa")
     assert rubber.crushing_force == math.inf
     assert rubber.k1 < rubber.F
-    first = rs.Arm(**SEGMENTED | RUBBER).flutter.first_forces(ChangeKind.hopf)
-    assert first.low > 1.02 * linear.flutter.first_forces(ChangeKind.hopf).low
+    first = rs.Arm(**SEGMENTED | RUBBER).flutter.first_forces(ThresholdKind.hopf)
+    assert first.low > 1.02 * linear.flutter.first_forces(ThresholdKind.hopf).low
     report = rs.Arm(**SEGMENTED | RUBBER, pressure="1 kPa").report()
     assert "law of rubber includes large compression." in " ".join(str(report).split())
     assert [row.name for row in report.rows[:3]] == ["segment 1", "segment 2", "law"]
@@ -129,7 +129,7 @@ SHAPES = {
 @pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES)
 def test_cycles_of_an_arm_are_those_of_its_rod(shape):
     """In SI units by the arm, and without dimension by the rod that it is."""
-    flutter = rs.Arm(**shape).flutter.first_forces(ChangeKind.hopf).high
+    flutter = rs.Arm(**shape).flutter.first_forces(ThresholdKind.hopf).high
     arm = rs.Arm(**shape)
     arm = arm.replace(pressure=f"{1.2 * flutter * arm.pressure_scale:.6g} Pa")
     found, rod = arm.cycle(accuracy=1e-6), rs.Rod(arm=arm).cycle(accuracy=1e-6)

@@ -11,7 +11,7 @@ from functools import partial
 from typing import NamedTuple
 
 from ...arrays import Array
-from ...discretization.beam import Beam
+from ...discretization.explicit_system import ExplicitSystem
 from ...solve.motion.integrator import EndReason, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
 from ..study import TimedMethod
@@ -25,9 +25,9 @@ tolerances up to TIGHT_TOLERANCE."""
 
 
 class IntegrationTask(NamedTuple):
-    """Task of an integrator. beam: rod on its mesh. z: initial state, (unknowns,). duration: in tau2."""
+    """Task of an integrator. system: rod on its mesh. z: initial state, (unknowns,). duration: in tau2."""
 
-    beam: Beam
+    system: ExplicitSystem
     z: Array
     duration: float
 
@@ -71,7 +71,7 @@ def petsc_trajectory(family: str, variant: str, tolerance: float, task: Integrat
     "arkimex" and "5". tolerance: see the module."""
     newton = TimeScheme().newton_tolerance_ratio if tolerance > TIGHT_TOLERANCE else TIGHT_NEWTON_TOLERANCE
     scheme = TimeScheme(family, variant, tolerance, newton, prefix="bench_")
-    run = integrator(task.beam.mesh, scheme).run(task.beam, task.z, task.duration)
+    run = integrator(task.system.mesh, scheme).run(task.system, task.z, task.duration)
     if run.ending != EndReason.reached:
         raise ArithmeticError(f"{family} {variant} at {tolerance:g}: {run.ending.name} {run.message}")
     return run

@@ -115,13 +115,13 @@ def _integrate_until_periodic(reference: ReferenceCycle, settings: Sequence[Time
     """Integration at the loosest tolerance at which two successive returns agree, and period and largest tip
     y are accurate, within SETTLING_TOLERANCE; without such a tolerance, a method whose `reaches_cycle` is
     False. settings: contenders of one integrator, from the loosest tolerance."""
-    start = START_DEFLECTION * leading_mode(reference.beam).z.real
-    task = IntegrationTask(reference.beam, start, WAITING_PERIODS * reference.period)
+    start = START_DEFLECTION * leading_mode(reference.system).z.real
+    task = IntegrationTask(reference.system, start, WAITING_PERIODS * reference.period)
     name = WAITING_PREFIX + settings[0].method
     failed: tuple[str, ...] = ()
     for contender in settings:
         try:
-            returns = tip_returns(reference.beam, contender.run(task))
+            returns = tip_returns(reference.system, contender.run(task))
         except ArithmeticError:
             failed += (contender.setting,)
             continue

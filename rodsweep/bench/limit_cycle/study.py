@@ -9,7 +9,7 @@ from math import isfinite, log, nan
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...solve.cycle.reference_rod import warm_up
 from ...wording import counted
-from ..peers import Peers
+from ..peers import PeerContribution
 from ..study import BenchmarkReport, Measurement, every_nth_setting, grouped_by_fields, markdown_table
 from .default_integrator import DEFAULT_INTEGRATOR
 from .settling import compare_settling
@@ -40,7 +40,7 @@ ERROR_NAMES_BY_PANEL = {
 """Names of the errors in the figure, by the title of the panel."""
 
 
-def limit_cycle_study(quick: bool, peers: Peers) -> BenchmarkReport:
+def limit_cycle_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: errors and times of integrators, methods that reach a
     cycle, cost of a point of a sweep, and sections of the peers. quick: whether to use fewer rounds,
     tolerances and rods."""

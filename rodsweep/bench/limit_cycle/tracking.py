@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import PPoly, make_interp_spline
 
 from ...arrays import Array
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import uniform_mesh
+from ...discretization.explicit_system import ExplicitSystem
 from ...model.rod import Rod
 from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
 from ...solve.cycle.transient.returns import tip_angle_row
@@ -72,10 +72,10 @@ missed."""
 
 @dataclass(frozen=True, eq=False)
 class ReferenceCycle:
-    """Reference cycle of the benchmark. beam: rod on its mesh in space. state: state z on the cycle,
+    """Reference cycle of the benchmark. system: rod on its mesh in space. state: state z on the cycle,
     (unknowns,). period: in tau2. tip_y_max: largest y of the tip, in L."""
 
-    beam: Beam
+    system: ExplicitSystem
     state: Array
     period: float
     tip_y_max: float
@@ -98,12 +98,12 @@ def orbit_of(cycle: Cycle) -> Orbit:
     return cycle.neighbour.predictor.orbit
 
 
-def state_on_cycle(orbit: Orbit) -> tuple[Beam, Array]:
-    """Returns (beam, z): the rod and mesh of an orbit as a beam for integrators, and the state of the orbit
-    at the largest y of the tip, (unknowns,)."""
+def state_on_cycle(orbit: Orbit) -> tuple[ExplicitSystem, Array]:
+    """Returns (system, z): the rod and mesh of an orbit as a system for integrators, and the state of the
+    orbit at the largest y of the tip, (unknowns,)."""
     stress_form = orbit.form
-    beam = Beam(stress_form.rod, stress_form.mesh)
-    return beam, (orbit.start_state.reshape(3, -1) * beam.sqrt_compliance[:, :-1]).ravel()
+    system = ExplicitSystem(stress_form.rod, stress_form.mesh)
+    return system, (orbit.start_state.reshape(3, -1) * system.sqrt_compliance[:, :-1]).ravel()
 
 
 def solve_reference() -> ReferenceCycle:
@@ -120,7 +120,7 @@ def measure_following(
 ) -> list[Measurement]:
     """Measurements of the `contenders`, which follow the reference cycle `reference` in time; times are
     divided by the number of periods."""
-    task = IntegrationTask(reference.beam, reference.state, FOLLOWED_PERIODS * reference.period)
+    task = IntegrationTask(reference.system, reference.state, FOLLOWED_PERIODS * reference.period)
     judge = partial(run_errors, reference)
     return [
         replace(m, seconds=m.seconds / FOLLOWED_PERIODS, least_seconds=m.least_seconds / FOLLOWED_PERIODS)
@@ -131,7 +131,7 @@ def measure_following(
 def run_errors(reference: ReferenceCycle, run: Trajectory) -> dict[str, Any]:
     """Fields of `Measurement` for a run: relative rms errors of the period and of the largest tip y, without
     the first return, and steps per period."""
-    returns = tip_returns(reference.beam, run)
+    returns = tip_returns(reference.system, run)
     period = _rms(np.diff(returns.times)[1:] / reference.period - 1)
     amplitude = _rms(returns.heights[1:] / reference.tip_y_max - 1)
     steps = (len(run.times) - 1) / FOLLOWED_PERIODS
@@ -156,11 +156,11 @@ class TipReturns:
     heights: Array
 
 
-def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
+def tip_returns(system: ExplicitSystem, run: Trajectory) -> TipReturns:
     """Returns of the tip in a run, see `TipReturns`: time and state by Newton's method with small steps,
     largest y from the run repeated with small steps."""
-    row = tip_angle_row(beam)
-    y = beam.tip_coordinates(run.states)[1]
+    row = tip_angle_row(system)
+    y = system.tip_coordinates(run.states)[1]
     angle = run.states @ row
     upward_steps = list(map(int, np.flatnonzero((angle[:-1] < 0) & (angle[1:] >= 0))))
     times = []
@@ -168,29 +168,31 @@ def tip_returns(beam: Beam, run: Trajectory) -> TipReturns:
     heights = []
     for k in upward_steps:
         step = SMALL_STEPS_DURATION_RATIO * (run.times[k + 1] - run.times[k])
-        fine_run = _integrate_in_small_steps(beam, run.states[k], step)
+        fine_run = _integrate_in_small_steps(system, run.states[k], step)
         duration = float(_spline(fine_run.times, fine_run.states @ row).roots(extrapolate=False)[0])
         for _ in range(NEWTON_CORRECTION_COUNT):
-            state_at_return = _integrate_in_small_steps(beam, run.states[k], duration).states[-1]
-            duration -= float(row @ state_at_return) / float(row @ beam.state_derivative(state_at_return))
+            state_at_return = _integrate_in_small_steps(system, run.states[k], duration).states[-1]
+            duration -= float(row @ state_at_return) / float(row @ system.state_derivative(state_at_return))
         times.append(run.times[k] + duration)
-        states.append(_integrate_in_small_steps(beam, run.states[k], duration).states[-1])
+        states.append(_integrate_in_small_steps(system, run.states[k], duration).states[-1])
     for start, end in pairwise(upward_steps):
-        heights.append(largest_y_near(beam, run, start + int(np.argmax(y[start : end + 1]))))
+        heights.append(largest_y_near(system, run, start + int(np.argmax(y[start : end + 1]))))
     return TipReturns(np.array(times), np.array(states), np.array(heights))
 
 
-def largest_y_near(beam: Beam, run: Trajectory, k: int) -> float:
+def largest_y_near(system: ExplicitSystem, run: Trajectory, k: int) -> float:
     """Largest y of the tip, in L, during the step of a run to its k-th state and the step after."""
-    fine_run = _integrate_in_small_steps(beam, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
-    height = _spline(fine_run.times, beam.tip_coordinates(fine_run.states)[1])
+    fine_run = _integrate_in_small_steps(system, run.states[k - 1], run.times[k + 1] - run.times[k - 1])
+    height = _spline(fine_run.times, system.tip_coordinates(fine_run.states)[1])
     return float(height(height.derivative().roots(extrapolate=False)).max())
 
 
-def _integrate_in_small_steps(beam: Beam, state: Array, duration: float) -> Trajectory:
+def _integrate_in_small_steps(system: ExplicitSystem, state: Array, duration: float) -> Trajectory:
     """Trajectory from the state z, (unknowns,), over `duration`, in tau2, in SMALL_STEP_COUNT equal steps."""
     limit = RunLimit(max_steps=SMALL_STEP_COUNT + 2)
-    return integrator(beam.mesh, PERIOD_MAP).run(beam, state, duration, duration / SMALL_STEP_COUNT, limit)
+    return integrator(system.mesh, PERIOD_MAP).run(
+        system, state, duration, duration / SMALL_STEP_COUNT, limit
+    )
 
 
 def _spline(times: Array, values: Array) -> PPoly:

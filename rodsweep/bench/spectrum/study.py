@@ -18,7 +18,7 @@ from ...solve.spectrum.krylov_schur import uniform_solver
 from ...solve.spectrum.problem import transverse_problem
 from ...solve.spectrum.search import warm_up
 from ...wording import counted
-from ..peers import Peers
+from ..peers import PeerContribution
 from ..study import (
     BenchmarkReport,
     Measurement,
@@ -74,7 +74,7 @@ QUICK_STRIDE = 3
 """On hard rods and arms a quick run uses every n-th size; this number is n."""
 
 
-def spectrum_study(quick: bool, peers: Peers) -> BenchmarkReport:
+def spectrum_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: the paper's rods at equal errors, hard rods at all sizes,
     and arms. quick: whether to use fewer rounds, target errors and sizes."""
     warm_up()

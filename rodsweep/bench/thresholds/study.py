@@ -15,7 +15,7 @@ from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ...wording import counted
-from ..peers import Peers
+from ..peers import PeerContribution
 from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 from ..study import (
     BenchmarkReport,
@@ -131,7 +131,7 @@ RODSWEEP_GROUP = "rodsweep"
 """Group of rodsweep in the figure."""
 
 
-def thresholds_study(quick: bool, peers: Peers) -> BenchmarkReport:
+def thresholds_study(quick: bool, peers: PeerContribution) -> BenchmarkReport:
     """Runs the benchmark and returns the results: tables of the onset and of the Hopf point, for uniform rods
     and for arms. quick: whether to use fewer rods and rounds."""
     warm_up()

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from ...config import load_config, refusals_with_file
+from ...config import read_config, refusals_with_file
 from ...errors import STOPPED_STATUS
 from ...results.file import provenance
 from ...results.file.creation import FinalVariables
@@ -34,7 +34,7 @@ def run_config(path: Path, output: Path, request: RunRequest, stop: StopRequest)
     require_working_directory()
     ranks = Ranks()
     with ranks.abort_all_ranks_on_error():
-        config, text = ranks.call_on_first_rank(lambda: load_config(path, request.overrides))
+        config, text = ranks.call_on_first_rank(lambda: read_config(path, request.overrides))
         with refusals_with_file(path):
             if (flutter := shared_flutter_forces(config, ranks, stop)) is None:
                 report_stop(ranks, stop)

@@ -32,7 +32,7 @@ MAX_HEADER_LENGTH = 10_000
 line."""
 
 
-def load_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
+def read_config(path: Path, overrides: tuple[str, ...] = ()) -> tuple[Config, str]:
     """Returns (config, YAML text).
 
     Raises InputError for any error in the file. overrides: texts "a.b=value" of --set, which change keys; the

@@ -58,7 +58,7 @@ class CompletenessSettings(KernelConstants):
     rounding_of_slope: float = 10.0
     """Relative rounding error of D'/D divided by that of D. Measured: at most 0.08 between two sets of
     elements, over 45 random arms."""
-    ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
+    field_ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""

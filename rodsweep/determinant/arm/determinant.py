@@ -78,7 +78,7 @@ class ArmDeterminant:
         for level in self._known_propagators:
             if min_W <= level[0] <= max_ratio * min_W:
                 return level
-        W = ARM_ELEMENT_SETTINGS.W_reserve_factor * min_W
+        W = ARM_ELEMENT_SETTINGS.w_bound_ratio * min_W
         elements = elements_for([self.rod], self._coefficient_samples, W)
         propagator_set = W, element_propagators([self.rod.F], elements.local, elements.lengths, W)[0]
         self._known_propagators = sorted([*self._known_propagators, propagator_set], key=itemgetter(0))

@@ -23,7 +23,7 @@ from math import exp, inf, log, sqrt
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients, Rod
-from ..parameter_path import ParameterPath, coefficient_derivatives, coefficients_at
+from ..parameter_path import ParameterPath, coefficients_at, dispersion_coefficient_derivatives
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -125,7 +125,7 @@ def zero_free_radius(path: ParameterPath, start: float, stop: float, max_radius:
     ends = [coefficients_at(p, path.origin, path.direction) for p in (start, stop)]
     T = max(c2 + gamma3 for *_, c2, gamma3 in ends)
     X = max(c2 * gamma3 for *_, c2, gamma3 in ends)
-    derivatives = [coefficient_derivatives(c, path.direction) for c in ends]
+    derivatives = [dispersion_coefficient_derivatives(c, path.direction) for c in ends]
     # A function lies within (stop - start)^2/8 times its curvature of the chord between its ends.
     span = (stop - start) ** 2 / 8
     G = max(abs(nu * (nu + F * c2)) for F, nu, c2, _ in ends) + span * max(abs(b.G_pp) for b in derivatives)

@@ -28,7 +28,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import coefficient_derivatives, coefficients_at, determinant_along_path
+from ..parameter_path import coefficients_at, determinant_along_path, dispersion_coefficient_derivatives
 from ..roots.newton import FAILED_EIGENVALUE, LocatedEigenvalue, crossing_newton
 from .discs import DISC_BOUND_SETTINGS, BidiscCentre, DerivativePair, bidisc_centre, bound_on_bidisc
 
@@ -53,7 +53,7 @@ class BoxProofSettings(KernelConstants):
     outside_distance: float = 0.01
     """Distance beyond the edge of a regular box, in half-widths of the box, from which a zero is left to the
     neighbouring box that contains it."""
-    ranges: ClassVar = {
+    field_ranges: ClassVar = {
         "first_radius_ratio": (0.0, 1.0),
         "radius_ratio_factor": (0.0, 1.0),
         "same_zero_distance": (1.0, 2.0),
@@ -139,7 +139,7 @@ def examine_box(
     coefficients, direction: coefficients at the centre and their derivative by p.
     """
     D, D_w, D_p, S, rounding_error = determinant_along_path(w, coefficients, direction)
-    centre = bidisc_centre(w, coefficients, coefficient_derivatives(coefficients, direction), S)
+    centre = bidisc_centre(w, coefficients, dispersion_coefficient_derivatives(coefficients, direction), S)
     mean = mean_growth_rates(centre)
     rounding = DISC_BOUND_SETTINGS.rounding_safety_factor * rounding_error
     if abs(D) > 2 * rounding:

@@ -14,7 +14,7 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import CoefficientDerivatives, exponent_slopes
+from ..parameter_path import DispersionCoefficientDerivatives, exponent_slopes
 from ..value import exponent_derivatives
 
 
@@ -32,7 +32,7 @@ class DiscBoundSettings(KernelConstants):
     this number. The remainder is proportional to x^2/(1 - x)."""
     max_factor_change: float = 0.98
     """If either factor of P^2 changes over a disc by more than this fraction, the bound is inf."""
-    ranges: ClassVar = {
+    field_ranges: ClassVar = {
         "max_relative_change": (0.0, 1.0),
         "max_expansion_change": (0.0, 1.0),
         "max_factor_change": (0.0, 1.0),
@@ -55,7 +55,7 @@ class BidiscCentre(NamedTuple):
 
     w: complex
     coefficients: Coefficients
-    derivatives: CoefficientDerivatives
+    derivatives: DispersionCoefficientDerivatives
     log_scale: float
     P: complex
     z_plus: complex
@@ -66,19 +66,22 @@ class BidiscCentre(NamedTuple):
 
 @compiled
 def bidisc_centre(
-    w: complex, coefficients: Coefficients, coefficient_derivatives: CoefficientDerivatives, S: float
+    w: complex,
+    coefficients: Coefficients,
+    dispersion_coefficient_derivatives: DispersionCoefficientDerivatives,
+    S: float,
 ) -> BidiscCentre:
-    """The centre of a bidisc at w. coefficient_derivatives: derivatives by p of T, N, G and X. S: logarithm
-    of the scale of D at w."""
+    """The centre of a bidisc at w. dispersion_coefficient_derivatives: derivatives by p of T, N, G and X. S:
+    logarithm of the scale of D at w."""
     exponents = exponent_derivatives(w, coefficients)
-    p_slope_plus, p_slope_minus = exponent_slopes(w, exponents, coefficient_derivatives)
+    p_slope_plus, p_slope_minus = exponent_slopes(w, exponents, dispersion_coefficient_derivatives)
     drag = coefficients.c2 + coefficients.gamma3
     slopes_plus = (drag + 2 * exponents.P_w, p_slope_plus)
     slopes_minus = (drag - 2 * exponents.P_w, p_slope_minus)
     return BidiscCentre(
         w,
         coefficients,
-        coefficient_derivatives,
+        dispersion_coefficient_derivatives,
         S,
         exponents.P,
         exponents.z_plus,

@@ -37,10 +37,10 @@ class DominanceSettings(KernelConstants):
     end_rounding: float = 1e-15
     """A step ends at the end of the segment if the distance to the end, divided by the length of the segment,
     is at most this number, the size of rounding errors."""
-    largest_factor_change: float = 0.5
+    max_factor_change: float = 0.5
     """Dominance is proved only on discs over which no factor of A changes by more than this fraction; the
     phase of each factor then changes by less than a right angle."""
-    ranges: ClassVar = {"first_radius": (0.0, 1.0), "largest_factor_change": (0.0, 1.0)}
+    field_ranges: ClassVar = {"first_radius": (0.0, 1.0), "max_factor_change": (0.0, 1.0)}
 
 
 DOMINANCE_SETTINGS = DominanceSettings()
@@ -80,7 +80,7 @@ def _nonlinearity_bounds(
     e2 = 0.0
     if X > 0:
         e2 = X * rho / abs(gn + X * w)
-    if e1 > DOMINANCE_SETTINGS.largest_factor_change or e2 > DOMINANCE_SETTINGS.largest_factor_change:
+    if e1 > DOMINANCE_SETTINGS.max_factor_change or e2 > DOMINANCE_SETTINGS.max_factor_change:
         return math.inf, math.inf
     min_factor = math.sqrt((1 - e1) * (1 - e2))
     numerator = abs(gn + 2 * X * w)
@@ -97,9 +97,8 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     nonlinear_change, slope_change = _nonlinearity_bounds(w, rho, P, coefficients)
     total_change = abs(slope) * rho + nonlinear_change
     x = total_change / abs(z)
-    if (
-        x > DOMINANCE_SETTINGS.largest_factor_change
-        or slope_change > DOMINANCE_SETTINGS.largest_factor_change * abs(slope)
+    if x > DOMINANCE_SETTINGS.max_factor_change or slope_change > DOMINANCE_SETTINGS.max_factor_change * abs(
+        slope
     ):
         return False
     L = slope / (2 * root)
@@ -109,7 +108,7 @@ def is_dominated(w: complex, rho: float, coefficients: Coefficients) -> bool:
     lowest_dominant = root.real - change_by_L - curvature
     other_change = abs(slope_other) * rho + nonlinear_change
     highest_recessive = math.sqrt(max((abs(z_other) + z_other.real) / 2 + other_change, 0.0))
-    if other_change < DOMINANCE_SETTINGS.largest_factor_change * abs(z_other):
+    if other_change < DOMINANCE_SETTINGS.max_factor_change * abs(z_other):
         other_root_change = nonlinear_root_bound(root_other, nonlinear_change, other_change / abs(z_other))
         relative_change = abs(slope_other / (2 * root_other) - L) * rho + other_root_change
         if not root.real - curvature > root_other.real + relative_change:

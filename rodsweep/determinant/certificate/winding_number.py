@@ -50,7 +50,7 @@ class WindingSettings(KernelConstants):
     """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
-    ranges: ClassVar = {"safe_step": (0.0, 1.0)}
+    field_ranges: ClassVar = {"safe_step": (0.0, 1.0)}
 
 
 WINDING_SETTINGS = WindingSettings()

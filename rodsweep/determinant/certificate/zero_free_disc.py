@@ -21,11 +21,11 @@ from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ...model.rod import Coefficients
 from ..exponents import EXPONENT_SETTINGS
-from ..parameter_path import CoefficientDerivatives
+from ..parameter_path import DispersionCoefficientDerivatives
 from ..value import exponent_derivatives, scaled_determinant
 from .discs import DISC_BOUND_SETTINGS, bidisc_centre, bound_on_bidisc
 
-NO_COEFFICIENT_CHANGE = CoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NO_COEFFICIENT_CHANGE = DispersionCoefficientDerivatives(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Derivatives of the coefficients along a path, all 0: bounds then apply to a single rod."""
 
 
@@ -39,7 +39,7 @@ class NodeDiscSettings(KernelConstants):
     """Largest relative change of z+- over a disc, so that the exponents of D change by order one."""
     min_root_modulus: float = 1e-3
     """If |z+-| is below this number, sqrt(z+-) does not limit the radius of the disc."""
-    ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
+    field_ranges: ClassVar = {"branch_distance": (1.0, math.inf)}
 
 
 NODE_DISC_SETTINGS = NodeDiscSettings()

@@ -31,7 +31,7 @@ dimension of g. See also `rodsweep.model.balance` (without a mesh), `mixed_form`
 import numpy as np
 
 from ...arrays import Array
-from ...model.algebra import Algebra
+from ...model.algebra import LieAlgebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import stress_at_jump, stress_parameter_derivative_at_jump
@@ -47,7 +47,7 @@ from ..state_layout import stress_index, velocity_index
 
 
 @UnrolledOverAlgebra
-def write_strains_and_stresses(g: Algebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
+def write_strains_and_stresses(g: LieAlgebra, x: Array, E: Array, S: Array, c: NodalRod) -> None:
     """Writes strains and stresses of a state x, (unknowns,), at all nodes into E and S, (d, nodes + 1)."""
     size = E.shape[1]
     for i in range(size):
@@ -73,7 +73,7 @@ def replace_by_law_stresses(S: Array, c: NodalRod) -> None:
 
 
 @UnrolledOverAlgebra
-def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_forces(g: LieAlgebra, E: Array, S: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the forces per length D*_E Sigma at all nodes into out, (d, nodes + 1). E, S: strains and
     stresses from `write_strains_and_stresses`, (d, nodes + 1) each."""
     size = len(m.weights)
@@ -96,7 +96,7 @@ def write_forces(g: Algebra, E: Array, S: Array, out: Array, c: NodalRod, m: Nod
 
 
 @UnrolledOverAlgebra
-def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
+def write_strain_rates(g: LieAlgebra, E: Array, V: Array, G: Array, m: NodeMatrices) -> None:
     """Writes the strain rates W (V' + ad_E V) at all nodes, in weak form, into G. E: strains. V: velocities.
     E, V, G: (d, nodes + 1)."""
     size = len(m.weights)
@@ -110,7 +110,7 @@ def write_strain_rates(g: Algebra, E: Array, V: Array, G: Array, m: NodeMatrices
 
 
 @UnrolledOverAlgebra
-def add_weak_derivative(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None:
+def add_weak_derivative(g: LieAlgebra, V: Array, G: Array, m: NodeMatrices) -> None:
     """Adds -D^T W V to G, both (d, nodes + 1)."""
     size = len(m.weights)
     for j in range(size):
@@ -122,7 +122,7 @@ def add_weak_derivative(g: Algebra, V: Array, G: Array, m: NodeMatrices) -> None
 
 
 @UnrolledOverAlgebra
-def write_balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_balance(g: LieAlgebra, x: Array, V: Array, G: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the velocities V and the strain rates G = W C dS/dt of a state x, (unknowns,), at all nodes into
     V and G, (d, nodes + 1) each. Unknown components of V are copied from x."""
     size = len(m.weights)
@@ -141,7 +141,7 @@ def write_balance(g: Algebra, x: Array, V: Array, G: Array, c: NodalRod, m: Node
 
 
 @UnrolledOverAlgebra
-def write_velocity_residuals(g: Algebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
+def write_velocity_residuals(g: LieAlgebra, x: Array, out: Array, c: NodalRod, m: NodeMatrices) -> None:
     """Writes the residuals W (D*_E Sigma - Gamma V) of the unknown components of V into out, (unknowns,). x:
     state, (unknowns,). Entries of out for stresses are not changed."""
     size = len(m.weights)
@@ -181,7 +181,7 @@ def write_law_derivative(x: Array, dS: Array, change: NodalRodDerivative, c: Nod
 
 @UnrolledOverAlgebra
 def write_balance_derivative(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
-    g: Algebra, x: Array, V: Array, out: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices
+    g: LieAlgebra, x: Array, V: Array, out: Array, change: NodalRodDerivative, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivatives of the equations with respect to a parameter, at a fixed state x, (unknowns,),
     into out.

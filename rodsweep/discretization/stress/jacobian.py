@@ -16,7 +16,7 @@ becomes J - P + P T.
 import numpy as np
 
 from ...arrays import Array
-from ...model.algebra import Algebra
+from ...model.algebra import LieAlgebra
 from ...model.compiled.compilation import compiled
 from ...model.compiled.unrolling import UnrolledOverAlgebra
 from ...model.material.jump import tangent_at_jump
@@ -29,7 +29,7 @@ from .balance import write_strains_and_stresses
 
 @UnrolledOverAlgebra
 def write_jacobian(  # noqa: PLR0913, PLR0917 - a tuple of arrays would count references at each use
-    g: Algebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
+    g: LieAlgebra, x: Array, V: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the Jacobian of the equations at the state x, (unknowns,), into J, (unknowns, unknowns).
 
@@ -76,7 +76,7 @@ def _add_law_tangent(x: Array, J: Array, P: Array, c: NodalRod) -> None:
 
 @UnrolledOverAlgebra
 def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
-    g: Algebra,
+    g: LieAlgebra,
     fields: tuple[Array, Array, Array],
     J: Array,
     tip: Array,
@@ -97,7 +97,7 @@ def _write_linear_law_jacobian(  # noqa: PLR0913, PLR0917 - as above
 
 @UnrolledOverAlgebra
 def _write_velocity_derivatives(
-    g: Algebra, fields: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
+    g: LieAlgebra, fields: tuple[Array, Array, Array], slopes: Array, compliance: Array, c: NodalRod
 ) -> None:
     """Writes the derivatives of the velocities with respect to the stresses of the same node into the nonzero
     blocks of slopes.
@@ -120,7 +120,7 @@ def _write_velocity_derivatives(
 
 @UnrolledOverAlgebra
 def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what the algebra decides is no branch
-    g: Algebra,
+    g: LieAlgebra,
     fields: tuple[Array, Array, Array],
     slopes: Array,
     J: Array,
@@ -169,7 +169,7 @@ def _write_rate_derivatives(  # noqa: PLR0912, PLR0913, PLR0917 - as above; what
 
 @UnrolledOverAlgebra
 def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
-    g: Algebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
+    g: LieAlgebra, k: int, E: Array, J: Array, tip: Array, c: NodalRod, m: NodeMatrices
 ) -> None:
     """Writes the derivative of the strain rates G with respect to the k-th unknown velocity component into J
     and tip. E: strains, (d, nodes + 1). J: (unknowns, unknowns). tip: (d, unknowns)."""
@@ -189,7 +189,7 @@ def _write_unknown_velocity_columns(  # noqa: PLR0913, PLR0917 - as above
 
 @UnrolledOverAlgebra
 def _write_unknown_velocity_rows(  # noqa: PLR0913, PLR0917 - as above
-    g: Algebra,
+    g: LieAlgebra,
     k: int,
     fields: tuple[Array, Array, Array],
     J: Array,

@@ -20,7 +20,7 @@ from .quantities import LOADS, UNITS, arm_quantity_in_si, quoted_quantity
 from .refusals import refuse_crushed, refuse_out_of_range, refuse_wrong_choices, refuse_wrong_combinations
 from .section import Circle, Rectangle, Section, Tube
 from .segments import ArmSegment, segment_texts, segments_of
-from .shape import Shape, Station, shape_of_segments
+from .shape import ArmGeometry, Station, shape_of_segments
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,20 +83,20 @@ class SlenderArm:
         return quoted_quantity(name, getattr(self, name))
 
     @cached_property
-    def shape(self) -> Shape:
+    def shape(self) -> ArmGeometry:
         """Cross-sections and Young's moduli along the arm."""
         if self.si_segments:
             return shape_of_segments([(L, section, E or self.si.young) for L, section, E in self.si_segments])
         if self.tip_radius is not None:
             radii = ((0.0, self.si.radius), (1.0, self.si.tip_radius))
             ends = tuple(Station(u, Circle(radius), self.si.young) for u, radius in radii)
-            return Shape(self.si.length, ends, self.si.tip_radius / self.si.radius)
+            return ArmGeometry(self.si.length, ends, self.si.tip_radius / self.si.radius)
         section: Section = Tube(self.si.radius, self.si.inner_radius)
         if self.radius is None:
             section = Rectangle(self.si.width, self.si.height)
         elif self.inner_radius is None:
             section = Circle(self.si.radius)
-        return Shape(self.si.length, (Station(1.0, section, self.si.young),))
+        return ArmGeometry(self.si.length, (Station(1.0, section, self.si.young),))
 
     @property
     def cross_section(self) -> Section:

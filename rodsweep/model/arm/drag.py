@@ -8,7 +8,7 @@ radius a, length L, in SI units.
 from dataclasses import dataclass
 from math import log, pi
 
-LEAST_SLENDERNESS = 10.0
+MIN_FORMULA_SLENDERNESS = 10.0
 """Smallest length of an arm divided by its radius. Less slender arms are refused, because the logarithms of
 slender-body theory are then meaningless."""
 

@@ -11,7 +11,7 @@ from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
 from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
 from ..units import unit_of, value_in_unit
-from .drag import DRAG_NAMES, DRAG_RANGE_NAME, LEAST_SLENDERNESS
+from .drag import DRAG_NAMES, DRAG_RANGE_NAME, MIN_FORMULA_SLENDERNESS
 from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
 from .section import BoreTooWide
 
@@ -161,7 +161,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         slenderness = arm.shape.length / arm.shape.largest_drag_radius
         is_representable = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
         # The drags of too short an arm mean nothing, and are not always numbers.
-        if slenderness >= LEAST_SLENDERNESS:
+        if slenderness >= MIN_FORMULA_SLENDERNESS:
             is_representable = is_representable and bool(arm.build)
     except (ArithmeticError, ValueError):
         is_representable = False
@@ -170,10 +170,10 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
             f"{length}, with this section and Young's modulus, makes stiffnesses or the unit of force "
             "overflow or underflow; check the units"
         )
-    if slenderness < LEAST_SLENDERNESS:
+    if slenderness < MIN_FORMULA_SLENDERNESS:
         raise NotSlender(
             f"{length} is {slenderness:.3g} radii, with {_radius_text(arm)}; the drag of a slender arm needs "
-            f"at least {LEAST_SLENDERNESS:g}, so give a longer or thinner arm"
+            f"at least {MIN_FORMULA_SLENDERNESS:g}, so give a longer or thinner arm"
         )
 
 

@@ -41,7 +41,7 @@ class Station(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Shape:
+class ArmGeometry:
     """Cross-sections along an arm of the length `length`, in m. stations: one station per segment from the
     base to the tip, or base and tip of a cone, or one station of a uniform arm. taper: tip radius divided by
     base radius of a cone; 1 for other arms."""
@@ -182,7 +182,7 @@ class Shape:
         return np.repeat(lengths / count, count), np.repeat(areas, count), np.repeat(stiffnesses, count)
 
 
-def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> Shape:
+def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) -> ArmGeometry:
     """Shape of an arm made of segments. segments: (length in m, section, Young's modulus in Pa) of each
     segment, from the base to the tip."""
     ends = np.cumsum([length for length, _, _ in segments])
@@ -190,4 +190,4 @@ def shape_of_segments(segments: Sequence[tuple[float, Circle | Tube, float]]) ->
     stations = [
         Station(u, section, young) for u, (_, section, young) in zip(fractions, segments, strict=True)
     ]
-    return Shape(float(ends[-1]), tuple(stations))
+    return ArmGeometry(float(ends[-1]), tuple(stations))

@@ -20,12 +20,12 @@ class KernelConstants:
     """
 
     __slots__ = ()
-    ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    field_ranges: ClassVar[Mapping[str, tuple[float, float]]] = {}
     """Exclusive bounds (lower, upper) of the value of a field, by name of the field, as a proof requires."""
 
     def __post_init__(self) -> None:
-        """Raises ValueError for a field outside its bounds in `ranges`."""
-        for name, (low, high) in self.ranges.items():
+        """Raises ValueError for a field outside its bounds in `field_ranges`."""
+        for name, (low, high) in self.field_ranges.items():
             if not low < getattr(self, name) < high:
                 raise ValueError(f"{name} = {getattr(self, name)} does not lie between {low} and {high}")
 

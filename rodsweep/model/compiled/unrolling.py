@@ -18,7 +18,7 @@ from textwrap import dedent
 from types import CodeType
 from typing import Any, Concatenate, Generic, NamedTuple, ParamSpec, TypeVar
 
-from ..algebra import Algebra
+from ..algebra import LieAlgebra
 from .compilation import compiled_for_vectors
 
 P = ParamSpec("P")
@@ -31,21 +31,21 @@ ALWAYS_KNOWN_VALUES = {"range": range}
 class UnrolledOverAlgebra(Generic[P, R]):
     """Decorator of a function whose first argument is a Lie algebra; `compiled_for` unrolls loops over it."""
 
-    def __init__(self, function: Callable[Concatenate[Algebra, P], R]) -> None:
+    def __init__(self, function: Callable[Concatenate[LieAlgebra, P], R]) -> None:
         self.function: Any = function
-        self._compiled: dict[Algebra, Callable[P, R]] = {}
+        self._compiled: dict[LieAlgebra, Callable[P, R]] = {}
 
-    def __call__(self, g: Algebra, *args: P.args, **kwargs: P.kwargs) -> R:
+    def __call__(self, g: LieAlgebra, *args: P.args, **kwargs: P.kwargs) -> R:
         result: R = self.function(g, *args, **kwargs)
         return result
 
-    def compiled_for(self, g: Algebra) -> Callable[P, R]:
+    def compiled_for(self, g: LieAlgebra) -> Callable[P, R]:
         """The function for the algebra `g`, unrolled and compiled, without the argument for the algebra."""
         if g not in self._compiled:
             self._compiled[g] = compiled_for_vectors(self.unrolled_for(g))
         return self._compiled[g]
 
-    def unrolled_for(self, g: Algebra) -> Callable[P, R]:
+    def unrolled_for(self, g: LieAlgebra) -> Callable[P, R]:
         """The function as Python code whose loops over the Lie algebra `g` are unrolled. The function itself
         is not compiled, but the functions with this decorator that it calls are unrolled and compiled.
         """

@@ -27,7 +27,7 @@ class LocalCoefficients(NamedTuple):
     g: Array
 
 
-class Sections(NamedTuple):
+class CrossSections(NamedTuple):
     """Properties of the cross-sections at points of an arm, for motion in the plane, or derivatives of these
     properties. compliance: of stretching, shear and bending, (3, points). drag: axial, normal and rotational
     drag, (3, points). nu: stretch of the straight arm under its force, (points,)."""
@@ -130,7 +130,7 @@ class Build:
         # A copy, because the factors are cached.
         return LocalCoefficients(nu, c2, c3, factors["gamma2"].copy(), gamma3, nu + F * c2)
 
-    def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> Sections:
+    def sections(self, F: float, at_base: Mapping[str, float], u: Array) -> CrossSections:
         """Properties of the cross-sections at points u, (points,), under the tip force F. No point may be a
         break of the profile. The compliances are values of the undeformed arm. at_base: stiffnesses and drags
         at u = 0, and taper, by name."""
@@ -138,7 +138,7 @@ class Build:
         stiffness = {name: at_base.get(name, 1.0) * factors[name] for name in ("k1", "k2", "k3")}
         drag = [at_base.get(name, 1.0) * factors[name] for name in ("gamma1", "gamma2", "gamma3")]
         nu = 1 - self.constitutive_law.shortening(F / stiffness["k1"])
-        return Sections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
+        return CrossSections(np.array([1 / k for k in stiffness.values()]), np.array(drag), nu)
 
     def relative_compliances(self, taper: float, u: Array) -> Array:
         """Compliances of stretching, shear and bending at points u, (points,), divided by the compliances at
@@ -147,8 +147,8 @@ class Build:
         return np.array([1 / factors[name] for name in ("k1", "k2", "k3")])
 
     def section_derivatives(
-        self, sections: Sections, F: float, taper: float, slopes: Mapping[str, float], u: Array
-    ) -> Sections:
+        self, sections: CrossSections, F: float, taper: float, slopes: Mapping[str, float], u: Array
+    ) -> CrossSections:
         """Derivatives of the cross-sections `sections` at points u, (points,), with respect to a parameter.
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
         parameter, by name; the derivative of a missing name is 0."""
@@ -165,7 +165,7 @@ class Build:
             drag[i] = derivative + sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
         load = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
-        return Sections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
+        return CrossSections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
 
 
 DEFAULT_BUILD = Build()

@@ -106,7 +106,7 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
         if (np.diff(lengths[window]) == 0).any():
             continue  # y alone changes, which a jump between two maxima does not do
         x = (lengths[window] - lengths[i]) / (lengths[i + 1] - lengths[i])
-        differences = [_jump_polynomial(x, column) for column in cycles[window].T]
+        differences = [_difference_of_one_sided_polynomials(x, column) for column in cycles[window].T]
         for root in differences[1].roots():
             slope_jumps = [float(difference.deriv()(root.real)) for difference in differences]
             is_between = abs(root.imag) < COINCIDENCE_TOLERANCE and 0 < root.real < 1
@@ -126,7 +126,7 @@ def branch_corners(cycles: Array, extent: Array) -> dict[int, Array]:
     }
 
 
-def _jump_polynomial(x: Array, values: Array) -> Polynomial:
+def _difference_of_one_sided_polynomials(x: Array, values: Array) -> Polynomial:
     """Polynomial through the values at x > 0.5 minus the polynomial through the values at x < 0.5, divided by
     the slope of the steepest chord. x, values: (m,) each."""
     sides = (x < 0.5, x > 0.5)

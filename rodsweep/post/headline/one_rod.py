@@ -7,7 +7,7 @@ import numpy as np
 from ...arrays import Array
 from ...results.file.view import ResultView
 from ...results.layouts import layout_of
-from ...results.layouts.arm import si_variables_of
+from ...results.layouts.si_variables import si_variables_of
 from ..summary.errors import ABSOLUTE_ERRORS, RELATIVE_ERRORS, absolute_errors
 from ..summary.number_texts import error_text, number_and_error, rounded_text
 from ..tables.column import Column

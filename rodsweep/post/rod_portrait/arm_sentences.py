@@ -6,7 +6,7 @@ import numpy as np
 
 from ...model.arm.neglected import Validity
 from ...results.file.view import ResultView
-from ...results.layouts.arm import VALIDITY_VARIABLES
+from ...results.layouts.si_variables import VALIDITY_VARIABLES
 from ..summary.arm.validity_sentences import plane_lines, validity_caveat, validity_sentence
 from .results import RodResults
 

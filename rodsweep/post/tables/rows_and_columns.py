@@ -11,7 +11,7 @@ from ...config.arm.axes import PARAMETER_STORED_ALONG
 from ...model.arm.drag import DRAG_NAMES
 from ...model.arm.quantities import ALL_QUANTITIES
 from ...results.file.view import ResultView
-from ...results.layouts.arm import si_name_of, si_unit_of, si_variable
+from ...results.layouts.si_variables import si_name_of, si_unit_of, si_variable
 from ...results.layouts.variables import DIMENSIONS, MISSING_STATUS, STATUS, Variable
 from .column import Column, column_of, coordinate_column, marks_missing_items, missing_values_mask
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any
 
 from . import branch, criticality, limit_cycle, modes, phase_diagram, spectrum, thresholds
-from .arm import with_si_variables
 from .rods import optional_parameters_in
+from .si_variables import with_si_variables
 from .variables import ExtensionRule, Layout, Variable
 
 LAYOUT_MODULES = {

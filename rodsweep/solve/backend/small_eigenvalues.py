@@ -26,7 +26,7 @@ class SmallEigenvalueSettings(KernelConstants):
 
     work_array_ratio: int = 12
     """Length of the work array divided by n, for a matrix (n, n): dgeev needs 3, and is faster with more."""
-    ranges: ClassVar = {"work_array_ratio": (2, math.inf)}
+    field_ranges: ClassVar = {"work_array_ratio": (2, math.inf)}
 
 
 SMALL_EIGENVALUE_SETTINGS = SmallEigenvalueSettings()

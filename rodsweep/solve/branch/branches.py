@@ -12,7 +12,7 @@ from ...determinant.parameter_path import ParameterPath
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.rod import Rod
-from ..changes.kinds import Threshold
+from ..changes.threshold_kinds import Threshold
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure

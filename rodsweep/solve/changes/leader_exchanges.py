@@ -20,7 +20,6 @@ from ..spectrum.search import SpectrumRequest
 from ..spectrum.status import SpectrumStatus
 from ..unsolvable import Unsolvable
 from .exchange import double_eigenvalue_between, overtaking_between
-from .kinds import ChangeKind, Threshold
 from .path_problem import PathProblem
 from .sample_interpolation import (
     excludes_exchange,
@@ -30,6 +29,7 @@ from .sample_interpolation import (
 )
 from .search_range import IntervalQueue, SearchEnd
 from .spectrum_samples import SpectrumSample
+from .threshold_kinds import Threshold, ThresholdKind
 
 SAMPLED_MODE_COUNT = 4
 """Number of leading eigenvalues of a sample: the first two, and two that may overtake the first two. The
@@ -184,11 +184,11 @@ class LeaderExchangeSearch:
         pair, real = (left, right) if left.oscillates else (right, left)
         # Kinds are named in the direction of the parameter, along a stiffness the direction of falling p.
         if right.oscillates != self.path.is_compliance_path:
-            double_kind = ChangeKind.onset
-            crossing_kind = ChangeKind.pair_leads
+            double_kind = ThresholdKind.onset
+            crossing_kind = ThresholdKind.pair_leads
         else:
-            double_kind = ChangeKind.real_again
-            crossing_kind = ChangeKind.real_leads
+            double_kind = ThresholdKind.real_again
+            crossing_kind = ThresholdKind.real_leads
         for find, kind, next_index in (
             (double_eigenvalue_between, double_kind, 2),
             (overtaking_between, crossing_kind, 3),

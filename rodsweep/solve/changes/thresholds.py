@@ -7,9 +7,9 @@ from functools import cache
 from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
 from ..point_outcome import outcome_or_failure
-from .kinds import ChangeKind, Threshold
 from .search_range import end_below_crushing
 from .status import ThresholdStatus
+from .threshold_kinds import Threshold, ThresholdKind
 from .thresholds_along_path import ThresholdSearchResult, find_thresholds
 
 
@@ -90,4 +90,4 @@ def warm_up() -> None:
 def filament_flutter_force() -> float:
     """Force, in k3/L^2, at which the filament (k1 = k2 = inf, gamma3 = 0) flutters (De Canio et al. 2017)."""
     result = find_thresholds(ParameterPath(Rod(F=0.0, k1=math.inf, k2=math.inf, gamma3=0.0), "F"), 0.0, 60.0)
-    return next(c.value for c in result.thresholds if c.kind == ChangeKind.hopf)
+    return next(c.value for c in result.thresholds if c.kind == ThresholdKind.hopf)

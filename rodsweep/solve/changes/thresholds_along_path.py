@@ -15,10 +15,10 @@ from ...determinant.roots.newton import LocatedEigenvalue
 from ..unsolvable import Unsolvable
 from .arm.crossings import CrossingSearch
 from .arm.path import ArmPath, path_problem
-from .kinds import Threshold, crossing_kind
 from .leader_exchanges import LeaderExchangeSearch
 from .path_problem import PathProblem
 from .search_range import SearchEnd
+from .threshold_kinds import Threshold, crossing_kind
 from .unstable_modes import ModeCounter
 
 

@@ -7,7 +7,7 @@ numbers confirm this number at both ends and between the crossings.
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from .kinds import ChangeKind, Threshold
+from .threshold_kinds import Threshold, ThresholdKind
 
 if TYPE_CHECKING:
     from .path_problem import PathProblem  # for annotations only: the module imports solvers
@@ -79,13 +79,13 @@ class ModeCounter:
         start = parameter_ends[0]
         for crossing in ordered:
             kind = crossing.kind
-            if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse):
+            if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse):
                 unstable_count = self._count_before(start, crossing.value, unstable_count)
                 start = crossing.value
                 if unstable_count >= 0:
-                    unstable_count += 2 if kind == ChangeKind.hopf else -2
-                if kind == ChangeKind.hopf_reverse and unstable_count == 0:
-                    kind = ChangeKind.restabilization
+                    unstable_count += 2 if kind == ThresholdKind.hopf else -2
+                if kind == ThresholdKind.hopf_reverse and unstable_count == 0:
+                    kind = ThresholdKind.restabilization
             out.append(replace(crossing, kind=kind, unstable_after=unstable_count))
         return tuple(out), self._count_before(start, parameter_ends[1], unstable_count)
 

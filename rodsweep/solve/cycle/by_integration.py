@@ -14,8 +14,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from ...arrays import Array
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import mesh_with_edges
+from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.stress.form import StressForm
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
@@ -29,8 +29,8 @@ from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
 from .cycle import Cycle, CycleRequest, with_measures
-from .marching_settings import INTEGRATION_SETTINGS
-from .settled_motion import NoCycleFound, ReturnClock, ReturnDistances, SettledMotion, max_settled_distance
+from .integration_settings import INTEGRATION_SETTINGS
+from .settled_motion import NoCycleFound, ReturnDistances, ReturnTimes, SettledMotion, max_settled_distance
 from .status import IntegrationStatus
 from .straight_rod import straight_rod_stability
 from .transient.motion_mesh import integrable_rod, motion_mesh
@@ -67,10 +67,10 @@ class _IntegrationUntilSettled:
         self.mesh = motion_mesh(rod, request.accuracy)
         tolerance = INTEGRATION_SETTINGS.local_tolerance_ratio * request.accuracy
         self.scheme = TimeScheme("arkimex", "5", tolerance=tolerance)
-        self.beam = Beam(self.rod, self.mesh)
-        self.leading_mode = leading_mode(self.beam)
+        self.system = ExplicitSystem(self.rod, self.mesh)
+        self.leading_mode = leading_mode(self.system)
         self.return_count = 0
-        self.clock = ReturnClock(self.leading_mode.period)
+        self.clock = ReturnTimes(self.leading_mode.period)
         self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
     def cycle(self) -> Cycle:
@@ -83,7 +83,7 @@ class _IntegrationUntilSettled:
         )
         try:
             z = relax_fast_components(
-                self.beam, self.request.amplitude * self.leading_mode.z.real, self.leading_mode.period
+                self.system, self.request.amplitude * self.leading_mode.z.real, self.leading_mode.period
             )
             settled = self._integrate_until_settled(z)
             path = self._measured_path(settled)
@@ -107,20 +107,20 @@ class _IntegrationUntilSettled:
     def _settled_on_finer_mesh(self, settled: SettledMotion) -> SettledMotion:
         """The motion `settled`, continued on a finer mesh with a smaller tolerance until it settles again, to
         be measured at more times."""
-        coarser_beam = self.beam
+        coarser_system = self.system
         self.mesh = mesh_with_edges(self.mesh.edges, self.mesh.order + INTEGRATION_SETTINGS.order_increase)
         self.scheme = replace(
             self.scheme, tolerance=INTEGRATION_SETTINGS.successive_tolerance_ratio * self.scheme.tolerance
         )
         self.intervals_per_return *= INTEGRATION_SETTINGS.measurement_interval_ratio
-        self.beam = Beam(self.rod, self.mesh)
-        z = self.beam.state_of_stresses(coarser_beam.stresses_on_mesh(self.beam.mesh, settled.state))
-        return self._integrate_until_settled(relax_fast_components(self.beam, z, self.leading_mode.period))
+        self.system = ExplicitSystem(self.rod, self.mesh)
+        z = self.system.state_of_stresses(coarser_system.stresses_on_mesh(self.system.mesh, settled.state))
+        return self._integrate_until_settled(relax_fast_components(self.system, z, self.leading_mode.period))
 
     def _integrate_until_settled(self, z: Array) -> SettledMotion:
         """The settled motion from the state z, (unknowns,); raises NoCycleFound."""
         past_moments: deque[Array] = deque(maxlen=RETURN_SETTINGS.max_returns_per_period + 1)
-        row = tip_angle_row(self.beam)
+        row = tip_angle_row(self.system)
         step = self.leading_mode.period / TRANSIENT_SETTINGS.first_steps_per_period
         distances = ReturnDistances(INTEGRATION_SETTINGS.return_error_over_tolerance * self.scheme.tolerance)
         max_periods = self.request.most_periods
@@ -139,7 +139,7 @@ class _IntegrationUntilSettled:
             step = float(run.times[-1] - run.times[-2])
             times, states = self._crossings(run)
             self.clock.record_run(times, float(run.times[-1]))
-            past_moments.extend(self.beam.layout.stress_field(states, "m3"))
+            past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 raise NoCycleFound(IntegrationStatus.straight, "the motion has decayed to rounding error")
@@ -159,8 +159,8 @@ class _IntegrationUntilSettled:
     ) -> Trajectory:
         """The motion from the state z, (unknowns,), over `duration`, in tau2, or to `limit`; raises
         NoCycleFound if the run fails. step: first time step, in tau2. scheme: None for `self.scheme`."""
-        run = integrator(self.beam.mesh, scheme or self.scheme).run(self.beam, z, duration, step, limit)
-        if end := run_failure(self.beam, run, self.return_count):
+        run = integrator(self.system.mesh, scheme or self.scheme).run(self.system, z, duration, step, limit)
+        if end := run_failure(self.system, run, self.return_count):
             status = IntegrationStatus.left_the_model if end.left_the_model else IntegrationStatus.failed
             raise NoCycleFound(status, end.message)
         return run
@@ -168,16 +168,16 @@ class _IntegrationUntilSettled:
     def _crossings(self, run: Trajectory) -> tuple[Array, Array]:
         """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
         The motion is integrated to these times, because cubic interpolation is less accurate."""
-        times = section_crossings(self.beam, run)[0]
-        row = tip_angle_row(self.beam)
-        states = np.empty((len(times), self.beam.unknown_count))
+        times = section_crossings(self.system, run)[0]
+        row = tip_angle_row(self.system)
+        states = np.empty((len(times), self.system.unknown_count))
         for i, time in enumerate(times):
             step_index = int(np.searchsorted(run.times, time, side="right")) - 1
             interval = float(time - run.times[step_index])
             z = run.states[step_index]
             if interval > 0:
                 z = self._integrate(z, interval, interval, RunLimit()).states[-1]
-            rates = self.beam.state_derivative(z[None])[0]
+            rates = self.system.state_derivative(z[None])[0]
             # A Newton step in time from the interpolated crossing: theta is smooth there.
             delay = float(row @ z) / float(row @ rates)
             times[i] = time - delay
@@ -187,7 +187,7 @@ class _IntegrationUntilSettled:
     def _measured_path(self, settled: SettledMotion) -> CyclePath:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.returns_per_period + 2
-        limit = return_limit(tip_angle_row(self.beam), settled.state, returns)
+        limit = return_limit(tip_angle_row(self.system), settled.state, returns)
         tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_measurement_tolerance)
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
@@ -203,9 +203,11 @@ class _IntegrationUntilSettled:
         states = spline(
             times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
         )
-        form = StressForm(self.rod, self.beam.mesh)
+        form = StressForm(self.rod, self.system.mesh)
         return CyclePath(
-            Orbit.from_states(form, NO_SYMMETRY, period, collocation_states(self.beam, form, states), stages)
+            Orbit.from_states(
+                form, NO_SYMMETRY, period, collocation_states(self.system, form, states), stages
+            )
         )
 
     def _errors_in_limit(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
@@ -220,8 +222,8 @@ class _IntegrationUntilSettled:
             for name in limit_names
         }
         self.rod = limit.with_values(**{n: PARAMETERS[n].value(c) for n, c in coordinates.items()})
-        self.beam = Beam(self.rod, self.mesh)
-        z = relax_fast_components(self.beam, settled.state, self.leading_mode.period)
+        self.system = ExplicitSystem(self.rod, self.mesh)
+        z = relax_fast_components(self.system, settled.state, self.leading_mode.period)
         limit_errors = errors_of_two_integrations(
             path, self._measured_path(self._integrate_until_settled(z)), 0.0
         )

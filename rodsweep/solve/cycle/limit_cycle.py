@@ -218,14 +218,14 @@ def _outcome_of_motion(
 ) -> TransientOutcome:
     """Outcome of a motion integrated from the requested tip position, from the leading mode, or from a state
     of the neighbour's cycle; a quasiperiodic motion is recognised."""
-    beam = transient.beam
+    system = transient.system
     if request.tip is not None:
-        start = bent_state_with_tip_at(beam, *request.tip)
+        start = bent_state_with_tip_at(system, *request.tip)
     elif neighbour is None:
         start = request.amplitude * transient.leading_mode.z.real
     else:
         orbit = neighbour.predictor.orbit
-        start = beam.state_of_stresses(orbit.form.stresses_on_mesh(beam.mesh, orbit.start_state))
+        start = system.state_of_stresses(orbit.form.stresses_on_mesh(system.mesh, orbit.start_state))
     return classify_quasiperiodic(transient.follow(start), transient)
 
 

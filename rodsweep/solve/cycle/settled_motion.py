@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from math import isfinite, isnan, nan
 
 from ...arrays import Array
-from .marching_settings import INTEGRATION_SETTINGS
+from .integration_settings import INTEGRATION_SETTINGS
 from .status import IntegrationStatus
 
 
 @dataclass(frozen=True, eq=False)
 class SettledMotion:
-    """A motion that has settled on a cycle. state: current state of the beam, (unknowns,).
+    """A motion that has settled on a cycle. state: current state of the system, (unknowns,).
     returns_per_period: number of returns of the tip to theta = 0 per period. last_time_step: last time step,
     in tau2."""
 
@@ -25,7 +25,7 @@ def max_settled_distance(accuracy: float) -> float:
     return INTEGRATION_SETTINGS.settled_distance_ratio * accuracy
 
 
-class ReturnClock:
+class ReturnTimes:
     """Times of the returns of the tip to theta = 0 during successive runs of one motion.
 
     shortest: smallest value of `time_per_return`, in tau2, the period of the leading mode. time_per_return:

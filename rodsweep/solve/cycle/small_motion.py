@@ -22,7 +22,7 @@ from .transient.transient_settings import TRANSIENT_SETTINGS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SmallMotionSettings:
+class MotionDecaySettings:
     """Settings for the proof that a small motion decays to the straight rod."""
 
     max_cubic_growth_ratio: float = 0.02
@@ -31,7 +31,7 @@ class SmallMotionSettings:
     accuracy."""
 
 
-SMALL_MOTION_SETTINGS = SmallMotionSettings()
+MOTION_DECAY_SETTINGS = MotionDecaySettings()
 
 
 def stable_cycle_near_hopf(
@@ -66,11 +66,11 @@ def reason_for_decay(rod: Rod, w: complex, amplitude: float) -> str:
     if not (w.real < 0 < w.imag):
         return ""
     try:
-        normal = normal_form_by_mesh_rule(rod, w, SMALL_MOTION_SETTINGS.max_cubic_growth_ratio)
+        normal = normal_form_by_mesh_rule(rod, w, MOTION_DECAY_SETTINGS.max_cubic_growth_ratio)
     except Unsolvable:
         return ""
     # d|z|/dt = (Re w + Re c |z|^2) |z|: while the cubic part is small, the motion can only decay.
     fraction = abs(normal.landau.real) * amplitude**2 / -w.real
-    if fraction >= SMALL_MOTION_SETTINGS.max_cubic_growth_ratio:
+    if fraction >= MOTION_DECAY_SETTINGS.max_cubic_growth_ratio:
         return ""
     return f"the motion decays: at its start the cubic term is only {fraction:.0e} of the linear decay rate"

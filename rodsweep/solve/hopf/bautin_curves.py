@@ -13,8 +13,8 @@ from itertools import pairwise
 import numpy as np
 
 from ...arrays import Array
-from ...determinant.parameter_plane import Plane, PlaneAxis
-from ...determinant.stability_boundary import Boundary
+from ...determinant.parameter_plane import ParameterPlane, PlaneAxis
+from ...determinant.stability_boundary import StabilityBoundary
 from ...model.rod import Rod
 from ...solve_progress import SolvePosition, report
 from ..continuation.curve import StepResult, StopReason, follow_curve
@@ -93,8 +93,8 @@ class BautinProblem:
         `fixed_index` fixed; raises Unsolvable."""
         free = [i for i in range(3) if i != fixed_index]
         values = {axis.name: axis.value(float(x)) for axis, x in zip(self.axes, guess[:3], strict=True)}
-        plane = Plane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
-        boundary = Boundary(plane, 0.0)
+        plane = ParameterPlane(self.rod.with_values(**values), (self.axes[free[0]], self.axes[free[1]]))
+        boundary = StabilityBoundary(plane, 0.0)
         accuracy = min(self.accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy)
         hopf = HopfCurve(boundary, np.empty((0, 3)), accuracy)  # finds Hopf points only near a guess
         start = guess[[*free, 3]]

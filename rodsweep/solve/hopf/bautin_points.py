@@ -14,12 +14,12 @@ import numpy as np
 
 from ...arrays import Array
 from ...determinant.parameter_path import ParameterPath
-from ...determinant.parameter_plane import Plane
-from ...determinant.stability_boundary import Boundary, BoundarySolution
+from ...determinant.parameter_plane import ParameterPlane
+from ...determinant.stability_boundary import BoundarySolution, StabilityBoundary
 from ...solve_progress import SolvePosition, report
 from ..changes.arm.path import path_problem
 from ..changes.diagram.boundary_curves import BoundaryCurve
-from ..changes.kinds import ChangeKind, Threshold
+from ..changes.threshold_kinds import Threshold, ThresholdKind
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable
 from .hopf_coefficients import HopfCoefficients, hopf_coefficients
@@ -86,14 +86,14 @@ class _HopfNormalForm:
         return self.coefficients.landau.real / abs(self.coefficients.landau)
 
 
-def curve_criticality(plane: Plane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
+def curve_criticality(plane: ParameterPlane, curve: BoundaryCurve, accuracy: float) -> CurveCriticality:
     """The sign of Re c at every stored point of the Hopf curve `curve`, 0 if it is undecided, and the
     generalised Hopf points that are located between points of different sign.
 
     accuracy: relative accuracy of c, reduced to `BAUTIN_POINT_SETTINGS.coarsest_accuracy` if larger. If
     the normal form fails at a point, the sign is NaN at this point only."""
     hopf = HopfCurve(
-        Boundary(plane, curve.eigenvalue_sign),
+        StabilityBoundary(plane, curve.eigenvalue_sign),
         curve.scaled_points,
         min(accuracy, BAUTIN_POINT_SETTINGS.coarsest_accuracy),
     )
@@ -115,7 +115,7 @@ class HopfCurve:
     scaled: points (x, y, h) of the curve, (points, 3); x, y: scaled parameters, h = log frequency. accuracy:
     relative accuracy of the Landau coefficient c."""
 
-    boundary: Boundary
+    boundary: StabilityBoundary
     scaled: Array
     accuracy: float
 
@@ -147,7 +147,9 @@ class HopfCurve:
         value = self.boundary.plane.determinant(w, x, y)
         # The normal form has only the force as its parameter: convert the point's error into one of F.
         error = solution.error * (abs(value.D_x) + abs(value.D_y)) / abs(slope * value.D_w)
-        hopf = Threshold(rod.F, ChangeKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag)
+        hopf = Threshold(
+            rod.F, ThresholdKind.hopf, w.imag, 0.0, error, frequency_error=solution.error * w.imag
+        )
         return _HopfNormalForm(solution, hopf_coefficients(rod, hopf, accuracy))
 
     def bautin_point_between(self, first_index: int, last_index: int) -> BautinPoint | None:

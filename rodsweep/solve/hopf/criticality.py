@@ -10,8 +10,8 @@ from functools import cache, lru_cache
 
 from ...determinant.parameter_path import ParameterPath
 from ...model.rod import Rod
-from ..changes.kinds import Threshold
 from ..changes.search_range import end_below_crushing
+from ..changes.threshold_kinds import Threshold
 from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES, cause_of, outcome_or_failure
 from .hopf_coefficients import HOPF_COEFFICIENT_SETTINGS, HopfCoefficients, hopf_coefficients

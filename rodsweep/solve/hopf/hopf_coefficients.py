@@ -17,7 +17,7 @@ from ...discretization.straight.elements import TRANSVERSE
 from ...discretization.straight.whole_matrices import straight_matrices
 from ...model.rod import Rod
 from ..changes.arm.path import path_problem
-from ..changes.kinds import Threshold
+from ..changes.threshold_kinds import Threshold
 from .normal_form import (
     NORMAL_FORM_SETTINGS,
     NormalForm,

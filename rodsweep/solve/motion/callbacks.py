@@ -14,8 +14,8 @@ from collections.abc import Mapping
 import numpy as np
 from numba import types
 
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
+from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.state_layout import plane_layout
 from ...discretization.stress.rates import write_rate, write_rate_jacobian
 from ..backend.c_functions import (
@@ -156,18 +156,18 @@ class CallbackWorkspace:
         for name, value in values.items():
             self.context[name] = value
 
-    def set_rod_and_tolerances(self, beam: Beam, error: float, floor: float) -> None:
+    def set_rod_and_tolerances(self, system: ExplicitSystem, error: float, floor: float) -> None:
         """Sets the rod and the two tolerances of Newton's method, both rms values over the unknowns of a
         stage. error: Newton's method stops when the estimated error of a stage is at most this. floor: if the
         Newton steps stagnate below this size, the stagnation is attributed to rounding errors."""
-        self._rod_arrays = rod_arrays_by_field(beam)  # the callbacks read these arrays by address as well
+        self._rod_arrays = rod_arrays_by_field(system)  # the callbacks read these arrays by address as well
         self._set_context_fields({name: array.ctypes.data for name, array in self._rod_arrays.items()})
         self._set_context_fields(
-            {"components": len(self._rod_arrays["tip_stress"]), "law": beam.nodal_rod.law}
+            {"components": len(self._rod_arrays["tip_stress"]), "law": system.nodal_rod.law}
         )
-        self._set_context_fields({"jump_count": len(beam.nodal_rod.jumps)})
+        self._set_context_fields({"jump_count": len(system.nodal_rod.jumps)})
         # Steps are measured as 2-norms, errors as rms.
-        root = beam.layout.unknown_count**0.5
+        root = system.layout.unknown_count**0.5
         initial_values = {
             "matrix_due": AT_BASE,
             "shift": 0.0,

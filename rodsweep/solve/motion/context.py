@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import NodeMatrices
+from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.nodal_rod import NodalRod
 from ...model.compiled.compilation import compiled
 from ...model.material.jump import SIDE_COLUMNS
@@ -94,9 +94,9 @@ UP_TO_DATE, AT_BASE, AT_ITERATE = range(3)
 """Values of `matrix_due`: no new matrix, or one at the state `base` or at the current Newton iterate."""
 
 
-def rod_arrays_by_field(beam: Beam) -> dict[str, Array]:
-    """Arrays of the rod `beam` by the names in `ROD_ARRAY_FIELDS`; the shapes differ."""
-    arrays = beam.nodal_rod._asdict() | {"roots": beam.sqrt_compliance, "crushed": beam.crushing_z1}
+def rod_arrays_by_field(system: ExplicitSystem) -> dict[str, Array]:
+    """Arrays of the rod `system` by the names in `ROD_ARRAY_FIELDS`; the shapes differ."""
+    arrays = system.nodal_rod._asdict() | {"roots": system.sqrt_compliance, "crushed": system.crushing_z1}
     return {name: arrays[name] for name in ROD_ARRAY_FIELDS}
 
 

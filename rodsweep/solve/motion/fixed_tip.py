@@ -17,8 +17,8 @@ from math import atan2, hypot
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import shape_from_strains
+from ...discretization.explicit_system import ExplicitSystem
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,14 +45,14 @@ class FixedTipSettings:
 FIXED_TIP_SETTINGS = FixedTipSettings()
 
 
-def bent_state_with_tip_at(beam: Beam, x: float, y: float) -> Array:
+def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     """The state z, (unknowns,), of the rod bent until the tip is at (x, y), in L. A target beyond
     `FixedTipSettings.max_tip_distance` is moved towards the clamp. If Newton's method fails on the path of
     targets, the state for the last target reached is returned."""
-    bending = _BentRod(beam)
+    bending = _BentRod(system)
     side = -1.0 if y < 0 else 1.0
     # The curvature falls to 0 at the free tip, as under a force at the tip; its integral is the angle.
-    Pi = 2 * side * FIXED_TIP_SETTINGS.start_angle * (1 - beam.mesh.node_positions)
+    Pi = 2 * side * FIXED_TIP_SETTINGS.start_angle * (1 - system.mesh.node_positions)
     first = bending.tip_position(Pi)
     start = np.array([hypot(*first), atan2(first[1], first[0])])
     # At a distance equal to its length the rod would be straight, and the force not determined.
@@ -76,25 +76,25 @@ class _BentRod:
     """Bending of a rod with fixed stretch and shear: position of the tip as a function of Pi. length: length
     of the straight rod, in L."""
 
-    def __init__(self, beam: Beam) -> None:
-        self.mesh = beam.mesh
-        self._straight_beam = beam
-        self.h1, self.h2 = beam.strains(np.zeros(beam.unknown_count))[:2]
-        size = beam.mesh.node_count + 1
-        self.length = float(self.h1 @ beam.mesh.quadrature)
+    def __init__(self, system: ExplicitSystem) -> None:
+        self.mesh = system.mesh
+        self._straight_system = system
+        self.h1, self.h2 = system.strains(np.zeros(system.unknown_count))[:2]
+        size = system.mesh.node_count + 1
+        self.length = float(self.h1 @ system.mesh.quadrature)
         unit = np.zeros((3, size, self.mesh.element_nodes.size))
         unit[2] = np.eye(size)[:, self.mesh.element_nodes]
-        self.angle_matrix = shape_from_strains(beam.mesh, unit, np.zeros(3))[2].T
+        self.angle_matrix = shape_from_strains(system.mesh, unit, np.zeros(3))[2].T
         """Matrix from Pi to theta, both at all nodes; at a jump of the material Pi is the mean."""
 
     def tip_position(self, Pi: Array) -> Array:
         """Position (x, y) of the tip, (2,), for curvatures Pi at all nodes, (nodes + 1,)."""
-        end: Array = self._straight_beam.tip_coordinates(self.state(Pi))[:2]
+        end: Array = self._straight_system.tip_coordinates(self.state(Pi))[:2]
         return end
 
     def state(self, Pi: Array) -> Array:
         """The state z, (unknowns,), for curvatures Pi at all nodes, (nodes + 1,)."""
-        return self._straight_beam.state_of_strains(np.stack([self.h1, self.h2, Pi]))
+        return self._straight_system.state_of_strains(np.stack([self.h1, self.h2, Pi]))
 
     def newton_to_target(self, Pi: Array, force: Array, target: Array) -> tuple[Array, Array] | None:
         """Returns (Pi, force), (nodes + 1,) and (2,): the curvatures and the force for which the tip is at

@@ -14,8 +14,8 @@ from enum import IntEnum
 import numpy as np
 
 from ...arrays import Array
-from ...discretization.beam import Beam
 from ...discretization.elements.mesh import Mesh
+from ...discretization.explicit_system import ExplicitSystem
 from ...discretization.state_layout import plane_layout
 from ..backend.c_functions import call_petsc
 from ..backend.petsc import PETSc
@@ -143,7 +143,12 @@ class Integrator:
             ts.setConvergedReason(PETSc.TS.ConvergedReason.CONVERGED_USER)
 
     def run(
-        self, beam: Beam, z: Array, duration: float, step: float = 0.0, limit: RunLimit = DEFAULT_RUN_LIMIT
+        self,
+        system: ExplicitSystem,
+        z: Array,
+        duration: float,
+        step: float = 0.0,
+        limit: RunLimit = DEFAULT_RUN_LIMIT,
     ) -> Trajectory:
         """Integrates from the state z, (unknowns,), over `duration`, in tau2, or to the limit. A failure is
         returned as a `EndReason`, never raised.
@@ -159,7 +164,7 @@ class Integrator:
         self.vector.array_w[:] = z
         ts.setTolerances(rtol=0.0, atol=scheme.tolerance * size)
         tolerance = scheme.newton_tolerance_ratio * scheme.tolerance * size
-        self.workspace.set_rod_and_tolerances(beam, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * size)
+        self.workspace.set_rod_and_tolerances(system, tolerance, INTEGRATOR_SETTINGS.stagnation_ratio * size)
         ts.setTime(0.0)
         ts.setStepNumber(0)
         ts.setMaxTime(duration)
@@ -222,7 +227,7 @@ def destroy_integrators() -> None:
     _integrators.destroy_all()
 
 
-def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
+def relax_fast_components(system: ExplicitSystem, z: Array, period: float) -> Array:
     """The state, (unknowns,), a thousandth of `period` after the state z, (unknowns,), when the fast
     components of z have decayed.
 
@@ -232,5 +237,5 @@ def relax_fast_components(beam: Beam, z: Array, period: float) -> Array:
     """
     duration = INTEGRATOR_SETTINGS.relaxation_duration_ratio * period
     step = period / INTEGRATOR_SETTINGS.relaxation_steps_per_period
-    run = integrator(beam.mesh, RELAXATION_SCHEME).run(beam, z, duration, step)
+    run = integrator(system.mesh, RELAXATION_SCHEME).run(system, z, duration, step)
     return run.states[-1] if run.ending == EndReason.reached else z

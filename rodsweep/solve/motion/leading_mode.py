@@ -6,7 +6,7 @@ import numpy as np
 
 from ...arrays import Complex
 from ...determinant.exponents import EXPONENT_SETTINGS
-from ...discretization.beam import Beam
+from ...discretization.explicit_system import ExplicitSystem
 
 MAX_DEFLECTION = 2.0
 """Largest deflection |y| along the rod of a mode, in L, if its tip deflects by 1. The tip of an arm may be at
@@ -30,18 +30,18 @@ class LeadingMode:
         return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), settings.least_divisor)
 
 
-def leading_mode(beam: Beam) -> LeadingMode:
+def leading_mode(system: ExplicitSystem) -> LeadingMode:
     """The leading mode of the straight rod, from the transverse block of the Jacobian."""
-    layout = beam.layout
+    layout = system.layout
     rest_state = np.zeros(layout.unknown_count)
-    J = layout.transverse_unknowns(layout.transverse_unknowns(beam.jacobian(rest_state)).T).T
+    J = layout.transverse_unknowns(layout.transverse_unknowns(system.jacobian(rest_state)).T).T
     values, vectors = np.linalg.eig(J)
     # The second key selects the member of a complex pair with Im w > 0.
     k = int(np.lexsort((values.imag, values.real))[-1])
     z = np.zeros(layout.unknown_count, complex)
     layout.transverse_unknowns(z)[:] = vectors[:, k]
     # y is linear in z about the straight rod, so the 'velocity' along z is the deflection.
-    real, imag = (beam.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
+    real, imag = (system.transverse_velocities(rest_state, part) for part in (z.real, z.imag))
     tip = complex(real[-1], imag[-1])
     min_tip = float(np.hypot(real, imag).max()) / MAX_DEFLECTION
     scale = tip if abs(tip) >= min_tip else min_tip * (tip / abs(tip) if tip else 1.0)

@@ -31,7 +31,7 @@ class StagePredictorSettings(KernelConstants):
     prediction, with errors of a motion five times as large."""
     matrix_time_fraction: float = 0.5
     """Time at which the state for Newton's matrix is predicted, in steps; 0 for methods of a single stage."""
-    ranges: ClassVar = {"max_extrapolated_step_ratio": (1.0, inf)}
+    field_ranges: ClassVar = {"max_extrapolated_step_ratio": (1.0, inf)}
 
 
 STAGE_PREDICTOR_SETTINGS = StagePredictorSettings()

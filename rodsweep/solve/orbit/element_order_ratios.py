@@ -23,7 +23,7 @@ class OrderRatioSettings:
     ratios_per_unit: int = 64
     """Ratios are rounded up to multiples of 1 over this number, which is less than one order at every allowed
     order."""
-    ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
+    field_ranges: ClassVar = {"min_ratio": (0.0, 1.0)}
 
 
 ORDER_RATIO_SETTINGS = OrderRatioSettings()

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, NO_WALL, NOT_SLENDER, SLENDER
-from ...model.arm.drag import LEAST_SLENDERNESS
+from ...model.arm.drag import MIN_FORMULA_SLENDERNESS
 from ...model.arm.neglected import Validity
-from ...results.layouts.arm import VALIDITY_VARIABLES
+from ...results.layouts.si_variables import VALIDITY_VARIABLES
 from ...results.layouts.variables import SECONDS, STATUS, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.chains import State
@@ -33,8 +33,8 @@ class OutsideModelStatus(PointStatus):
 
     not_slender = (
         NOT_SLENDER,
-        f"the arm is shorter than {LEAST_SLENDERNESS:g} radii, for which the drag of a slender arm is not "
-        "known, so nothing is computed",
+        f"the arm is shorter than {MIN_FORMULA_SLENDERNESS:g} radii, for which the drag of a slender arm is "
+        "not known, so nothing is computed",
         True,
     )
     crushed = (

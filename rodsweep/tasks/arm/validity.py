@@ -24,8 +24,8 @@ from ...config.base_config import Config
 from ...model.arm.arm import SlenderArm
 from ...model.arm.neglected import LARGE_AMPLITUDE, Validity, neglected_effects, smallest_drag, worst_validity
 from ...model.material.laws import LINEAR
-from ...results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.phase_diagram import STABILITY_CLASSES
+from ...results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN
 from ...results.layouts.thresholds import HOPF_CROSSING_CODES
 from ...results.layouts.variables import STATUS
 from ...solve.cycle.status import CycleStatus

@@ -12,13 +12,15 @@ from ...results.layouts.variables import FilledVariable
 from .curve_variables import bautin_curve_values
 
 if TYPE_CHECKING:
-    from ...determinant.parameter_plane import Plane
+    from ...determinant.parameter_plane import ParameterPlane
     from ...solve.changes.diagram.boundary_curves import BoundaryCurve
     from ...solve.continuation.curve_search import TracedCurves
     from ...solve.hopf.bautin_points import CurveCriticality
 
 
-def boundary_curves(plane: "Plane", view: ResultView, rows: np.ndarray) -> "TracedCurves[BoundaryCurve]":
+def boundary_curves(
+    plane: "ParameterPlane", view: ResultView, rows: np.ndarray
+) -> "TracedCurves[BoundaryCurve]":
     """Boundary curves through the crossings of all rows with a finite value. rows: parameter value of
     every row, (rows,).
     """
@@ -40,7 +42,7 @@ def boundary_curves(plane: "Plane", view: ResultView, rows: np.ndarray) -> "Trac
 
 
 def criticality_along(
-    plane: "Plane", traced: "TracedCurves[BoundaryCurve]", accuracy: float
+    plane: "ParameterPlane", traced: "TracedCurves[BoundaryCurve]", accuracy: float
 ) -> "list[CurveCriticality]":
     """Criticality along each curve; NaN along curves that are not Hopf curves. accuracy: relative accuracy of
     the linear results."""
@@ -55,7 +57,10 @@ def criticality_along(
 
 
 def generalised_hopf_curves(
-    plane: "Plane", criticalities: Sequence["CurveCriticality"], third_axis: tuple[str, Axis], accuracy: float
+    plane: "ParameterPlane",
+    criticalities: Sequence["CurveCriticality"],
+    third_axis: tuple[str, Axis],
+    accuracy: float,
 ) -> list[FilledVariable]:
     """Curves of generalised Hopf points along a third parameter, as variables of the file. criticalities: of
     the Hopf curves of the plane. accuracy: relative accuracy of the linear results. third_axis: name and

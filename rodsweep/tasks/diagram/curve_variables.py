@@ -25,7 +25,7 @@ from ...results.layouts.variables import FilledVariable, Variable, outcome_value
 from .detached_branches import followed_special_points
 
 if TYPE_CHECKING:
-    from ...determinant.parameter_plane import Plane
+    from ...determinant.parameter_plane import ParameterPlane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.special_curves import SpecialPointCurve
     from ...solve.branch.special.special_point import RowSpecialPoint
@@ -222,7 +222,7 @@ def unstored_special_count(view: ResultView, finite: np.ndarray) -> int:
 
 def with_hopf_ends(
     traced: "TracedCurves[SpecialPointCurve]",
-    plane: "Plane",
+    plane: "ParameterPlane",
     criticalities: "Sequence[CurveCriticality]",
     unstored: int,
 ) -> "TracedCurves[SpecialPointCurve]":

@@ -34,7 +34,7 @@ from .detached_branches import (
 )
 
 if TYPE_CHECKING:
-    from ...determinant.parameter_plane import Plane
+    from ...determinant.parameter_plane import ParameterPlane
     from ...solve.branch.coexistence import CoexistenceRow
     from ...solve.branch.special.detached_rows import DiagramStages, Stage
     from ...solve.branch.special.folds_beyond import FoldsBeyondRange
@@ -201,9 +201,9 @@ class DiagramCurves:
         return np.isfinite(self.task.points.columns_by_name[self.task.config.plane_parameters[1]])
 
     @property
-    def plane(self) -> "Plane | None":
+    def plane(self) -> "ParameterPlane | None":
         """Plane of the diagram's two parameters; None if fewer than two rows have a finite value."""
-        from ...determinant.parameter_plane import Plane, PlaneAxis
+        from ...determinant.parameter_plane import ParameterPlane, PlaneAxis
 
         line, row = self.task.config.plane_parameters
         finite = self.task.points.columns_by_name[row][self._is_row_finite]
@@ -219,7 +219,7 @@ class DiagramCurves:
             for name, values in ((line, self.task.line_values), (row, finite))
         )
         rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
-        return Plane(rod, (abscissa, ordinate))
+        return ParameterPlane(rod, (abscissa, ordinate))
 
     def _special_points(
         self, items: "SpecialCurveTracer | FoldsBeyondRange", number: int

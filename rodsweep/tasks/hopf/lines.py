@@ -20,7 +20,7 @@ from ...results.layouts.variables import FilledVariable
 from ...sweep.points.points import Points
 
 if TYPE_CHECKING:
-    from ...solve.changes.kinds import Threshold
+    from ...solve.changes.threshold_kinds import Threshold
     from ...solve.changes.thresholds_along_path import ThresholdSearchResult
 
 

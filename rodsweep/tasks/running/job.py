@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...config import Config, load_config, refusals_with_file
+from ...config import Config, read_config, refusals_with_file
 from ...config.document.reading import resolved_config, tree_yaml
 from ...errors import InputError
 from ...results.file import provenance
 from ...results.file.creation import FilePlan
 from ...results.layouts import LAYOUT_MAKERS, layout_of
-from ...results.layouts.arm import arm_variables, quantities_at_points, si_values
 from ...results.layouts.si_units import load_kind_of
+from ...results.layouts.si_variables import arm_variables, quantities_at_points, si_values
 from ...results.layouts.variables import FilledVariable, Layout
 from ...solve.status import PointStatus
 from ...sweep.points.flutter_forces import FlutterForces
@@ -116,7 +116,7 @@ def job_of_file(path: Path, overrides: tuple[str, ...]) -> Job:
 
     overrides: texts KEY=VALUE that override keys of the config.
     """
-    config, text = load_config(path, overrides)
+    config, text = read_config(path, overrides)
     with refusals_with_file(path):
         return job_of_config(path, config, text)
 

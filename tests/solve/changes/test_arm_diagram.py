@@ -5,16 +5,16 @@ import pytest
 
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
-from rodsweep.determinant.stability_boundary import Boundary
+from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
+from rodsweep.determinant.stability_boundary import StabilityBoundary
 from rodsweep.errors import InputError
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 
@@ -30,8 +30,8 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
     middle = Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, build=build)
     found = find_thresholds(ParameterPath(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
     change = next(c for c in found.thresholds if c.kind == kind)
-    plane = Plane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
-    sign = 0.0 if kind == ChangeKind.hopf else -1.0
+    plane = ParameterPlane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
+    sign = 0.0 if kind == ThresholdKind.hopf else -1.0
     return trace_boundary(
         sign, plane, (first.coordinate(change.value), 0.5), change.frequency or change.growth_rate
     )
@@ -39,18 +39,21 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
 
 @pytest.mark.long
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
-    exact, found = (traced(build, ChangeKind.hopf) for build in (Build(), ONES))
+    exact, found = (traced(build, ThresholdKind.hopf) for build in (Build(), ONES))
     (fold,), (of_arm,) = exact.folds, found.folds
     assert of_arm.values[1] == pytest.approx(fold.values[1], rel=1e-13)
     assert abs(of_arm.values[0] - fold.values[0]) <= of_arm.errors[0] < 2e-7
     assert found.values[[0, -1]] == pytest.approx(exact.values[[0, -1]], rel=1e-10)
 
 
-@pytest.mark.parametrize("kind", [ChangeKind.hopf, ChangeKind.onset])
+@pytest.mark.parametrize("kind", [ThresholdKind.hopf, ThresholdKind.onset])
 def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
     curve = traced(Build(), kind)
     boundaries = [
-        Boundary(Plane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS), curve.eigenvalue_sign)
+        StabilityBoundary(
+            ParameterPlane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS),
+            curve.eigenvalue_sign,
+        )
         for build in (Build(), ONES)
     ]
     for v in curve.scaled_points[::6]:
@@ -61,7 +64,7 @@ def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
 @pytest.mark.long
 def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
     axes = PlaneAxis("F", 20.0, 500.0), PlaneAxis("k1", 350.0, 550.0)
-    (fold,) = traced(SWELLING, ChangeKind.hopf, axes).folds
+    (fold,) = traced(SWELLING, ThresholdKind.hopf, axes).folds
     assert fold.axis == 1
     k1, error = fold.values[1], 1e-6
 
@@ -69,7 +72,9 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
         found = find_thresholds(
             ParameterPath(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0
         )
-        return [c.value for c in found.thresholds if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
+        return [
+            c.value for c in found.thresholds if c.kind in (ThresholdKind.hopf, ThresholdKind.restabilization)
+        ]
 
     assert hopfs(k1 * (1 - error)) == []
     low, high = hopfs(k1 * (1 + error))
@@ -79,13 +84,15 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
 @pytest.mark.long
 def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     axes = PlaneAxis("F", 40.0, 560.0), PlaneAxis("taper", 1.1, 1.8)
-    (fold,) = (f for f in traced(SWELLING, ChangeKind.hopf, axes, k1=500.0).folds if f.axis == 1)
+    (fold,) = (f for f in traced(SWELLING, ThresholdKind.hopf, axes, k1=500.0).folds if f.axis == 1)
     taper = fold.values[1]
     numbers = []
     for side in (-1e-5, 1e-5):
         rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
         found = find_thresholds(ParameterPath(rod, "F"), 0.0, 560.0)
-        numbers.append(sum(c.kind in (ChangeKind.hopf, ChangeKind.restabilization) for c in found.thresholds))
+        numbers.append(
+            sum(c.kind in (ThresholdKind.hopf, ThresholdKind.restabilization) for c in found.thresholds)
+        )
     assert numbers == [2, 0]
 
 
@@ -149,7 +156,7 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     fold = 75.3972626336484526, 147.921519683199662, 770.860809443855688
     points = []
     for build in (Build(), ONES):
-        plane = Plane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
+        plane = ParameterPlane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
         start = tuple(axis.coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
         told = curve_criticality(plane, trace_boundary(0.0, plane, start, fold[2]), 1e-10)
         assert told.unlocated_count == 0

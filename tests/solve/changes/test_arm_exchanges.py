@@ -11,8 +11,8 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.spectrum.path.followed_arms import FollowedArms
 from rodsweep.solve.spectrum.path.following import are_distinct_roots
@@ -42,7 +42,7 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
     """The forces are from a bisection of dense eigenvalues of another code on two meshes."""
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
-    (taken,) = [c for c in found.thresholds if c.kind == ChangeKind.real_leads]
+    (taken,) = [c for c in found.thresholds if c.kind == ThresholdKind.real_leads]
     assert taken.value == pytest.approx(F, abs=1e-9)
     assert taken.error < 1e-9
 
@@ -64,7 +64,7 @@ def test_three_exchanges_between_two_samples_are_all_found(rod, F_max):
     found = solve_thresholds(rod, ThresholdsRequest(F_max, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
     kinds = [c.kind for c in found.thresholds[:3]]
-    assert kinds == [ChangeKind.onset, ChangeKind.real_again, ChangeKind.pair_leads]
+    assert kinds == [ThresholdKind.onset, ThresholdKind.real_again, ThresholdKind.pair_leads]
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 
@@ -73,7 +73,7 @@ def test_a_double_eigenvalue_behind_the_leading_pair_is_no_onset():
     rod = cone(20971.78966444228, 401.0547088144865, 4.178687351590938e-05, 0.1542518309504673)
     found = solve_thresholds(rod, ThresholdsRequest(39.13599469496463, 1e-6, True, 100))
     assert found.status == ThresholdStatus.ok
-    assert found.thresholds[0].kind == ChangeKind.pair_leads
+    assert found.thresholds[0].kind == ThresholdKind.pair_leads
     assert_leaders_are_those_of_spectra(rod, found, forces_between(found))
 
 

@@ -16,15 +16,15 @@ from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.search_range import IntervalQueue
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.path import followed_arms
 
 ONES = Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6))
-ACROSS = (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization)
+ACROSS = (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization)
 
 
 def across_the_axis(found):
@@ -34,21 +34,21 @@ def across_the_axis(found):
 @pytest.mark.parametrize(
     ("rod", "F_max", "expected"),
     [
-        (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(ChangeKind.hopf, 15.4627583986)]),
+        (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(ThresholdKind.hopf, 15.4627583986)]),
         (
             Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
             150.0,
-            [(ChangeKind.hopf, 45.8967541917)],
+            [(ThresholdKind.hopf, 45.8967541917)],
         ),
         (
             Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
             150.0,
-            [(ChangeKind.hopf, 57.3983354479)],
+            [(ThresholdKind.hopf, 57.3983354479)],
         ),
         (
             Rod(F=0.0, k1=500.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")),
             600.0,
-            [(ChangeKind.hopf, 59.0162383065), (ChangeKind.restabilization, 414.527760519)],
+            [(ThresholdKind.hopf, 59.0162383065), (ThresholdKind.restabilization, 414.527760519)],
         ),
         (Rod(F=0.0, k1=300.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 600.0, []),
     ],
@@ -123,7 +123,7 @@ def test_a_place_that_cannot_be_proved_ends_the_search_there(no_bound_beyond_som
     assert (
         [c.kind for c in found.thresholds]
         == [c.kind for c in expected]
-        == [ChangeKind.onset, ChangeKind.hopf]
+        == [ThresholdKind.onset, ThresholdKind.hopf]
     )
     np.testing.assert_allclose([c.value for c in found.thresholds], [c.value for c in expected], rtol=1e-11)
     assert found.search_result.unstable_at_end == 2
@@ -202,7 +202,9 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
     build = Build("neo_hookean", "swelling", Profile((0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 1.0), rows))
     rod = Rod(F=0.0, k1=5800.0, k2=29.0, gamma3=0.17, build=build)
     found = solve_thresholds(rod, ThresholdsRequest(130.0, 1e-10, True, 16)).thresholds
-    double = [crossing for crossing in found if crossing.kind in (ChangeKind.onset, ChangeKind.real_again)]
+    double = [
+        crossing for crossing in found if crossing.kind in (ThresholdKind.onset, ThresholdKind.real_again)
+    ]
     exact = "11.144982346022727144", "79.813236894182175485", "125.31246511120310814"
     for crossing, at in zip(double, exact, strict=True):
         assert abs(Decimal(crossing.value) - Decimal(at)) <= Decimal(crossing.error) <= 1e-12 * crossing.value

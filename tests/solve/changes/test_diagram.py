@@ -8,16 +8,16 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.certificate.winding_number import count_right_of
-from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
-from rodsweep.determinant.stability_boundary import Boundary
+from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
+from rodsweep.determinant.stability_boundary import StabilityBoundary
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram import boundary_curves
 from rodsweep.solve.changes.diagram.boundaries import boundary_curves_through, seed_of
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.boundary_problem import BoundaryEndReason
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 
 FOLDS = [
     # k2, gamma3, k1, F, frequency: 30-digit roots of D = 0 and of the vanishing Jacobian
@@ -45,14 +45,14 @@ def rows(plane_axes, rod, count):
 
 @pytest.mark.parametrize(("k2", "gamma3", "k1", "F", "frequency"), FOLDS)
 def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F, frequency):
-    plane = Plane(
+    plane = ParameterPlane(
         Rod(F=0.0, k1=200.0, k2=k2, gamma3=gamma3),
         (PlaneAxis("F", 0.0, 119.0), PlaneAxis("k1", 120.0, 1000.0, logarithmic=True)),
     )
     row = solve_row(
         Rod(F=0.0, k1=300.0, k2=k2, gamma3=gamma3), RowRequest("F", np.array([0.0, 119.0]), 1e-9, True, 9)
     )
-    hopf = next(c for c in row.thresholds.thresholds if c.kind == ChangeKind.hopf)
+    hopf = next(c for c in row.thresholds.thresholds if c.kind == ThresholdKind.hopf)
     curve = trace_boundary(
         0.0,
         plane,
@@ -70,7 +70,7 @@ def test_the_flutter_window_closes_at_the_fold_to_nine_digits(k2, gamma3, k1, F,
 def test_the_hopf_curve_of_the_partial_beam_is_the_parabola_of_the_paper():
     """F (1 - F/k1) = Fc with k2 = inf, gamma3 = 0 (Sec. VIII), all along the curve and through its fold."""
     Fc = 37.6954308403185779
-    plane = Plane(
+    plane = ParameterPlane(
         Rod(F=0.0, k1=200.0, k2=inf, gamma3=0.0), (PlaneAxis("F", 0.0, 140.0), PlaneAxis("k1", 145.0, 400.0))
     )
     start = 200.0 * (0.5 - np.sqrt(0.25 - Fc / 200.0))
@@ -88,7 +88,7 @@ def test_rows_and_curves_agree_and_every_change_lies_on_a_curve():
     axes = (PlaneAxis("F", 0.0, 99.0), PlaneAxis("k1", 100.0, 1000.0, logarithmic=True))
     rod = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
     _, seeds = rows(axes, rod, 12)
-    curves = boundary_curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert curves.untraced_count == 0
     assert curves.largest_seed_distance < 1e-11
     assert sum(c.consists_of_hopf_points for c in curves.curves) == 1
@@ -102,7 +102,7 @@ def test_a_plane_of_two_material_parameters():
     axes = (PlaneAxis("k2", 20.0, 1e5, logarithmic=True), PlaneAxis("gamma3", 1e-4, 0.1, logarithmic=True))
     rod = Rod(F=30.0, k1=1e4, k2=1e3, gamma3=1e-3)
     found, seeds = rows(axes, rod, 6)
-    curves = boundary_curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert seeds
     assert (curves.untraced_count, curves.largest_seed_distance < 1e-11) == (0, True)
     values = np.linspace(20.0, 1e5, 41)
@@ -134,7 +134,7 @@ ENDS = [
 @pytest.mark.parametrize(("axes", "rod", "ends"), ENDS)
 def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
     _, seeds = rows(axes, rod, 3)
-    curves = boundary_curves_through(Plane(rod, axes), seeds).curves
+    curves = boundary_curves_through(ParameterPlane(rod, axes), seeds).curves
     assert {curve.end_reasons for curve in curves} == ends
     for curve in curves:
         for (x, y, _), (F, other), end in zip(
@@ -144,7 +144,7 @@ def test_a_curve_says_where_it_ends(axes, rod, ends, monkeypatch):
             assert beside_an_edge if end == BoundaryEndReason.edge else pytest.approx(other, rel=1e-7) == F
     few = replace(boundary_curves.BOUNDARY_STEP_CONTROL, max_solutions=5)
     monkeypatch.setattr(boundary_curves, "BOUNDARY_STEP_CONTROL", few)
-    curve = boundary_curves_through(Plane(rod, axes), seeds[:1]).curves[0]
+    curve = boundary_curves_through(ParameterPlane(rod, axes), seeds[:1]).curves[0]
     assert BoundaryEndReason.list_full in curve.end_reasons
     assert len(curve.values) < 10
 
@@ -167,10 +167,10 @@ TOUCHED = [
 @pytest.mark.parametrize(("axes", "rod"), TOUCHED)
 def test_the_tangent_of_a_boundary_touches_it(axes, rod):
     """A step along it leaves the curve by the curvature alone, in proportion to the square of the step."""
-    plane = Plane(rod, axes)
+    plane = ParameterPlane(rod, axes)
     _, seeds = rows(axes, rod, 2)
     for seed in seeds:
-        boundary = Boundary(plane, seed.eigenvalue_sign)
+        boundary = StabilityBoundary(plane, seed.eigenvalue_sign)
         scaled = [axis.coordinate(value) for axis, value in zip(axes, seed.values, strict=True)]
         start = boundary.point_near(np.array([*scaled, log(abs(seed.eigenvalue))]), np.array([0.0, 1.0, 0.0]))
         assert boundary.eigenvalue(start.v[2])[int(seed.eigenvalue_sign == 0)] == pytest.approx(
@@ -215,7 +215,7 @@ def test_a_diagram_that_begins_at_the_limit_of_the_model_has_its_curves():
     axes = (PlaneAxis("F", 5.0, 60.0), PlaneAxis("gamma3", 0.0, 1.0))
     rod = Rod(F=30.0, k1=1e4, k2=20.0, gamma3=0.01)
     _, seeds = rows(axes, rod, 3)
-    curves = boundary_curves_through(Plane(rod, axes), seeds)
+    curves = boundary_curves_through(ParameterPlane(rod, axes), seeds)
     assert {seed.values[1] for seed in seeds} == {0.0, 0.5, 1.0}
     assert (curves.untraced_count, curves.largest_seed_distance < 1e-11) == (0, True)
 
@@ -233,7 +233,7 @@ def test_each_curve_is_followed_once_and_ends_are_no_folds(k1, top, folds):
         seeds += [
             seed_of((c.value, value), c.kind, c.frequency, c.growth_rate) for c in row.thresholds.thresholds
         ]
-    curves = boundary_curves_through(Plane(rod, axes), seeds).curves
+    curves = boundary_curves_through(ParameterPlane(rod, axes), seeds).curves
     found = [fold for curve in curves for fold in curve.folds]
     assert len(found) == folds
     assert len({(f.axis, round(f.values[0], 3), round(f.values[1], 3)) for f in found}) == folds

@@ -12,8 +12,8 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes import thresholds_along_path as transitions_module
 from rodsweep.solve.changes.diagram.rows import classes_and_unstable_counts
-from rodsweep.solve.changes.kinds import ChangeKind
 from rodsweep.solve.changes.status import ThresholdStatus
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -52,22 +52,25 @@ def test_every_change_of_the_reference_and_no_other_to_twelve_digits(rod):
 def test_a_range_that_ends_at_a_multiple_of_a_threshold_is_proved(multiple):
     """A sample of the search is then a rod with a pair on the axis: which mode leads is known all the
     same."""
-    at = next(c.value for c in thresholds(1e4, 1e4, 1e-4, 40.0).thresholds if c.kind == ChangeKind.hopf)
+    at = next(c.value for c in thresholds(1e4, 1e4, 1e-4, 40.0).thresholds if c.kind == ThresholdKind.hopf)
     found = thresholds(1e4, 1e4, 1e-4, multiple * at)
     assert found.status == ThresholdStatus.ok, found.message
-    assert [c.kind for c in found.thresholds][:2] == [ChangeKind.onset, ChangeKind.hopf]
+    assert [c.kind for c in found.thresholds][:2] == [ThresholdKind.onset, ThresholdKind.hopf]
     assert found.thresholds[1].value == pytest.approx(at, rel=1e-13)
 
 
 def test_the_partial_beam_flutters_where_the_compressed_filament_does():
     """k2 = inf, gamma3 = 0: F (1 - F/k1) = Fc (Sec. VIII), so both ends of the window are known."""
     filament = thresholds(inf, inf, 0.0)
-    Fc = next(c.value for c in filament.thresholds if c.kind == ChangeKind.hopf)
+    Fc = next(c.value for c in filament.thresholds if c.kind == ThresholdKind.hopf)
     assert Fc == pytest.approx(37.6954308403186, rel=1e-13)
     for k1 in (4 * Fc * 1.0001, 163.0, 400.0):
         root = np.sqrt(1 - 4 * Fc / k1)
         found = [c for c in thresholds(k1, inf, 0.0, 2 * k1).thresholds if c.kind in (2, 4)]
-        assert [c.kind for c in found][:2] == [ChangeKind.hopf, ChangeKind.restabilization] or k1 == 400.0
+        assert [c.kind for c in found][:2] == [
+            ThresholdKind.hopf,
+            ThresholdKind.restabilization,
+        ] or k1 == 400.0
         # Near the fold F moves like the root of what D can tell.
         assert found[0].value == pytest.approx(k1 / 2 * (1 - root), rel=1e-13 / root)
         assert found[-1].value == pytest.approx(k1 / 2 * (1 + root), rel=1e-13 / root)
@@ -83,7 +86,7 @@ def test_a_window_far_narrower_than_any_sampling_is_found(beyond):
     known = next(rod for rod in REFERENCE if rod["k1"] == "147.93")
     start, stop = (float(e["F"]) for e in known["events"] if e["kind"].startswith("hopf"))
     found = thresholds(FOLD + beyond, 1e4, 1e-4, accuracy=1e-8)
-    window = [c for c in found.thresholds if c.kind in (ChangeKind.hopf, ChangeKind.restabilization)]
+    window = [c for c in found.thresholds if c.kind in (ThresholdKind.hopf, ThresholdKind.restabilization)]
     assert [c.unstable_after for c in window] == [2, 0]
     assert window[1].value - window[0].value == pytest.approx(
         (stop - start) * np.sqrt(beyond / (147.93 - FOLD)), rel=2e-3
@@ -147,8 +150,8 @@ def test_a_change_along_any_parameter_is_a_change_along_the_force(name, fixed, s
             for v in (crossing.value * 0.99, crossing.value * 1.01)
         )
         assert after == crossing.unstable_after
-        if crossing.kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
-            assert after - before == (2 if crossing.kind == ChangeKind.hopf else -2)
+        if crossing.kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
+            assert after - before == (2 if crossing.kind == ThresholdKind.hopf else -2)
 
 
 def test_a_lost_crossing_is_noticed_by_the_counts(monkeypatch):
@@ -203,7 +206,7 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
     kinds = [c.kind for c in found.thresholds]
     assert found.unstable_at_start == 2
     assert not found.oscillates_at_start
-    assert kinds[:3] == [ChangeKind.onset, ChangeKind.restabilization, ChangeKind.real_leads]
+    assert kinds[:3] == [ThresholdKind.onset, ThresholdKind.restabilization, ThresholdKind.real_leads]
     assert found.proved
     onset, _, overtaken = found.thresholds[:3]
     assert onset.growth_rate > 60
@@ -223,13 +226,13 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
 
 @pytest.mark.parametrize("beyond", [1e-3, 1e-6, 1e-9])
 def test_a_narrow_window_of_oscillations_is_found(beyond):
-    """Partial beam: F (1 - F/k1) = F* of the filament twice, as close as one likes (k1 -> 4 F*)."""
+    """Partial system: F (1 - F/k1) = F* of the filament twice, as close as one likes (k1 -> 4 F*)."""
     start = 20.0509536189737612
     k1 = 4 * start * (1 + beyond)
     found = thresholds(k1, inf, 0.0, 60.0, accuracy=1e-8)
     half = k1 / 2 * np.sqrt(1 - 4 * start / k1)
     assert found.status == ThresholdStatus.ok
-    assert [c.kind for c in found.thresholds] == [ChangeKind.onset, ChangeKind.real_again]
+    assert [c.kind for c in found.thresholds] == [ThresholdKind.onset, ThresholdKind.real_again]
     assert found.thresholds[1].value - found.thresholds[0].value == pytest.approx(2 * half, rel=1e-3)
 
 
@@ -238,8 +241,8 @@ def test_a_pair_about_to_cross_the_axis_leads():
     rod = Rod(F=-27.0, k1=424.7068961055969, k2=2.2470358417416847, gamma3=0.00041823639524173143)
     found = find_thresholds(ParameterPath(rod, "F"), -27.170544378578725, 100.0)
     kinds = [c.kind for c in found.thresholds]
-    assert ChangeKind.onset in kinds
-    assert ChangeKind.real_leads in kinds
+    assert ThresholdKind.onset in kinds
+    assert ThresholdKind.real_leads in kinds
     motion, _ = classes_and_unstable_counts(found, np.array([-4.95]))
     assert motion.tolist() == [1]
     assert found.proved
@@ -250,7 +253,7 @@ def test_no_change_outside_the_path_is_reported():
     hopf = 37.6559805452710668
     before = thresholds(1e4, 1e4, 1e-4, F_max=hopf * (1 - 1e-6))
     assert before.status == ThresholdStatus.ok
-    assert [c.kind for c in before.thresholds] == [ChangeKind.onset]
+    assert [c.kind for c in before.thresholds] == [ThresholdKind.onset]
     assert before.search_result.unstable_at_end == 0
     beyond = find_thresholds(
         ParameterPath(Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4), "F"), hopf * (1 + 1e-6), 50.0
@@ -262,10 +265,10 @@ def test_no_change_outside_the_path_is_reported():
 def test_a_change_on_the_border_of_two_boxes_is_one(k1):
     """A path along k1 at a force for which the Hopf point lies where the error of k1 is large."""
     hopf = next(
-        c.value for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).thresholds if c.kind == ChangeKind.hopf
+        c.value for c in thresholds(k1, 1e4, 1e-4, F_max=60.0).thresholds if c.kind == ThresholdKind.hopf
     )
     found = find_thresholds(ParameterPath(Rod(F=hopf, k1=k1, k2=1e4, gamma3=1e-4), "k1"), 100.0, 1e12)
-    assert [c.unstable_after for c in found.thresholds if c.kind == ChangeKind.hopf] == [2]
+    assert [c.unstable_after for c in found.thresholds if c.kind == ThresholdKind.hopf] == [2]
 
 
 @pytest.mark.parametrize("F_max", [1e-3, 0.3, 0.7])

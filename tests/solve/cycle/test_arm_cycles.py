@@ -11,8 +11,8 @@ from reference.strain_collocation import Arm, Law
 from surveyed import survey_only
 
 from rodsweep.determinant.arm.determinant import arm_determinant, forget_arm_determinants
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import mesh_with_edges
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.plane_equations import write_balance, write_balance_derivative
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
@@ -23,7 +23,7 @@ from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
-from rodsweep.solve.changes.kinds import ChangeKind
+from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.by_integration import solve_by_integration
@@ -76,14 +76,14 @@ def moving(form, size, seed=0):
 @pytest.mark.parametrize("name", ARMS)
 def test_the_jacobian_is_the_derivative_of_the_rate(name):
     form = on_mesh(name)
-    beam = Beam(form.rod, form.mesh)
-    z = 0.3 * np.random.default_rng(1).standard_normal(beam.unknown_count)
+    system = ExplicitSystem(form.rod, form.mesh)
+    z = 0.3 * np.random.default_rng(1).standard_normal(system.unknown_count)
     h = 1e-6
     differences = [
-        (beam.state_derivative(z + h * e) - beam.state_derivative(z - h * e)) / (2 * h)
-        for e in np.eye(beam.unknown_count)
+        (system.state_derivative(z + h * e) - system.state_derivative(z - h * e)) / (2 * h)
+        for e in np.eye(system.unknown_count)
     ]
-    J = beam.jacobian(z)
+    J = system.jacobian(z)
     assert np.abs(J - np.array(differences).T).max() < 1e-8 * np.abs(J).max()
 
 
@@ -414,7 +414,7 @@ def test_inextensible_cones_of_every_law_are_one(build):
 def test_a_cone_begins_to_beat_where_its_thresholds_say():
     rod = Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     found = solve_thresholds(rod, ThresholdsRequest(40.0, 1e-10, True, 8))
-    hopf = next(c.value for c in found.thresholds if c.kind == ChangeKind.hopf)
+    hopf = next(c.value for c in found.thresholds if c.kind == ThresholdKind.hopf)
     assert hopf == pytest.approx(15.4627583986, rel=1e-11)  # physics: by collocation
     for distance, status in ((-1e-4, "straight"), (1e-4, "cycle")):
         assert solve_cycle(replace(rod, F=hopf * (1 + distance)), request(1e-6)).status.name == status

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
@@ -48,14 +48,16 @@ def test_of_two_stable_states_the_place_decides():
 
 
 def test_the_motion_is_that_of_another_time_scheme():
-    beam = Beam(FLUTTER, motion_mesh(FLUTTER, 1e-5))
+    system = ExplicitSystem(FLUTTER, motion_mesh(FLUTTER, 1e-5))
     motion = released(FLUTTER, 0.7, 0.5).motion_shapes
-    z = bent_state_with_tip_at(beam, 0.7, 0.5)
+    z = bent_state_with_tip_at(system, 0.7, 0.5)
     for frame in (8, 20, 40):
-        run = integrator(beam.mesh, TimeScheme("bdf", "4", 1e-7)).run(beam, z, frame * motion.time_step, 1e-8)
+        run = integrator(system.mesh, TimeScheme("bdf", "4", 1e-7)).run(
+            system, z, frame * motion.time_step, 1e-8
+        )
         # 1e-4 is the tolerance of the first run of a motion; errors add up over some 40 steps.
         assert motion.shapes[:, frame, -1] == pytest.approx(
-            beam.tip_coordinates(run.states[-1])[:2], abs=3e-3
+            system.tip_coordinates(run.states[-1])[:2], abs=3e-3
         )
 
 

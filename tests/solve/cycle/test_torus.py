@@ -8,8 +8,8 @@ from rods import rod_of
 from scipy.integrate import LSODA
 from surveyed import survey_only
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient import transient_integration
 from rodsweep.solve.cycle.transient.returns import tip_angle_row
@@ -70,11 +70,11 @@ def test_a_motion_that_spirals_into_a_stable_cycle_is_no_torus(monkeypatch):
 @survey_only
 def test_another_integrator_on_another_mesh_is_on_the_same_torus():
     """SciPy's LSODA; the states where theta of the tip rises through 0, by its dense output."""
-    beam = Beam(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), uniform_mesh(1, 21))
-    z, row = 0.1 * leading_mode(beam).z.real, tip_angle_row(beam)
+    system = ExplicitSystem(rod_of(207.0, *SOFT[:3], gamma1=SOFT[3]), uniform_mesh(1, 21))
+    z, row = 0.1 * leading_mode(system).z.real, tip_angle_row(system)
     run = LSODA(
-        lambda _, z: beam.state_derivative(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
-        jac=lambda _, z: beam.jacobian(z),
+        lambda _, z: system.state_derivative(z), 0.0, z, np.inf, rtol=1e-7, atol=1e-7 * np.abs(z).max(),
+        jac=lambda _, z: system.jacobian(z),
     )  # fmt: skip
     returns = []
     while len(returns) < 400:
@@ -85,7 +85,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             for _ in range(40):
                 middle = (low + high) / 2
                 low, high = (middle, high) if row @ state(middle) < 0 else (low, middle)
-            returns.append(beam.layout.stress_field(state(low), "m3"))
+            returns.append(system.layout.stress_field(state(low), "m3"))
     found = torus_frequency_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle_per_return == pytest.approx(ROTATION, abs=1e-3)
     assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error / 5

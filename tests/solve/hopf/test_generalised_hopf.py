@@ -6,11 +6,11 @@ import h5py
 import numpy as np
 import pytest
 from contents import content, same
-from second_normal_form import Shape, coefficients
+from second_normal_form import ArmGeometry, coefficients
 from test_paper import run, stated
 
 import rodsweep as rs
-from rodsweep.determinant.parameter_plane import Plane, PlaneAxis
+from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
@@ -46,7 +46,7 @@ def curve_of(plane, F, k1, frequency):
 def over_F_and_k1(F=(60.0, 110.0), k1=(145.0, 160.0), logarithmic=False):
     """A plane of the rod and the Hopf curve through its fold."""
     axes = PlaneAxis("F", *F), PlaneAxis("k1", *k1, logarithmic=logarithmic)
-    plane = Plane(Rod(F=0.0, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
+    plane = ParameterPlane(Rod(F=0.0, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
     return plane, curve_of(plane, *FOLD)
 
 
@@ -64,7 +64,7 @@ def test_a_generalised_hopf_point_is_that_of_other_equations(found):
 
     def growth_and_c(values):
         rod = (*values, K2, GAMMA3, 1.0)
-        w = np.linalg.eigvals(Shape(*rod, 24).linear())
+        w = np.linalg.eigvals(ArmGeometry(*rod, 24).linear())
         w = w[np.argmin(abs(w - 1j * point.frequency))]
         c = coefficients(rod, w, 24)[0]
         return np.array([w.real / abs(w), c.real / abs(c)])
@@ -112,7 +112,7 @@ def test_another_plane_through_the_same_rod_has_it_too(found):
     (point,) = found[2].points
     F, k1 = point.values
     axes = PlaneAxis("k1", 140.0, 160.0), PlaneAxis("gamma3", 1e-5, 1e-3, logarithmic=True)
-    plane = Plane(Rod(F=F, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
+    plane = ParameterPlane(Rod(F=F, k1=200.0, k2=K2, gamma3=GAMMA3), axes)
     (other,) = curve_criticality(plane, curve_of(plane, F, k1, point.frequency), 1e-10).points
     assert other.values == pytest.approx((k1, GAMMA3), rel=1e-8)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.rod import Rod
@@ -26,9 +26,9 @@ DURATION = 0.005
 def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     """From a first step of twice the duration, the iterates at the jump of the material become infinite."""
     mesh = motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy)
-    beam = Beam(RUBBER, mesh)
+    system = ExplicitSystem(RUBBER, mesh)
     integrator = Integrator(mesh, scheme)
-    run = integrator.run(beam, leading_mode(beam).z.real, DURATION, 2 * DURATION)
+    run = integrator.run(system, leading_mode(system).z.real, DURATION, 2 * DURATION)
     failures = integrator.ts.getSNESFailures()
     integrator.destroy()
     assert failures > 0
@@ -36,27 +36,27 @@ def test_run_recovers_from_a_step_whose_newton_iterates_overflow(scheme):
     assert run.times[-1] == pytest.approx(DURATION, rel=1e-12)
 
 
-def moved_energy(beam, z, pull, moment):
+def moved_energy(system, z, pull, moment):
     """The energy of the state z with other stretching and bending of its fourth node."""
     state = z.copy()
-    beam.layout.stress_field(state, "n1")[3] += pull
-    beam.layout.stress_field(state, "m3")[3] += moment
-    return float(beam.elastic_energy(state))
+    system.layout.stress_field(state, "n1")[3] += pull
+    system.layout.stress_field(state, "m3")[3] += moment
+    return float(system.elastic_energy(state))
 
 
 def test_energy_of_a_section_is_convex_where_the_hessian_by_differences_is_positive():
     """The energy of states with one bent node each, by central differences in its stretch and bending."""
-    beam = Beam(RUBBER, motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy))
+    system = ExplicitSystem(RUBBER, motion_mesh(RUBBER, MOTION_MESH_SETTINGS.accuracy))
     h, verdicts = 1e-3, []
     for bending in (1.0, 10.0, 14.0, 17.0, 20.0, 30.0):
-        z = np.zeros(beam.unknown_count)
-        beam.layout.stress_field(z, "m3")[3] = bending
-        U = {(i, j): moved_energy(beam, z, i * h, j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+        z = np.zeros(system.unknown_count)
+        system.layout.stress_field(z, "m3")[3] = bending
+        U = {(i, j): moved_energy(system, z, i * h, j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
         a = U[1, 0] - 2 * U[0, 0] + U[-1, 0]
         b = U[0, 1] - 2 * U[0, 0] + U[0, -1]
         c = (U[1, 1] - U[1, -1] - U[-1, 1] + U[-1, -1]) / 4
-        assert beam.has_convex_energy(z) == (a > 0 and a * b > c * c)
-        verdicts.append(beam.has_convex_energy(z))
+        assert system.has_convex_energy(z) == (a > 0 and a * b > c * c)
+        verdicts.append(system.has_convex_energy(z))
     assert verdicts[0] and not verdicts[-1]
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.mesh import uniform_mesh
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
 from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, bent_state_with_tip_at
@@ -20,48 +20,50 @@ EACH_ROD = pytest.mark.parametrize("rod", RODS.values(), ids=RODS)
 PLACES = [(0.6, 0.2), (0.6, -0.2), (0.3, 0.0), (0.0, 0.55), (-0.3, 0.2), (0.0, 0.0), (-0.1, -0.5)]
 
 
-def beam_of(rod: Rod) -> Beam:
-    return Beam(rod, uniform_mesh(3, 8))
+def beam_of(rod: Rod) -> ExplicitSystem:
+    return ExplicitSystem(rod, uniform_mesh(3, 8))
 
 
 @EACH_ROD
 @pytest.mark.parametrize("place", PLACES)
 def test_the_tip_is_at_its_place(rod, place):
-    beam = beam_of(rod)
-    assert beam.tip_coordinates(bent_state_with_tip_at(beam, *place))[:2] == pytest.approx(place, abs=1e-8)
+    system = beam_of(rod)
+    assert system.tip_coordinates(bent_state_with_tip_at(system, *place))[:2] == pytest.approx(
+        place, abs=1e-8
+    )
 
 
 @EACH_ROD
 def test_stretch_and_shear_are_those_of_the_straight_rod(rod):
-    beam = beam_of(rod)
-    held = beam.strains(bent_state_with_tip_at(beam, 0.4, 0.3))
-    assert held[:2] == pytest.approx(beam.strains(np.zeros(beam.unknown_count))[:2], abs=1e-12)
+    system = beam_of(rod)
+    held = system.strains(bent_state_with_tip_at(system, 0.4, 0.3))
+    assert held[:2] == pytest.approx(system.strains(np.zeros(system.unknown_count))[:2], abs=1e-12)
 
 
 @EACH_ROD
 @pytest.mark.parametrize("place", [(0.5, 0.3), (-0.2, 0.4)])
 def test_the_curvature_is_the_moment_of_a_force_at_the_tip(rod, place):
     """Pi = f x (r(1) - r), two numbers for the whole curve, to the accuracy of the mesh."""
-    beam = beam_of(rod)
-    z = bent_state_with_tip_at(beam, *place)
-    x, y, _ = beam.shape(z)
-    Pi = beam.strains(z)[2]
+    system = beam_of(rod)
+    z = bent_state_with_tip_at(system, *place)
+    x, y, _ = system.shape(z)
+    Pi = system.strains(z)[2]
     arms = np.stack([x[-1] - x, y[-1] - y], axis=1)
     force = np.linalg.lstsq(arms, Pi, rcond=None)[0]
     assert Pi == pytest.approx(arms @ force, abs=1e-4 * np.abs(Pi).max())
 
 
 def test_a_mirrored_place_gives_the_mirrored_shape():
-    beam = beam_of(RODS["flutter"])
-    above, below = (beam.shape(bent_state_with_tip_at(beam, 0.5, y)) for y in (0.3, -0.3))
+    system = beam_of(RODS["flutter"])
+    above, below = (system.shape(bent_state_with_tip_at(system, 0.5, y)) for y in (0.3, -0.3))
     assert below == pytest.approx(above * np.array([[1], [-1], [-1]]), abs=1e-9)
 
 
 @EACH_ROD
 def test_a_place_out_of_reach_is_drawn_towards_the_clamp(rod):
-    beam = beam_of(rod)
-    length = beam.tip_coordinates(np.zeros(beam.unknown_count))[0]
-    x, y = beam.tip_coordinates(bent_state_with_tip_at(beam, 3.0, 4.0))[:2]
+    system = beam_of(rod)
+    length = system.tip_coordinates(np.zeros(system.unknown_count))[0]
+    x, y = system.tip_coordinates(bent_state_with_tip_at(system, 3.0, 4.0))[:2]
     assert (x, y) == pytest.approx(
         (
             0.6 * FIXED_TIP_SETTINGS.max_tip_distance * length,

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 from surveyed import survey_only
 
-from rodsweep.discretization.beam import Beam
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.errors import InputError
 from rodsweep.model.material.build import Build
 from rodsweep.model.rod import Rod
@@ -56,14 +56,14 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     c = followed(60.0, STRETCHABLE, 0.1)
     time, *tip = c.transient[:, c.transient[0] < 2 * c.measures.period]
     rod = rod_of(60.0, *STRETCHABLE[:3])
-    beam = Beam(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.stored_accuracy))
-    z = 0.1 * leading_mode(beam).z.real
+    system = ExplicitSystem(rod, motion_mesh(rod, MOTION_MESH_SETTINGS.stored_accuracy))
+    z = 0.1 * leading_mode(system).z.real
     atol = 1e-7 * np.abs(z).max()
     found = solve_ivp(
-        lambda _, z: beam.state_derivative(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
-        jac=lambda _, z: beam.jacobian(z),
+        lambda _, z: system.state_derivative(z), (0.0, time[-1]), z, "LSODA", time, rtol=1e-7, atol=atol,
+        jac=lambda _, z: system.jacobian(z),
     )  # fmt: skip
-    assert np.abs(beam.tip_coordinates(found.y.T) - tip).max() < 1e-5
+    assert np.abs(system.tip_coordinates(found.y.T) - tip).max() < 1e-5
 
 
 @pytest.mark.long

@@ -22,7 +22,7 @@ from rodsweep.solve.orbit.matrix.right_sides import (
     write_stage_residuals,
 )
 from rodsweep.solve.orbit.matrix.substitution import substitute_stages
-from rodsweep.solve.orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
+from rodsweep.solve.orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from rodsweep.solve.orbit.orbit import Orbit
 from rodsweep.solve.orbit.symmetry import REFLECTION
 
@@ -68,7 +68,7 @@ def dense_matrix(orbit, k):
 def test_elimination_is_the_solution_of_the_dense_systems(rod, stages):
     orbit = orbit_with(rod, stages)
     p, n = orbit.orbit_equations, orbit.form.unknown_count
-    factors = MatrixMemory(NewtonWorkspace(), INTERVALS, stages, n).factors
+    factors = FactorStorage(NewtonWorkspace(), INTERVALS, stages, n).factors
     random = np.random.default_rng(0)
     columns = random.normal(size=(INTERVALS, stages, COLUMNS, n)) * (p.mass + 1e-3)
     start = random.normal(size=(COLUMNS, n))

@@ -15,7 +15,7 @@ from rodsweep.solve.branch.bordered.scale import ArcLengthScale
 from rodsweep.solve.orbit.matrix.linearisation import Linearisation
 from rodsweep.solve.orbit.matrix.workspace import (
     WORKSPACE_SETTINGS,
-    MatrixMemory,
+    FactorStorage,
     NewtonWorkspace,
     block_count,
 )
@@ -115,7 +115,7 @@ def test_matrices_of_one_workspace_take_the_memory_of_the_largest():
     gc.collect()
     tracemalloc.start()
     try:
-        kept = [MatrixMemory(workspace, 40 + k, 4, 72) for k in range(20)]
+        kept = [FactorStorage(workspace, 40 + k, 4, 72) for k in range(20)]
         _, most = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
@@ -130,12 +130,12 @@ def test_a_released_workspace_keeps_what_most_rods_need():
         (WORKSPACE_SETTINGS.max_kept_buffer_size, True),
         (WORKSPACE_SETTINGS.max_kept_buffer_size + 1, False),
     ):
-        memory = MatrixMemory(workspace, -(-numbers // block_count(3)), 3, 1)
+        memory = FactorStorage(workspace, -(-numbers // block_count(3)), 3, 1)
         buffer = memory.factors.eliminated_blocks.base
         workspace.release()
         with pytest.raises(RuntimeError, match="its workspace was used again"):
             memory.factors  # noqa: B018 - raises
-        again = MatrixMemory(workspace, 1, 3, 1).factors.eliminated_blocks.base
+        again = FactorStorage(workspace, 1, 3, 1).factors.eliminated_blocks.base
         assert np.shares_memory(again, buffer) == kept
 
 
@@ -144,11 +144,11 @@ def test_work_is_limited_until_the_workspace_is_released():
     one = 4 * 3**2 * 10.0**3
     workspace.limit_work(20 * one)
     for _ in range(20):
-        MatrixMemory(workspace, 4, 3, 10)
+        FactorStorage(workspace, 4, 3, 10)
     with pytest.raises(WorkLimitReached, match="`work`"):
-        MatrixMemory(workspace, 4, 3, 10)
+        FactorStorage(workspace, 4, 3, 10)
     workspace.release()
-    MatrixMemory(workspace, 4, 3, 10)
+    FactorStorage(workspace, 4, 3, 10)
 
 
 def test_no_matrix_takes_more_than_its_share_of_the_work():
@@ -156,13 +156,13 @@ def test_no_matrix_takes_more_than_its_share_of_the_work():
     one = 4 * 3**2 * 10.0**3
     workspace.limit_work(one / WORKSPACE_SETTINGS.max_matrix_share * 0.99)
     with pytest.raises(WorkLimitReached):
-        MatrixMemory(workspace, 4, 3, 10)
+        FactorStorage(workspace, 4, 3, 10)
 
 
 def test_a_matrix_of_more_memory_than_allowed_is_refused_before_it_is_allocated():
     """Five stages with the most intervals and unknowns allowed by themselves would need 4.6 GB."""
     with pytest.raises(Unsolvable, match=r"needs 4\.6 GB, more than the 2\.1 GB allowed"):
-        MatrixMemory(
+        FactorStorage(
             NewtonWorkspace(), ORBIT_MESH_SETTINGS.max_intervals, 5, ORBIT_MESH_SETTINGS.max_unknowns
         )
     mesh = OrbitMesh((0.0, 0.2, 0.4, 0.6, 0.8, 1.0), 26, ORBIT_MESH_SETTINGS.max_intervals, 3)

@@ -38,7 +38,7 @@ class NearAxisSettings(KernelConstants):
     """Newton's method has converged if |step| <= this number times |w|; eigenvalues are refined later."""
     max_modes: int = 64
     """Maximum number of eigenvalues, including the known eigenvalues."""
-    ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
+    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
 
 
 NEAR_AXIS_SETTINGS = NearAxisSettings()

@@ -106,7 +106,7 @@ def proves_no_crossing(
     )
     if height < top and radius > 0:
         try:
-            W = NO_CROSSING_SETTINGS.W_reserve_factor * abs(complex(line, top))
+            W = NO_CROSSING_SETTINGS.w_bound_ratio * abs(complex(line, top))
             elements = elements_for(rods, coefficient_samples(rods), W)
             larger = element_propagators([rod.F for rod in rods], elements.local, elements.lengths, W)
         except FloatingPointError:

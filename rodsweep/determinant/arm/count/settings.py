@@ -59,7 +59,7 @@ class ContourSettings(KernelConstants):
     """If the valid discs of two nodes do not overlap, the step is shortened at least by this factor."""
     safe_step: float = 0.99
     """A step within the valid radius of a node is at most this times that radius, because of rounding."""
-    ranges: ClassVar = {
+    field_ranges: ClassVar = {
         "max_tangent_error": (0.0, math.pi / 2),
         "max_change": (0.0, 1.0),
         "max_wave_radius": (0.0, 1.0),
@@ -104,7 +104,7 @@ class NoCrossingSettings(KernelConstants):
     min_fitting_fraction: float = 0.25
     """If the largest |w| of the propagators allows only a disc below this fraction of the radius, propagators
     for larger |w| are made."""
-    W_reserve_factor: float = 2.0
+    w_bound_ratio: float = 2.0
     """Propagators are made valid up to W, this number times the largest |w| on the line inside the hull."""
     radius_growth: float = 2.0
     """Radius of the first disc tried at a node, divided by the radius of the previous disc."""
@@ -113,7 +113,7 @@ class NoCrossingSettings(KernelConstants):
     min_radius: float = 0.05
     """Radius below which no disc is tried, in units of the length over which D changes near the real axis."""
 
-    ranges: ClassVar = {
+    field_ranges: ClassVar = {
         "arm_count": (2, math.inf),
         "arms_safety_factor": (1.0, math.inf),
         "overlap": (0.0, 1.0),

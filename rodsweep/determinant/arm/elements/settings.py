@@ -28,8 +28,8 @@ class ArmElementSettings(KernelConstants):
     min_W: float = 16.0
     """Smallest W, the bound of |w| up to which elements are valid; for smaller |w| the load and the taper,
     not w, determine the length of elements."""
-    W_reserve_factor: float = 1.1
-    """New elements are valid up to W = W_reserve_factor |w|: the reserve is for slightly larger |w|."""
+    w_bound_ratio: float = 1.1
+    """New elements are valid up to W = w_bound_ratio |w|: the reserve is for slightly larger |w|."""
     max_reuse_ratio: float = 1e3
     """Existing elements are reused at w if their W is at most this number times |w|. Making new elements
     costs as much as thirty evaluations of D on twice as many elements."""
@@ -49,7 +49,7 @@ class ArmElementSettings(KernelConstants):
     max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
 
-    ranges: ClassVar = {"W_reserve_factor": (1.0, math.inf)}
+    field_ranges: ClassVar = {"w_bound_ratio": (1.0, math.inf)}
 
     @property
     def width(self) -> int:

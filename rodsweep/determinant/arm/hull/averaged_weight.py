@@ -60,7 +60,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
-        points = _with_points_beside_jumps(u, h)
+        points = _with_points_where_window_ends_jump(u, h)
         positions = _grid_positions(points, u)
         coefficients_at_points = np.empty((6, len(points)))
         for k in range(6):
@@ -73,7 +73,7 @@ def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
 
 
 @compiled
-def _with_points_beside_jumps(u: Array, h: float) -> Array:
+def _with_points_where_window_ends_jump(u: Array, h: float) -> Array:
     """The points u of an arm, (points,), and two more near each u at the distance h from a jump; sorted."""
     points = np.empty(5 * len(u))
     count = len(u)

@@ -9,7 +9,7 @@ from ....config.arm.status import NOT_SLENDER
 from ....model.arm.neglected import Validity
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import ResultView
-from ....results.layouts.arm import VALIDITY_VARIABLES
+from ....results.layouts.si_variables import VALIDITY_VARIABLES
 from ....results.layouts.thresholds import CROSSING_KINDS
 from ....wording import count_of_total, counted
 from .arm import errors_in_si, range_in_unit

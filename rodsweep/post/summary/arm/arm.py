@@ -15,8 +15,8 @@ from ....model.parameters import OPTIONAL_PARAMETERS
 from ....model.units import value_in_unit, with_si_prefix
 from ....results.file.view import ResultView
 from ....results.layouts import LAYOUT_MAKERS
-from ....results.layouts.arm import si_variables_of
 from ....results.layouts.si_units import HERTZ
+from ....results.layouts.si_variables import si_variables_of
 from ....results.layouts.thresholds import CROSSING_KINDS, CROSSING_MEANINGS
 from ...located_thresholds import LocatedThreshold
 from ...tables.rows_and_columns import quantities_at_points

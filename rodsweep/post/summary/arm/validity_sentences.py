@@ -6,7 +6,7 @@ import numpy as np
 
 from ....model.arm.neglected import DOUBTFUL_RATIO, Validity
 from ....results.file.view import ResultView
-from ....results.layouts.arm import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
+from ....results.layouts.si_variables import NEGLECTED_EFFECTS, VALIDITY_NOT_KNOWN, VALIDITY_VARIABLES
 from ....results.layouts.thresholds import HOPF_CROSSING_CODES
 from ....wording import count_of_total, counted
 

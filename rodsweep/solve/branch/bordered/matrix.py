@@ -20,7 +20,7 @@ from ...orbit.matrix.phase import phase_residual, phase_right_side, write_phase_
 from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute_stages
-from ...orbit.matrix.workspace import MatrixMemory, NewtonWorkspace
+from ...orbit.matrix.workspace import FactorStorage, NewtonWorkspace
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from .scale import ArcLengthScale, deflection_functional
@@ -45,7 +45,7 @@ class BorderedMatrix:
         V = np.empty((K, s, 3, len(p.node_matrices.weights)))
         # Third axis: column of the period (0), residual (1), column of the parameter (2).
         self._stage_columns = np.empty((K, s, 3, n))
-        self._memory = MatrixMemory(workspace, K, s, n)
+        self._memory = FactorStorage(workspace, K, s, n)
         write_right_sides(orbit.all_states, orbit.solved_duration, p, derivatives, V, self._stage_columns)
         ends = eliminate_newton_matrix(
             orbit.all_states, V, orbit.solved_duration, p, self._memory.factors, self._stage_columns

@@ -113,5 +113,5 @@ def _may_be_near(
     periods = sorted(p.orbit.period for p in (a, b))
     margin = CURVE_IDENTITY_SETTINGS.max_chord_distance
     is_within = ends[0] - margin <= x <= ends[1] + margin
-    ratio = 1 + CURVE_IDENTITY_SETTINGS.max_period_change
+    ratio = 1 + CURVE_IDENTITY_SETTINGS.period_interval_extension
     return is_within and periods[0] / ratio <= special_point.period <= periods[1] * ratio

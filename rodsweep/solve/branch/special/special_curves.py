@@ -8,7 +8,7 @@ from enum import IntEnum
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.parameter_plane import Plane
+from ....determinant.parameter_plane import ParameterPlane
 from ...hopf.bautin_points import BautinPoint
 from ...orbit.normalised_orbit import polynomial_weights
 from .row_crossing import RowCrossing, crossings_from_arrays, numbered_arrays
@@ -27,7 +27,7 @@ class CurveIdentitySettings:
     max_chord_distance: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its distance, along the row,
     from the interval of these two points is at most this fraction of the length of a row."""
-    max_period_change: float = 0.1
+    period_interval_extension: float = 0.1
     """A special point can lie on the arc between two points of a curve only if its period is within the
     interval of the two points' periods, extended by this fraction."""
     max_period_difference: float = 1e-4
@@ -192,7 +192,7 @@ class SpecialPointCurve:
 
 
 def with_bautin_ends(
-    curve: SpecialPointCurve, plane: Plane, known_points: Sequence[BautinPoint]
+    curve: SpecialPointCurve, plane: ParameterPlane, known_points: Sequence[BautinPoint]
 ) -> SpecialPointCurve:
     """The curve of folds with each extrapolated end replaced by the identical generalised Hopf point in
     `known_points`, which is more accurate than the extrapolation. A curve of torus points, and an end without

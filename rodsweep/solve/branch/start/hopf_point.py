@@ -8,7 +8,7 @@ import numpy as np
 from ....determinant.parameter_path import ParameterPath
 from ....model.rod import Rod
 from ...changes.arm.path import path_problem
-from ...changes.kinds import Threshold
+from ...changes.threshold_kinds import Threshold
 from ...cycle.hopf_start_settings import HOPF_START_SETTINGS, normal_form_accuracy
 from ...hopf.hopf_coefficients import HopfCoefficients, hopf_coefficients
 from ...hopf.normal_form import NormalForm, normal_form_by_mesh_rule

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...unsolvable import Unsolvable
-from ..kinds import Threshold, crossing_kind
 from ..search_range import IntervalQueue, SearchEnd
+from ..threshold_kinds import Threshold, crossing_kind
 from .axis_modes import CriticalModes, CriticalModesOfPath, next_count_position
 from .path import ArmPath
 

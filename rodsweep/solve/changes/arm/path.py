@@ -41,7 +41,7 @@ class ArmPathSettings:
     max_growing_modes: float = 16.0
     """No modes are followed where the estimate `expected_unstable_count` exceeds this number: at most 13
     modes can be followed, and the estimate is 0.9 to 1.9 times the true number."""
-    W_reserve_factor: float = 4.0
+    w_bound_ratio: float = 4.0
     """Bound W of |w| of a family of arms for crossings, divided by the largest known |w|; twice the known |w|
     suffices for the eigenvalues."""
     max_count_distance_from_middle: float = 0.25
@@ -83,7 +83,7 @@ class ArmPath(PathProblem):
     def ensure_family(self, low: float, high: float, largest_modulus: float) -> None:
         """Creates a family of arms from `low` to `high` for eigenvalues up to |w| = `largest_modulus`, if
         possible and if no stored family suffices."""
-        W = ARM_PATH_SETTINGS.W_reserve_factor * largest_modulus
+        W = ARM_PATH_SETTINGS.w_bound_ratio * largest_modulus
         if any(
             stored.p_low <= low and high <= stored.p_high and largest_modulus * 2 <= stored.largest_w
             for stored in self._families

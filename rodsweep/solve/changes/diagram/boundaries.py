@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.parameter_plane import Plane
-from ....determinant.stability_boundary import Boundary
+from ....determinant.parameter_plane import ParameterPlane
+from ....determinant.stability_boundary import StabilityBoundary
 from ...continuation.curve_search import TracedCurves, trace_all_curves
-from ..kinds import ChangeKind
+from ..threshold_kinds import ThresholdKind
 from .boundary_curves import BoundaryCurve, trace_boundary
 
 
@@ -55,11 +55,11 @@ class Seed:
 
 def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rate: float) -> Seed | None:
     """The seed of a threshold with values of both parameters; None for an overtaking of a real eigenvalue and
-    a pair, because no boundary consists of overtakings. kind: value of `ChangeKind`. frequency, growth_rate:
-    Im and Re of the eigenvalue, in 1/tau2."""
-    if kind in (ChangeKind.hopf, ChangeKind.hopf_reverse, ChangeKind.restabilization):
+    a pair, because no boundary consists of overtakings. kind: value of `ThresholdKind`. frequency,
+    growth_rate: Im and Re of the eigenvalue, in 1/tau2."""
+    if kind in (ThresholdKind.hopf, ThresholdKind.hopf_reverse, ThresholdKind.restabilization):
         return Seed(values, 0.0, frequency)
-    if kind in (ChangeKind.onset, ChangeKind.real_again):
+    if kind in (ThresholdKind.onset, ThresholdKind.real_again):
         return Seed(values, math.copysign(1.0, growth_rate), growth_rate)
     return None
 
@@ -68,7 +68,7 @@ def seed_of(values: tuple[float, float], kind: int, frequency: float, growth_rat
 class _StabilityBoundaries:
     """The boundary curves through the thresholds of all rows, as a problem for `trace_all_curves`."""
 
-    plane: Plane
+    plane: ParameterPlane
     seeds: list[Seed]
 
     def next_seed(self, untraced: Sequence[int]) -> int:
@@ -100,7 +100,7 @@ class _StabilityBoundaries:
         )
 
 
-def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
+def boundary_curves_through(plane: ParameterPlane, seeds: list[Seed]) -> TracedCurves[BoundaryCurve]:
     """Boundary curves through all thresholds `seeds`; a threshold on a known curve starts no other."""
     problem = _StabilityBoundaries(plane, seeds)
     return trace_all_curves(
@@ -108,7 +108,7 @@ def boundary_curves_through(plane: Plane, seeds: list[Seed]) -> TracedCurves[Bou
     ).traced_curves
 
 
-def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> float:
+def _distance_from_curve(plane: ParameterPlane, curve: BoundaryCurve, seed: Seed) -> float:
     """Distance of a threshold from the curve along the first axis, at the threshold's value on the second
     axis, in the scaled coordinate of the first axis; inf if the curve has another `eigenvalue_sign`, or no
     point there with nearly the eigenvalue of the threshold."""
@@ -129,7 +129,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
         chord_distance = max(min(a[0], b[0]) - x, x - max(a[0], b[0]))
         if chord_distance > settings.max_distance_beyond_chord:
             continue
-        point = _point_at_second_coordinate(Boundary(plane, curve.eigenvalue_sign), a, b, y)
+        point = _point_at_second_coordinate(StabilityBoundary(plane, curve.eigenvalue_sign), a, b, y)
         if (
             point is not None
             and abs(point[2] - math.log(abs(seed.eigenvalue))) < settings.eigenvalue_tolerance
@@ -138,7 +138,7 @@ def _distance_from_curve(plane: Plane, curve: BoundaryCurve, seed: Seed) -> floa
     return distance
 
 
-def _point_at_second_coordinate(boundary: Boundary, a: Array, b: Array, y: float) -> Array | None:
+def _point_at_second_coordinate(boundary: StabilityBoundary, a: Array, b: Array, y: float) -> Array | None:
     """The point (x, y, log |eigenvalue|) of a curve at the given y, between its points a and b, (3,) each;
     None if not found. Newton's method starts from the chord. If this guess is too far from the curve, secant
     steps along the curve follow."""

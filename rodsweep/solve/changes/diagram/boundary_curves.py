@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.parameter_plane import Plane
-from ....determinant.stability_boundary import Boundary, BoundarySolution
+from ....determinant.parameter_plane import ParameterPlane
+from ....determinant.stability_boundary import BoundarySolution, StabilityBoundary
 from ....solve_progress import report
 from ...continuation.curve import StopReason, follow_curve, zero_along_step
 from ...unsolvable import Unsolvable
@@ -61,7 +61,7 @@ class BoundaryCurve:
 
 
 def trace_boundary(
-    sign: float, plane: Plane, start: tuple[float, float], eigenvalue: float
+    sign: float, plane: ParameterPlane, start: tuple[float, float], eigenvalue: float
 ) -> BoundaryCurve | None:
     """The boundary curve through `start` (scaled coordinates) and |w| = |eigenvalue|; None if no point of a
     curve is found there. sign: 0 for a curve of Hopf points, else the sign of the double eigenvalue.
@@ -69,7 +69,7 @@ def trace_boundary(
     The curve is followed in both directions until it leaves the plane, closes, reaches a crushed rod, or
     cannot be followed further.
     """
-    curve = BoundaryCurveProblem(Boundary(plane, sign))
+    curve = BoundaryCurveProblem(StabilityBoundary(plane, sign))
     guess = np.array([*start, math.log(abs(eigenvalue))])
     try:
         tangent = curve.boundary.tangent(guess)
@@ -147,7 +147,7 @@ def _fold_between(curve: BoundaryCurveProblem, a: BoundaryPoint, b: BoundaryPoin
     return _fold_at(boundary, solutions[length], axis, curve_error)
 
 
-def _tangent_error(boundary: Boundary) -> float:
+def _tangent_error(boundary: StabilityBoundary) -> float:
     """Error of the components of a boundary's unit tangents."""
     settings = BOUNDARY_CURVE_SETTINGS
     if not boundary.plane.are_rods_uniform_and_linear:
@@ -155,7 +155,7 @@ def _tangent_error(boundary: Boundary) -> float:
     return settings.double_tangent_error if boundary.eigenvalue_sign else settings.hopf_tangent_error
 
 
-def _fold_at(boundary: Boundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
+def _fold_at(boundary: StabilityBoundary, solution: BoundarySolution, axis: int, curve_error: float) -> Fold:
     """The fold of coordinate `axis` at a point of a boundary. curve_error: its error along the curve."""
     axes = boundary.plane.axes
     first, second = (a.value(float(x)) for a, x in zip(axes, solution.v[:2], strict=True))

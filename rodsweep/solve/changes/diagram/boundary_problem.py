@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....determinant.stability_boundary import Boundary, BoundarySolution
+from ....determinant.stability_boundary import BoundarySolution, StabilityBoundary
 from ...continuation.curve import Curve, StepControl, StepResult, StopReason
 from ...unsolvable import Unsolvable
 
@@ -88,7 +88,7 @@ class BoundaryPoint(NamedTuple):
 class BoundaryCurveProblem:
     """A boundary of the spectrum, as a problem for `follow_curve`."""
 
-    boundary: Boundary
+    boundary: StabilityBoundary
 
     def step(self, previous: Sequence[BoundaryPoint], length: float) -> StepResult[BoundaryPoint]:
         """One continuation step: predicts a point at distance `length` along the last tangent and corrects it

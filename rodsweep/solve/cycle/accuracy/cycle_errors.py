@@ -15,7 +15,7 @@ import numpy as np
 from ....arrays import Array
 from ...orbit.measures import CyclePath
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
-from ..marching_settings import INTEGRATION_SETTINGS
+from ..integration_settings import INTEGRATION_SETTINGS
 from .calibration_settings import CALIBRATION_SETTINGS
 
 MULTIPLIER_INDEX = 4

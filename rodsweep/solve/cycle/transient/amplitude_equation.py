@@ -47,8 +47,8 @@ class AmplitudeEquation:
 
     g: growth of ln |z| per return. period: period of the leading mode, in tau2. linear_growth_rate: exact
     linear growth rate of the rod, in 1/tau2. growth_excess: linear growth rate of the rod minus the linear
-    growth rate of the integrated beam, in 1/tau2. growth_error: growth per return that integration errors may
-    add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
+    growth rate of the integrated system, in 1/tau2. growth_error: growth per return that integration errors
+    may add. Arguments of the methods: times of returns, (k,), and states z at the returns, (k, unknowns).
     """
 
     def __init__(self, period: float, linear_growth_rate: float, growth_excess: float, noise: float) -> None:
@@ -61,14 +61,14 @@ class AmplitudeEquation:
 
     def measured_and_linear_growth(self, times: Array, states: Array) -> tuple[float, float]:
         """Returns (growth, linear). growth: increase of ln |z| over the last return, corrected from the
-        integrated beam to the rod. linear: increase by the linear growth rate over the same time.
+        integrated system to the rod. linear: increase by the linear growth rate over the same time.
 
         times: (k,); states: (k, unknowns).
         """
         sizes = np.linalg.norm(states[-2:], axis=1)
         duration = float(times[-1] - times[-2])
         growth = float(np.log(sizes[1] / sizes[0]))
-        # The integrated beam grows at a slightly different rate; `growth_excess` corrects the difference.
+        # The integrated system grows at a slightly different rate; `growth_excess` corrects the difference.
         return growth + self.growth_excess * duration, self.linear_growth_rate * duration
 
     def is_slow_mode(self, times: Array, states: Array) -> bool:

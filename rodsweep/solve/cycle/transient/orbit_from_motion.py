@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
+from ....discretization.explicit_system import ExplicitSystem
 from ....discretization.plane_equations import write_balance
 from ....discretization.stress.form import StressForm
 from ...motion.integrator import Trajectory
@@ -31,14 +31,14 @@ NEWTON_FROM_MOTION_SETTINGS = NewtonFromMotionSettings()
 
 
 def orbit_from_motion(
-    beam: Beam, form: StressForm, run: Trajectory, period: float, return_count: int
+    system: ExplicitSystem, form: StressForm, run: Trajectory, period: float, return_count: int
 ) -> Orbit:
-    """Approximate orbit of the rod in `form` from the last period of the motion `run` of `beam`, on the mesh
-    of `beam`. The orbit starts at the largest y of the tip, and is symmetric if the `relative_asymmetry` of
+    """Approximate orbit of the rod in `form` from the last period of the motion `run` of `system`, on its
+    mesh. The orbit starts at the largest y of the tip, and is symmetric if the `relative_asymmetry` of
     the motion is small.
 
     period: in tau2. return_count: number of returns of the tip to theta = 0 per period. If the rod in `form`
-    is a limiting rod, for example an inextensible rod, `beam` is a nearby rod.
+    is a limiting rod, for example an inextensible rod, `system` is a nearby rod.
     """
     from scipy.interpolate import CubicSpline  # slow import: 0.1 s, for few runs
 
@@ -51,37 +51,37 @@ def orbit_from_motion(
         / NEWTON_FROM_MOTION_SETTINGS.peak_search_times
     )
     period_states = spline(times)
-    top = float(times[int(np.argmax(beam.tip_coordinates(period_states)[1]))])
+    top = float(times[int(np.argmax(system.tip_coordinates(period_states)[1]))])
     symmetry = (
         REFLECTION
-        if relative_asymmetry(beam, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
+        if relative_asymmetry(system, period_states) < NEWTON_FROM_MOTION_SETTINGS.max_asymmetry
         else NO_SYMMETRY
     )
     intervals = NEWTON_FROM_MOTION_SETTINGS.intervals_per_return * return_count // symmetry.period_parts
     duration = period / symmetry.period_parts
     times_of_nodes = top + duration * node_times(intervals, NEWTON_FROM_MOTION_SETTINGS.stages)
     times_of_nodes = np.where(times_of_nodes > run.times[-1], times_of_nodes - period, times_of_nodes)
-    states = collocation_states(beam, form, spline(times_of_nodes))
+    states = collocation_states(system, form, spline(times_of_nodes))
     return Orbit.from_states(form, symmetry, period, states, NEWTON_FROM_MOTION_SETTINGS.stages)
 
 
-def relative_asymmetry(beam: Beam, states: Array) -> float:
+def relative_asymmetry(system: ExplicitSystem, states: Array) -> float:
     """Norm of the difference between m3(t) and the reflection -m3(t + T/2), divided by the norm of m3; m3:
     bending moments, T: period. states: at m equidistant times over a period, (m, n)."""
-    moments = beam.layout.stress_field(states, "m3")
+    moments = system.layout.stress_field(states, "m3")
     mirrored = -np.roll(moments, len(moments) // 2, axis=0)
     return float(np.linalg.norm(moments - mirrored) / np.linalg.norm(moments))
 
 
-def collocation_states(beam: Beam, form: StressForm, z: Array) -> Array:
-    """States of the collocation problem `form`, (m, unknowns), from states z of the integrated beam, (m,
-    unknowns of the beam), on the same mesh."""
-    S = beam.stresses(z)
+def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Array:
+    """States of the collocation problem `form`, (m, unknowns), from states z of the integrated system, (m,
+    unknowns of the system), on the same mesh."""
+    S = system.stresses(z)
     V = np.empty(S.shape)
     G = np.empty((len(S), S.shape[-1]))
     if form.unknown_velocities:
-        for k, state in enumerate(beam.layout.state(S, S)):
+        for k, state in enumerate(system.layout.state(S, S)):
             velocity = np.empty(G.shape)
-            write_balance(state, velocity, G, beam.nodal_rod, beam.mesh.matrices)
+            write_balance(state, velocity, G, system.nodal_rod, system.mesh.matrices)
             V[:, k] = velocity
     return form.layout.state(S, V)

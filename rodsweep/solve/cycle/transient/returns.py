@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
+from ....discretization.explicit_system import ExplicitSystem
 from ....wording import counted
 from ...motion.integrator import EndReason, RunLimit, Trajectory
 
@@ -44,14 +44,16 @@ class ReturnSettings:
 RETURN_SETTINGS = ReturnSettings()
 
 
-def tip_angle_row(beam: Beam) -> Array:
-    """Row vector c, (unknowns,), whose product with a state z of the beam is theta of the tip."""
-    return beam.layout.state_with_stresses({"m3": (beam.sqrt_compliance[2] * beam.mesh.quadrature)[:-1]})
+def tip_angle_row(system: ExplicitSystem) -> Array:
+    """Row vector c, (unknowns,), whose product with a state z of the system is theta of the tip."""
+    return system.layout.state_with_stresses(
+        {"m3": (system.sqrt_compliance[2] * system.mesh.quadrature)[:-1]}
+    )
 
 
 def return_limit(row: Array, z: Array, returns: int) -> RunLimit:
     """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
-    RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the beam, (unknowns,)."""
+    RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the system, (unknowns,)."""
     count = 0
     last_angle = float(row @ z)
 
@@ -72,16 +74,16 @@ class RunFailure(NamedTuple):
     message: str
 
 
-def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
+def run_failure(system: ExplicitSystem, run: Trajectory, returns: int) -> RunFailure | None:
     """The failure of a run, with a message; None if the run is complete. returns: number of returns of the
     tip before the run."""
     if run.ending in (EndReason.reached, EndReason.stopped):
         return None
     if run.ending == EndReason.left_the_model:
-        h1 = beam.least_stretch(run.states[-1])
+        h1 = system.least_stretch(run.states[-1])
         place = f"at a point of the rod after {counted(returns, 'return')} of the tip"
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
-    if not run.message and _loses_convexity(beam, run.states[-RETURN_SETTINGS.searched_last_states :]):
+    if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_states :]):
         reason = (
             f"after {counted(returns, 'return')} of the tip a section has lost its stiffness: its strain "
             "energy is not convex"
@@ -93,24 +95,24 @@ def run_failure(beam: Beam, run: Trajectory, returns: int) -> RunFailure | None:
     return RunFailure(False, run.message or reason)
 
 
-def _loses_convexity(beam: Beam, states: Array) -> bool:
+def _loses_convexity(system: ExplicitSystem, states: Array) -> bool:
     """Whether the strain energy of a section is not convex in one of the `states`, (k, unknowns)."""
-    return any(np.isfinite(state).all() and not beam.has_convex_energy(state) for state in states[::-1])
+    return any(np.isfinite(state).all() and not system.has_convex_energy(state) for state in states[::-1])
 
 
-def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
+def section_crossings(system: ExplicitSystem, run: Trajectory) -> tuple[Array, Array]:
     """Returns (times, states), (k,) and (k, unknowns), at which the tip's theta rises through 0 on a run.
 
     Between two time steps a run is interpolated by the cubic Hermite polynomial.
     """
-    row = tip_angle_row(beam)
+    row = tip_angle_row(system)
     angle = run.states @ row
     times: list[float] = []
     states: list[Array] = []
     for k in np.nonzero((angle[:-1] < 0) & (angle[1:] >= 0))[0]:
         h = run.times[k + 1] - run.times[k]
         ends = run.states[k : k + 2]
-        cubic = np.concatenate((ends, h * beam.state_derivative(ends)))
+        cubic = np.concatenate((ends, h * system.state_derivative(ends)))
         angles = (cubic @ row).tolist()
         low = 0.0
         high = 1.0
@@ -123,7 +125,7 @@ def section_crossings(beam: Beam, run: Trajectory) -> tuple[Array, Array]:
                 high = middle
         times.append(run.times[k] + h * low)
         states.append(np.array(_hermite_weights(low)) @ cubic)
-    return np.array(times), np.array(states).reshape(len(times), beam.layout.unknown_count)
+    return np.array(times), np.array(states).reshape(len(times), system.layout.unknown_count)
 
 
 def _hermite_weights(x: float) -> tuple[float, float, float, float]:

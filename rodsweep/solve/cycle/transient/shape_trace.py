@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
 from ....discretization.elements.quadrature import lobatto_points
+from ....discretization.explicit_system import ExplicitSystem
 from ...motion.integrator import Trajectory
 from ..cycle import MotionShapes
 
@@ -35,8 +35,8 @@ class ShapeTrace:
     run_times, run_states: times, (steps,), and states, (steps, unknowns), of each recorded run. step_count:
     number of recorded time steps."""
 
-    def __init__(self, beam: Beam) -> None:
-        self.beam = beam
+    def __init__(self, system: ExplicitSystem) -> None:
+        self.system = system
         self.run_times: list[Array] = []
         self.run_states: list[Array] = []
         self.step_count = 0
@@ -51,7 +51,7 @@ class ShapeTrace:
         the record is not full. z: current state, (unknowns,)."""
         return (
             not self.is_full
-            and abs(float(self.beam.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
+            and abs(float(self.system.tip_coordinates(z)[1])) > SHAPE_TRACE_SETTINGS.max_rest_deflection
         )
 
     def begin_with_relaxation(self, z: Array, relaxed: Array, duration: float) -> None:
@@ -87,14 +87,14 @@ class ShapeTrace:
             min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
         )
         run_of = np.searchsorted([times[0] for times in self.run_times], shape_times, side="right") - 1
-        states = np.empty((len(shape_times), self.beam.unknown_count))
+        states = np.empty((len(shape_times), self.system.unknown_count))
         for number, (times, steps) in enumerate(zip(self.run_times, self.run_states, strict=True)):
             is_in_run = run_of == number
             if is_in_run.any():
                 states[is_in_run] = (
                     CubicSpline(times, steps)(shape_times[is_in_run]) if len(times) > 1 else steps[:1]
                 )
-        shapes = self.beam.shape(states)[:2] @ self.beam.mesh.evaluation_matrix(lobatto_points(nodes)).T
+        shapes = self.system.shape(states)[:2] @ self.system.mesh.evaluation_matrix(lobatto_points(nodes)).T
         is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
         moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

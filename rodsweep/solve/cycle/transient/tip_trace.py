@@ -8,7 +8,7 @@ motion decays and its steps grow; quintic interpolation has smaller errors than 
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
+from ....discretization.explicit_system import ExplicitSystem
 from ...motion.integrator import Trajectory
 
 MAX_STEP_RATIO = 8.0
@@ -21,8 +21,8 @@ class TipTrace:
     """Record of the tip's path: position and velocity at all time steps of the successive runs of one
     motion."""
 
-    def __init__(self, beam: Beam) -> None:
-        self.beam = beam
+    def __init__(self, system: ExplicitSystem) -> None:
+        self.system = system
         self.run_times: list[Array] = []
         self.run_tip_motions: list[Array] = []
         """For each run, x, y (in L) and theta of the tip, and their rates, (6, steps)."""
@@ -41,7 +41,7 @@ class TipTrace:
 
         The relaxation rates, up to 1e10/tau2, are too large for cubic interpolation.
         """
-        tips = self.beam.tip_coordinates(np.stack([z, relaxed]))
+        tips = self.system.tip_coordinates(np.stack([z, relaxed]))
         slope = (tips[:, 1:] - tips[:, :1]) / duration
         self.run_times.append(np.array([0.0, duration]))
         self.run_tip_motions.append(np.concatenate([tips, np.repeat(slope, 2, axis=1)]))
@@ -53,7 +53,9 @@ class TipTrace:
         states = run.states[finite]
         self.run_times.append(clock + run.times[finite])
         self.run_tip_motions.append(
-            np.concatenate(self.beam.tip_position_and_velocity(states, self.beam.state_derivative(states)))
+            np.concatenate(
+                self.system.tip_position_and_velocity(states, self.system.state_derivative(states))
+            )
         )
 
     def at_equal_times(self, count: int) -> Array:

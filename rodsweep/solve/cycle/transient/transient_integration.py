@@ -5,15 +5,14 @@ relative distance of a tenth. Slow motions about the straight rod are shortened 
 to the amplitude that the amplitude equation predicts (`amplitude_equation`), unless its path is stored.
 
 A rod with an unstable straight state leaves this state. The deflection may nevertheless decay while a large
-axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode.
-"""
+axial stretch relaxes slowly; the motion then restarts from a small deflection in the leading mode."""
 
 from collections import deque
 
 import numpy as np
 
 from ....arrays import Array
-from ....discretization.beam import Beam
+from ....discretization.explicit_system import ExplicitSystem
 from ....discretization.stress.form import StressForm
 from ....solve_progress import SolvePosition, report
 from ....wording import counted
@@ -41,11 +40,10 @@ from .transient_settings import TRANSIENT_SETTINGS
 class TransientIntegration:
     """Integration of the motion of one rod from a start; `follow` is called only once. form: the rod whose
     cycle is solved for, and the mesh. straight: stability of the straight rod. tangent_parameter: parameter
-    along which the cycle's tangent is computed, or None. unstable_cycle: a nearby unstable cycle, or None.
-    beam: the integrated rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...). record: record of the
-    tip's path or of shapes, or None if not requested. returns, steps, jump_count: numbers of returns, time
-    steps and jumps so far. attempts: number of Newton's attempts, up to a maximum. next_attempt: number of
-    returns before the next attempt."""
+    of the cycle's tangent, or None. unstable_cycle: a nearby unstable cycle, or None. system: the integrated
+    rod; a nearby rod if `form` has a limiting rod (k1 = inf, ...). record: record of the tip's path or of
+    shapes, or None. returns, steps, jump_count: numbers of returns, time steps and jumps so far. attempts:
+    number of Newton's attempts, up to a maximum. next_attempt: number of returns before the next attempt."""
 
     def __init__(
         self,
@@ -56,7 +54,7 @@ class TransientIntegration:
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
-        self.beam = Beam(integrable_rod(form.rod), form.mesh)
+        self.system = ExplicitSystem(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
         self.tangent_parameter = parameter
@@ -64,15 +62,18 @@ class TransientIntegration:
         self.accuracy = request.accuracy
         self.max_returns = request.most_periods
         self.unstable_cycle = unstable
-        self.leading_mode = leading_mode(self.beam)
+        self.leading_mode = leading_mode(self.system)
         self.record = self._new_record(request)
-        self.tip_angle_row = tip_angle_row(self.beam)
+        self.tip_angle_row = tip_angle_row(self.system)
         rate = straight.growth_rate(self.leading_mode.w.real)
         period = self.leading_mode.period
-        schemes = schemes_for_growth(rate * period, request.transient > 0)
-        self.first_scheme, self.scheme, noise, steps = schemes
+        self.first_scheme, self.scheme, noise, steps = schemes_for_growth(
+            rate * period, request.transient > 0
+        )
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
-        self.amplitude_equation = AmplitudeEquation(period, rate, rate - self._beam_growth_rate(rate), noise)
+        self.amplitude_equation = AmplitudeEquation(
+            period, rate, rate - self._system_growth_rate(rate), noise
+        )
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
@@ -87,8 +88,8 @@ class TransientIntegration:
     def _new_record(self, request: CycleRequest) -> TipTrace | ShapeTrace | None:
         """A new record of the tip's path or of shapes, as requested; None if neither is requested."""
         if request.frames:
-            return ShapeTrace(self.beam)
-        return TipTrace(self.beam) if request.transient else None
+            return ShapeTrace(self.system)
+        return TipTrace(self.system) if request.transient else None
 
     def follow(self, z: Array) -> TransientOutcome:
         """Outcome of the motion from the state z, (unknowns,)."""
@@ -97,11 +98,11 @@ class TransientIntegration:
         while self.returns < self.max_returns and self.steps < self.max_steps and not self.unsolved_message:
             report(lambda: SolvePosition(f"{self.returns} of at most {self.max_returns} returns of the tip"))
             run = self._run_of_returns(z, first)
-            if end := run_failure(self.beam, run, self.returns):
+            if end := run_failure(self.system, run, self.returns):
                 status = CycleStatus.left_the_model if end.left_the_model else CycleStatus.failed
                 return self._result(status, end.message)
             z = run.states[-1]
-            times, states = section_crossings(self.beam, run)
+            times, states = section_crossings(self.system, run)
             self._record_returns(run, times, states)
             # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
@@ -112,20 +113,20 @@ class TransientIntegration:
                 # The rod is unstable, but the state has no component along the growing mode beyond rounding.
                 z = self._state_after_jump(TRANSIENT_SETTINGS.restart_deflection * self.leading_mode.z.real)
                 continue
-            outcome = first
+            is_first = first
             first = False
-            if len(times) < 3 or (outcome and self.amplitude_equation.is_slow_mode(times, states)):
+            if len(times) < 3 or (is_first and self.amplitude_equation.is_slow_mode(times, states)):
                 continue
             shown = self.record is not None and self.record.needs_more_motion(z)
-            if not outcome and not shown and self.amplitude_equation.decays_at_linear_rate(times, states):
+            if not (is_first or shown) and self.amplitude_equation.decays_at_linear_rate(times, states):
                 return self._result(CycleStatus.straight, "the motion decays at the rate of the leading mode")
-            jumps = not outcome and self.jump_count < TRANSIENT_SETTINGS.max_jumps
+            jumps = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_jumps
             factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
             if factor is not None:
                 if self.record and not self.record.is_full:
                     continue  # a motion with a stored path has no jumps
                 scaled = factor * z
-                self.beam.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
+                self.system.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
                 z = self._state_after_jump(scaled)
                 continue
             decays = self.amplitude_equation.decays_faster(times, states)
@@ -139,7 +140,7 @@ class TransientIntegration:
         times, states: times and states of the returns, (k,) and (k, unknowns)."""
         self.returns += max(len(times), 1)
         self.steps += len(run.times) - 1
-        moments = self.beam.layout.stress_field(states, "m3")
+        moments = self.system.layout.stress_field(states, "m3")
         self.past_returns.extend(zip(map(float, self.elapsed_time + times), moments, strict=True))
         self.elapsed_time += run.times[-1]
 
@@ -148,37 +149,35 @@ class TransientIntegration:
         components. The earlier returns are discarded."""
         self.jump_count += 1
         self.past_returns.clear()
-        return relax_fast_components(self.beam, z, self.leading_mode.period)
+        return relax_fast_components(self.system, z, self.leading_mode.period)
 
     def _not_settled_text(self, z: Array) -> str:
         """Message that explains why the motion, now at the state z, (unknowns,), has not settled."""
         if self.unsolved_message:
             return f"after {counted(self.returns, 'return')} of the tip {self.unsolved_message}"
         if self._bends_visibly(z):
-            limit = f", at the maximum of {self.steps} time steps" if self.steps >= self.max_steps else ""
-            return no_period_text(self.returns, limit, self.past_returns)
+            limit_text = f", at the maximum of {self.steps} time steps" * (self.steps >= self.max_steps)
+            return no_period_text(self.returns, limit_text, self.past_returns)
         is_unstable = self.straight.stable is False
         reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
         return f"the deflection has decayed after {self.returns} returns, but {reason}"
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
-        return bool(np.linalg.norm(self.beam.layout.transverse_unknowns(z)) >= RETURN_SETTINGS.straight_norm)
+        size = np.linalg.norm(self.system.layout.transverse_unknowns(z))
+        return bool(size >= RETURN_SETTINGS.straight_norm)
 
-    def _beam_growth_rate(self, rate: float) -> float:
-        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum.
-
-        rate: linear growth rate of the rod in `form`, returned if the integrated rod is the same rod or its
-        spectrum is not known. Eigenvalues of the matrix of a stiff beam would have rounding errors of 1e-4.
-        """
-        if self.beam.rod == self.form.rod:
+    def _system_growth_rate(self, rate: float) -> float:
+        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum; the rate `rate` of the
+        rod in `form` if both are equal or the spectrum is unknown. A stiff matrix would give errors of 1e-4."""
+        if self.system.rod == self.form.rod:
             return rate
-        return straight_rod_stability(self.beam.rod, np.array([self.straight.w])).growth_rate(rate)
+        return straight_rod_stability(self.system.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
         record of the motion, if any, begins at z."""
-        relaxed_state = relax_fast_components(self.beam, z, self.leading_mode.period)
+        relaxed_state = relax_fast_components(self.system, z, self.leading_mode.period)
         if self.record:
             self.elapsed_time = INTEGRATOR_SETTINGS.relaxation_duration_ratio * self.leading_mode.period
             self.record.begin_with_relaxation(z, relaxed_state, self.elapsed_time)
@@ -196,7 +195,7 @@ class TransientIntegration:
         # A slow-fast cycle may take many time constants of a leading mode that does not oscillate.
         last = self.past_returns[-1][0] - self.past_returns[-2][0] if len(self.past_returns) > 1 else 0.0
         duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * max(self.leading_mode.period, last)
-        run = integrator(self.beam.mesh, scheme).run(self.beam, z, duration, self.step, limit)
+        run = integrator(self.system.mesh, scheme).run(self.system, z, duration, self.step, limit)
         if len(run.times) > 2:
             self.step = run.times[-1] - run.times[-2]
         if self.record:
@@ -211,9 +210,9 @@ class TransientIntegration:
         count, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
+            distance_text = f"the motion repeats within {distance:.0e}"
             self.unsolved_message = (
-                f"the motion repeats within {distance:.0e}, but Newton's method finds no cycle near this "
-                "motion on finer meshes"
+                f"{distance_text}, but Newton's method finds no cycle near it on finer meshes"
             )
             return None
         if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
@@ -233,10 +232,11 @@ class TransientIntegration:
         period, in tau2. return_count: number of returns of the tip per period."""
         # The run may be shorter than a period of several returns.
         if run.times[-1] < period:
-            run = integrator(self.beam.mesh, self.scheme).run(self.beam, run.states[-1], period, self.step)
+            start = run.states[-1]
+            run = integrator(self.system.mesh, self.scheme).run(self.system, start, period, self.step)
             if run.ending != EndReason.reached:
                 return None
-        orbit = orbit_from_motion(self.beam, self.form, run, period, return_count)
+        orbit = orbit_from_motion(self.system, self.form, run, period, return_count)
         try:
             cycle = refined_cycle(orbit, self.accuracy, self.workspace, self.tangent_parameter)
         except Unsolvable:

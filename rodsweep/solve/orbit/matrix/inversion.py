@@ -25,7 +25,7 @@ class InversionSettings(KernelConstants):
     rows_in_cache: int = 8
     """Number of rows of all blocks that are updated together, so that these rows fit into the first-level
     cache."""
-    ranges: ClassVar = {"min_pivot": (0.0, 1.0)}
+    field_ranges: ClassVar = {"min_pivot": (0.0, 1.0)}
 
 
 INVERSION_SETTINGS = InversionSettings()

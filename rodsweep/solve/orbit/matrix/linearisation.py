@@ -21,7 +21,7 @@ from .multipliers import multipliers_over_period, multipliers_over_solved_part
 from .phase import phase_residual, phase_right_side, write_phase_row
 from .right_sides import ParameterDerivatives, write_right_sides, write_stage_residuals, write_variation_sides
 from .substitution import map_start_to_end, reduce_right_sides, substitute_stages
-from .workspace import MatrixMemory, NewtonFactors, NewtonWorkspace
+from .workspace import FactorStorage, NewtonFactors, NewtonWorkspace
 
 NO_PARAMETER_CHANGE = NodalRodDerivative(np.zeros(0), *(np.zeros((0, 0)),) * 3, NO_JUMP_DERIVATIVE)
 """Placeholder for the derivative of a rod if there is no parameter; compiled code never reads it."""
@@ -37,7 +37,7 @@ class Linearisation:
     def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
-        self._memory = MatrixMemory(
+        self._memory = FactorStorage(
             workspace, orbit.interval_count, orbit.stage_count, orbit.form.unknown_count
         )
         p = orbit.orbit_equations

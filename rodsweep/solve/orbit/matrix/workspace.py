@@ -154,7 +154,7 @@ class NewtonWorkspace:
             self._buffer = np.empty(0)
 
 
-class MatrixMemory:
+class FactorStorage:
     """Memory of the factors of one Newton matrix: the blocks are in a workspace, propagator and inverse in
     separate arrays."""
 

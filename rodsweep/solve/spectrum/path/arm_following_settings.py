@@ -18,8 +18,8 @@ class ArmFollowingSettings:
     hulls_per_unproved_interval: int = 49
     """Number of hulls computed in an interval, instead of `hulls_per_interval`, if at least
     `min_unproved_points` points have no proof."""
-    W_reserve_factor: float = 2.0
-    """The propagators of a new family are valid at least up to W = `W_reserve_factor` * (largest |w| at the
+    w_bound_ratio: float = 2.0
+    """The propagators of a new family are valid at least up to W = `w_bound_ratio` * (largest |w| at the
     first point)."""
     min_reused_W_factor: float = 1.25
     """The family of the previous interval is used again if its W is at least this multiple of the largest |w|

@@ -176,15 +176,15 @@ def family_and_hulls(
         if not has_smooth_coefficients(path, low, high):
             return None
         hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
-        W = ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(np.abs(first_eigenvalues).max())
-        line = min(ARM_FOLLOWING_SETTINGS.W_reserve_factor * float(first_eigenvalues[modes - 1].real), 0.0)
+        W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(np.abs(first_eigenvalues).max())
+        line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[modes - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
             for k in COMPLETENESS_SETTINGS.point_counts
             if len(points := points_right_of_hull(line, *hull, k))
         ]
-        near_ends = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.W_reserve_factor * W]
+        near_ends = [end for end in ends if end <= ARM_FOLLOWING_SETTINGS.w_bound_ratio * W]
         family = interpolated_family(path, low, high, max([W, *near_ends]))
     except (ValueError, FloatingPointError):
         return None

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from pointwise_balance import dissipated_power_per_length, strain, velocity
 
-from rodsweep.discretization.beam import Beam
 from rodsweep.discretization.elements.basis import differentiation_matrix
 from rodsweep.discretization.elements.mesh import shape_from_strains, uniform_mesh
 from rodsweep.discretization.elements.quadrature import gauss_lobatto_rule
+from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.balance import ad
 from rodsweep.model.longitudinal import longitudinal_eigenvalues
 from rodsweep.model.rod import Rod
@@ -31,45 +31,45 @@ ROD = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2)
 MESHES = pytest.mark.parametrize("elements, order", [(1, 16), (3, 8)])
 
 
-def evolve(beam, z, duration, scheme=None):
+def evolve(system, z, duration, scheme=None):
     """The motion of a rod from z over `duration`."""
-    return integrator(beam.mesh, scheme or TimeScheme()).run(beam, z, duration)
+    return integrator(system.mesh, scheme or TimeScheme()).run(system, z, duration)
 
 
-def bent(beam, size=1.0):
+def bent(system, size=1.0):
     """A state far from rest, smooth in u."""
-    u = beam.mesh.node_positions
-    E = beam.strains(np.zeros(beam.layout.unknown_count))
+    u = system.mesh.node_positions
+    E = system.strains(np.zeros(system.layout.unknown_count))
     wave = np.array([0.01 * np.cos(3 * u), 0.3 * np.sin(2 * u + 1), 2 * np.cos(4 * u)])
-    return beam.state_of_strains(E + size * (1 - u) * wave)
+    return system.state_of_strains(E + size * (1 - u) * wave)
 
 
-def rough(beam):
+def rough(system):
     """A state that no mesh resolves."""
-    return bent(beam) + 0.01 * np.random.default_rng(1).standard_normal(beam.layout.unknown_count)
+    return bent(system) + 0.01 * np.random.default_rng(1).standard_normal(system.layout.unknown_count)
 
 
-def injected_and_dissipated(beam, z):
+def injected_and_dissipated(system, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
-    material, matrices = beam.rod.material, beam.mesh.matrices
-    stress = np.zeros((3, beam.mesh.node_count + 1))
-    stress[:, :-1] = z.reshape(3, -1) / beam.sqrt_compliance[:, :-1]
+    material, matrices = system.rod.material, system.mesh.matrices
+    stress = np.zeros((3, system.mesh.node_count + 1))
+    stress[:, :-1] = z.reshape(3, -1) / system.sqrt_compliance[:, :-1]
     stress += material.tip_stress[:, None]
     V = velocity(material, stress, stress @ matrices.D.T)
     dissipated = dissipated_power_per_length(material, V) @ matrices.weights
     straining = ad(strain(material, stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
-    return beam.rod.F * reaction, dissipated
+    return system.rod.F * reaction, dissipated
 
 
 @MESHES
 def test_jacobian_is_the_derivative_of_the_rate(elements, order):
-    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
-    z = rough(beam)
-    J = beam.jacobian(z)
+    system = ExplicitSystem(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
+    z = rough(system)
+    J = system.jacobian(z)
     for k, d in enumerate(1e-3 * np.eye(len(z))):  # the rate is cubic: this difference is exact
-        difference = 8 * (beam.state_derivative(z + d) - beam.state_derivative(z - d)) - (
-            beam.state_derivative(z + 2 * d) - beam.state_derivative(z - 2 * d)
+        difference = 8 * (system.state_derivative(z + d) - system.state_derivative(z - d)) - (
+            system.state_derivative(z + 2 * d) - system.state_derivative(z - 2 * d)
         )
         column = difference / (12 * d[k])
         assert np.abs(J[:, k] - column).max() <= 1e-10 * np.abs(J[:, k]).max()
@@ -78,25 +78,25 @@ def test_jacobian_is_the_derivative_of_the_rate(elements, order):
 @pytest.mark.kernel
 @MESHES
 def test_energy_law_holds_on_the_mesh_to_rounding(elements, order):
-    beam = Beam(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
-    z = rough(beam)
-    rate, n = beam.state_derivative(z), beam.mesh.node_count
+    system = ExplicitSystem(ROD.with_values(gamma1=0.7), uniform_mesh(elements, order))
+    z = rough(system)
+    rate, n = system.state_derivative(z), system.mesh.node_count
     stress = z.copy()
     stress[:n] -= ROD.F / ROD.k1**0.5  # Sigma = K^1/2 z + (-F, 0, 0)
-    change = stress @ (np.tile(beam.mesh.quadrature[:-1], 3) * rate)
-    injected, dissipated = injected_and_dissipated(beam, z)
+    change = stress @ (np.tile(system.mesh.quadrature[:-1], 3) * rate)
+    injected, dissipated = injected_and_dissipated(system, z)
     assert change == pytest.approx(injected - dissipated, abs=1e-14 * (abs(injected) + dissipated))
     step = 1e-9
-    measured = (beam.elastic_energy(z + step * rate) - beam.elastic_energy(z - step * rate)) / (2 * step)
+    measured = (system.elastic_energy(z + step * rate) - system.elastic_energy(z - step * rate)) / (2 * step)
     assert measured == pytest.approx(change, rel=1e-6)
 
 
 @MESHES
 def test_strains_do_not_depend_on_where_the_clamp_is(elements, order):
-    beam = Beam(ROD, uniform_mesh(elements, 2 * order))
-    E = beam.element_strains(bent(beam))
-    here = shape_from_strains(beam.mesh, E, np.zeros(3))
-    x, y, theta = there = shape_from_strains(beam.mesh, E, np.array([2.0, -1.0, 2.5]))
+    system = ExplicitSystem(ROD, uniform_mesh(elements, 2 * order))
+    E = system.element_strains(bent(system))
+    here = shape_from_strains(system.mesh, E, np.zeros(3))
+    x, y, theta = there = shape_from_strains(system.mesh, E, np.array([2.0, -1.0, 2.5]))
     turn = np.array([[np.cos(2.5), -np.sin(2.5)], [np.sin(2.5), np.cos(2.5)]])
     assert np.abs(there[:2] - turn @ here[:2] - np.array([[2.0], [-1.0]])).max() < 1e-13
     D = 2 * elements * differentiation_matrix(gauss_lobatto_rule(2 * order)[0])
@@ -121,11 +121,13 @@ def test_uniformly_bent_rod_is_an_arc(elements, order):
 
 
 def test_velocity_of_the_tip_is_that_of_its_reconstruction():
-    beam = Beam(ROD, uniform_mesh(1, 20))
-    z, step = bent(beam), 1e-8
-    rate = beam.state_derivative(z)
-    difference = (beam.tip_coordinates(z + step * rate) - beam.tip_coordinates(z - step * rate)) / (2 * step)
-    assert beam.tip_position_and_velocity(z, rate)[1] == pytest.approx(difference, rel=1e-6)
+    system = ExplicitSystem(ROD, uniform_mesh(1, 20))
+    z, step = bent(system), 1e-8
+    rate = system.state_derivative(z)
+    difference = (system.tip_coordinates(z + step * rate) - system.tip_coordinates(z - step * rate)) / (
+        2 * step
+    )
+    assert system.tip_position_and_velocity(z, rate)[1] == pytest.approx(difference, rel=1e-6)
 
 
 @pytest.mark.kernel
@@ -133,42 +135,42 @@ def test_velocity_of_the_tip_is_that_of_its_reconstruction():
     "rod", [ROD, Rod(F=27.43, k1=1e4, k2=1e2, gamma3=1e-2), Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4)]
 )
 def test_linearisation_has_the_spectrum_of_the_straight_rod(rod):
-    beam = Beam(rod.with_values(gamma1=0.8), uniform_mesh(1, 20))
-    values = np.linalg.eigvals(beam.jacobian(np.zeros(60)))
+    system = ExplicitSystem(rod.with_values(gamma1=0.8), uniform_mesh(1, 20))
+    values = np.linalg.eigvals(system.jacobian(np.zeros(60)))
     transverse = solve_spectrum(rod, SpectrumRequest(4, 1e-12, True)).eigenvalues
     for w in np.concatenate([transverse, longitudinal_eigenvalues(rod.k1, 0.8, 3)]):
         assert np.abs(values - w).min() <= 1e-9 * abs(w)
-    assert leading_mode(beam).w == pytest.approx(transverse[0], rel=1e-9)
+    assert leading_mode(system).w == pytest.approx(transverse[0], rel=1e-9)
 
 
 @pytest.mark.parametrize(("F", "k1", "k2", "tip"), [(40.0, 1e4, 1e4, 1.0), (8.0, 30.0, 0.3, 0.6)])
 def test_leading_mode_has_a_bounded_deflection_everywhere(F, k1, k2, tip):
     """The mode of the second rod, which is soft in shear, deflects three times as far beside its tip."""
-    beam = Beam(Rod(F=F, k1=k1, k2=k2, gamma3=0.1), uniform_mesh(1, 20))
-    z, rest = leading_mode(beam).z, np.zeros(60)
-    y = np.hypot(*(beam.transverse_velocities(rest, part) for part in (z.real, z.imag)))
+    system = ExplicitSystem(Rod(F=F, k1=k1, k2=k2, gamma3=0.1), uniform_mesh(1, 20))
+    z, rest = leading_mode(system).z, np.zeros(60)
+    y = np.hypot(*(system.transverse_velocities(rest, part) for part in (z.real, z.imag)))
     assert y.max() == pytest.approx(1.0 if tip == 1 else 2.0, rel=1e-9)
-    deflection, turned = (beam.tip_position_and_velocity(rest, part)[1][1] for part in (z.real, z.imag))
+    deflection, turned = (system.tip_position_and_velocity(rest, part)[1][1] for part in (z.real, z.imag))
     assert (deflection, turned) == pytest.approx((tip, 0), rel=0.02, abs=1e-12)
 
 
 def test_shape_converges_with_order_and_with_elements():
-    exact = Beam(ROD, uniform_mesh(1, 36))
+    exact = ExplicitSystem(ROD, uniform_mesh(1, 36))
     for elements, order in ((1, 24), (2, 18), (4, 12)):
-        beam = Beam(ROD, uniform_mesh(elements, order))
-        assert beam.tip_coordinates(bent(beam)) == pytest.approx(
+        system = ExplicitSystem(ROD, uniform_mesh(elements, order))
+        assert system.tip_coordinates(bent(system)) == pytest.approx(
             exact.tip_coordinates(bent(exact)), abs=1e-12
         )
 
 
 @pytest.mark.kernel
 def test_small_start_grows_like_the_leading_eigenvalue():
-    beam = Beam(ROD, uniform_mesh(1, 20))
-    mode, duration = leading_mode(beam), 0.02
+    system = ExplicitSystem(ROD, uniform_mesh(1, 20))
+    mode, duration = leading_mode(system), 0.02
     start = 1e-7 * mode.z.real
-    values, left = np.linalg.eig(beam.jacobian(np.zeros(60)).T)
+    values, left = np.linalg.eig(system.jacobian(np.zeros(60)).T)
     row = left[:, np.argmin(np.abs(values - mode.w))]
-    run = evolve(beam, start, duration, TimeScheme(tolerance=1e-11, newton_tolerance_ratio=0.01))
+    run = evolve(system, start, duration, TimeScheme(tolerance=1e-11, newton_tolerance_ratio=0.01))
     assert run.ending == EndReason.reached
     grown = np.log((row @ run.states[-1]) / (row @ run.states[0]) * np.exp(-1j * mode.w.imag * duration))
     assert grown.real / duration == pytest.approx(mode.w.real, rel=1e-6)
@@ -178,12 +180,12 @@ def test_small_start_grows_like_the_leading_eigenvalue():
 @pytest.mark.parametrize("variant, order", [("3", 3), ("4", 4), ("5", 5)])
 def test_equal_steps_have_the_order_of_the_method(variant, order):
     """On a rod whose stiffness the steps resolve; order reduction is a stiff rod's."""
-    beam = Beam(Rod(F=5.0, k1=10.0, k2=10.0, gamma3=1.0), uniform_mesh(1, 3))
-    start, duration = bent(beam), 0.02
+    system = ExplicitSystem(Rod(F=5.0, k1=10.0, k2=10.0, gamma3=1.0), uniform_mesh(1, 3))
+    start, duration = bent(system), 0.02
     method = TimeScheme("arkimex", variant, tolerance=1e-8, newton_tolerance_ratio=1e-6, equal_steps=True)
 
     def end(steps):
-        run = integrator(beam.mesh, method).run(beam, start, duration, duration / steps)
+        run = integrator(system.mesh, method).run(system, start, duration, duration / steps)
         assert len(run.times) == steps + 1
         return run.states[-1]
 
@@ -193,15 +195,15 @@ def test_equal_steps_have_the_order_of_the_method(variant, order):
 
 
 def test_all_steps_of_a_long_run_are_kept():
-    beam = Beam(ROD, uniform_mesh(1, 6))
-    start, steps = 0.1 * leading_mode(beam).z.real, 3 * STEP_RECORD_SETTINGS.first_capacity
+    system = ExplicitSystem(ROD, uniform_mesh(1, 6))
+    start, steps = 0.1 * leading_mode(system).z.real, 3 * STEP_RECORD_SETTINGS.first_capacity
     method = TimeScheme("arkimex", "3", equal_steps=True)
-    run = integrator(beam.mesh, method).run(beam, start, 0.03, 0.03 / steps)
+    run = integrator(system.mesh, method).run(system, start, 0.03, 0.03 / steps)
     assert run.times == pytest.approx(np.linspace(0.0, 0.03, steps + 1))
     assert np.array_equal(run.states[0], start)
     seen = []
     watched = RunLimit(lambda z: seen.append(z) is not None)
-    again = integrator(beam.mesh, method).run(beam, start, 0.03, 0.03 / steps, watched)
+    again = integrator(system.mesh, method).run(system, start, 0.03, 0.03 / steps, watched)
     assert np.array_equal(again.states, run.states)
     assert np.array_equal(seen, run.states[1:])
 
@@ -222,10 +224,10 @@ if PETSc.Sys.getVersion() >= (3, 20):  # its first slopes come from a solve whos
 
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: f"{method.family} {method.variant}")
 def test_every_method_follows_the_same_motion(method):
-    beam = Beam(ROD, uniform_mesh(1, 14))
-    start = 0.3 * leading_mode(beam).z.real
-    exact = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
-    run = evolve(beam, start, 0.03, method)
+    system = ExplicitSystem(ROD, uniform_mesh(1, 14))
+    start = 0.3 * leading_mode(system).z.real
+    exact = evolve(system, start, 0.03, TimeScheme(tolerance=1e-10, newton_tolerance_ratio=0.01)).states[-1]
+    run = evolve(system, start, 0.03, method)
     assert run.ending == EndReason.reached
     assert run.times[-1] == pytest.approx(0.03)
     assert np.abs(run.states[-1] - exact).max() < 2e-4 * np.abs(exact).max()
@@ -250,13 +252,13 @@ def test_predicted_stages_are_known_by_then(variant):
 
 @pytest.mark.parametrize("variant", EXTRAPOLATION_POINTS)
 def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
-    beam = Beam(ROD, uniform_mesh(1, 14))
-    start, scheme = 0.3 * leading_mode(beam).z.real, TimeScheme("arkimex", variant, 1e-6)
-    predicting, plain = Integrator(beam.mesh, scheme), Integrator(beam.mesh, scheme)
+    system = ExplicitSystem(ROD, uniform_mesh(1, 14))
+    start, scheme = 0.3 * leading_mode(system).z.real, TimeScheme("arkimex", variant, 1e-6)
+    predicting, plain = Integrator(system.mesh, scheme), Integrator(system.mesh, scheme)
     plain.workspace.set_extrapolation_points("")
     ends, iterations = [], []
     for made in (predicting, plain):
-        ends.append(made.run(beam, start, 0.03).states[-1])
+        ends.append(made.run(system, start, 0.03).states[-1])
         iterations.append(made.ts.getSNESIterations())
         made.destroy()
     assert np.abs(ends[0] - ends[1]).max() < 1e-4 * np.abs(ends[1]).max()
@@ -264,14 +266,14 @@ def test_prediction_spares_iterations_and_leaves_the_motion_alone(variant):
 
 
 def test_jacobian_is_right_whatever_petsc_did_to_the_matrix():
-    beam, shift = Beam(ROD, uniform_mesh(1, 8)), 1e3
-    made = integrator(beam.mesh, TimeScheme())
-    z, rows = bent(beam), list(range(beam.layout.unknown_count))
-    made.workspace.set_rod_and_tolerances(beam, 1e-8, 1e-8)
+    system, shift = ExplicitSystem(ROD, uniform_mesh(1, 8)), 1e3
+    made = integrator(system.mesh, TimeScheme())
+    z, rows = bent(system), list(range(system.layout.unknown_count))
+    made.workspace.set_rod_and_tolerances(system, 1e-8, 1e-8)
     made.workspace.base[:] = z
     state, slope = made.vector.duplicate(), made.vector.duplicate()
     state.array_w[:] = z
-    expected = shift * np.eye(len(z)) - beam.jacobian(z)
+    expected = shift * np.eye(len(z)) - system.jacobian(z)
 
     def again():
         made.ts.computeIJacobian(0.0, state, slope, shift, made.matrix)
@@ -314,12 +316,12 @@ def test_users_options_override_the_method(petsc_options):
 
 
 def test_newtons_method_may_be_petscs(petsc_options):
-    beam = Beam(ROD, uniform_mesh(1, 14))
-    start = 0.3 * leading_mode(beam).z.real
-    ours = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-8))
+    system = ExplicitSystem(ROD, uniform_mesh(1, 14))
+    start = 0.3 * leading_mode(system).z.real
+    ours = evolve(system, start, 0.03, TimeScheme(tolerance=1e-8))
     petsc_options("cycle_snes_type", "newtonls")
-    assert integrator(beam.mesh, TimeScheme()).ts.getSNES().getType() == "newtonls"
-    theirs = evolve(beam, start, 0.03, TimeScheme(tolerance=1e-8))
+    assert integrator(system.mesh, TimeScheme()).ts.getSNES().getType() == "newtonls"
+    theirs = evolve(system, start, 0.03, TimeScheme(tolerance=1e-8))
     assert np.abs(theirs.states[-1] - ours.states[-1]).max() < 1e-6 * np.abs(ours.states[-1]).max()
 
 
@@ -333,22 +335,22 @@ def test_defaults_of_the_method_are_not_recorded_as_the_users_options():
 def test_a_failed_integration_is_an_ending(petsc_options):
     petsc_options("cycle_snes_max_it", "1")
     petsc_options("cycle_ts_max_snes_failures", "1")
-    beam = Beam(ROD, uniform_mesh(1, 14))
-    run = evolve(beam, bent(beam), 1.0)
+    system = ExplicitSystem(ROD, uniform_mesh(1, 14))
+    run = evolve(system, bent(system), 1.0)
     assert run.ending == EndReason.failed
     assert len(run.times) == len(run.states)
 
 
 def test_an_error_inside_petsc_is_an_ending(petsc_options):
     petsc_options("cycle_pc_factor_mat_solver_type", "nosuch")
-    beam = Beam(ROD, uniform_mesh(1, 14))
-    run = evolve(beam, bent(beam), 1.0)
+    system = ExplicitSystem(ROD, uniform_mesh(1, 14))
+    run = evolve(system, bent(system), 1.0)
     assert run.ending == EndReason.failed
     assert run.message
 
 
 def test_a_crushed_rod_has_left_the_model():
-    beam = Beam(Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), uniform_mesh(1, 14))
-    run = evolve(beam, 0.5 * leading_mode(beam).z.real, 1e-3)
+    system = ExplicitSystem(Rod(F=195.0, k1=200.0, k2=1e4, gamma3=1e-4), uniform_mesh(1, 14))
+    run = evolve(system, 0.5 * leading_mode(system).z.real, 1e-3)
     assert run.ending == EndReason.left_the_model
-    assert beam.least_stretch(run.states[-1]) <= 0 < beam.least_stretch(run.states[0])
+    assert system.least_stretch(run.states[-1]) <= 0 < system.least_stretch(run.states[0])

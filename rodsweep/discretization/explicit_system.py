@@ -32,7 +32,7 @@ TIP_VELOCITY_SETTINGS = TipVelocitySettings()
 
 
 @dataclass(frozen=True, eq=False)
-class Beam(RodOnMesh):
+class ExplicitSystem(RodOnMesh):
     """One rod with finite k1, k2 and gamma3 > 0 on one mesh, as an explicit system. States z have the shape
     (unknowns,) and the unit of the square root of an energy density, sqrt(k3)/L."""
 

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     )
 
 
-class ChangeKind(IntEnum):
+class ThresholdKind(IntEnum):
     """Kind of a threshold along a path, named for increasing parameter.
 
     onset, real_again: two real leading eigenvalues become a pair; a pair becomes two real eigenvalues.
@@ -37,12 +37,17 @@ class ChangeKind(IntEnum):
     def switches_real_and_complex(self) -> bool:
         """Whether the leading eigenvalue changes between real and complex at this threshold. Otherwise a pair
         crosses the imaginary axis."""
-        return self in (ChangeKind.onset, ChangeKind.pair_leads, ChangeKind.real_again, ChangeKind.real_leads)
+        return self in (
+            ThresholdKind.onset,
+            ThresholdKind.pair_leads,
+            ThresholdKind.real_again,
+            ThresholdKind.real_leads,
+        )
 
     @property
     def pair_leads_after(self) -> bool:
         """Whether a complex pair takes the lead at this threshold."""
-        return self in (ChangeKind.onset, ChangeKind.pair_leads)
+        return self in (ThresholdKind.onset, ThresholdKind.pair_leads)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +60,7 @@ class Threshold:
     """
 
     value: float
-    kind: ChangeKind
+    kind: ThresholdKind
     frequency: float
     growth_rate: float
     error: float
@@ -63,9 +68,9 @@ class Threshold:
     frequency_error: float = math.nan
 
 
-def crossing_kind(path: "ParameterPath", grows_with_path_variable: bool) -> ChangeKind:
+def crossing_kind(path: "ParameterPath", grows_with_path_variable: bool) -> ThresholdKind:
     """Kind of a crossing of the imaginary axis by a pair: hopf if the growth rate Re w increases with the
     parameter of `path`, otherwise hopf_reverse. grows_with_path_variable: whether Re w increases with the
     path variable p, which decreases as the parameter increases along a stiffness, p = 1/k."""
     grows_with_parameter = grows_with_path_variable != path.is_compliance_path
-    return ChangeKind.hopf if grows_with_parameter else ChangeKind.hopf_reverse
+    return ThresholdKind.hopf if grows_with_parameter else ThresholdKind.hopf_reverse
