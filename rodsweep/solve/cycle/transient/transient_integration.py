@@ -168,8 +168,8 @@ class TransientIntegration:
         return bool(size >= RETURN_SETTINGS.straight_norm)
 
     def _system_growth_rate(self, rate: float) -> float:
-        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum; the rate `rate` of the
-        rod in `form` if both are equal or the spectrum is unknown. A stiff matrix would give errors of 1e-4."""
+        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum; `rate`, of the rod in
+        `form`, if both are equal or the spectrum is unknown. A stiff matrix would give errors of 1e-4."""
         if self.system.rod == self.form.rod:
             return rate
         return straight_rod_stability(self.system.rod, np.array([self.straight.w])).growth_rate(rate)
