@@ -22,7 +22,7 @@ from .seal import HDF5_SIGNATURE, has_valid_structure_checksum
 
 PROGRAM = "rodsweep"
 """Value of the attribute `program` of result files."""
-FORMAT = 10
+FORMAT = 11
 """Value of the attribute `format` of result files. The format grows when a variable is added or changes in
 meaning; files whose format number differs are refused. Format 5 was the first with sealed content; 6
 introduced frequencies in Hz, counts from 1, the Hopf points of the lines of limit cycles, and grids over an
