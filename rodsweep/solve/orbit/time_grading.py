@@ -110,7 +110,9 @@ def fitted_grading(tails: Array, edges: Array, stages: int, harmonic: int) -> Ti
     # With equal tails tau grows by the increments; these are the Fourier coefficients of dt/dtau.
     cosine = 2 * float(lengths @ np.cos(angles))
     sine = 2 * float(lengths @ np.sin(angles))
-    factor = min(1.0, TIME_GRADING_SETTINGS.max_amplitude / max(float(np.hypot(cosine, sine)), 1e-300))
+    amplitude = float(np.hypot(cosine, sine))
+    max_amplitude = TIME_GRADING_SETTINGS.max_amplitude
+    factor = max_amplitude / amplitude if amplitude > max_amplitude else 1.0
     step = TIME_GRADING_SETTINGS.step
     return TimeGrading(step * round(factor * cosine / step), step * round(factor * sine / step), harmonic)
 

@@ -226,7 +226,7 @@ def test_a_rod_pulled_beyond_its_shear_stiffness_buckles_and_every_kind_of_chang
 
 @pytest.mark.parametrize("beyond", [1e-3, 1e-6, 1e-9])
 def test_a_narrow_window_of_oscillations_is_found(beyond):
-    """Partial system: F (1 - F/k1) = F* of the filament twice, as close as one likes (k1 -> 4 F*)."""
+    """Partial beam: F (1 - F/k1) = F* of the filament twice, as close as one likes (k1 -> 4 F*)."""
     start = 20.0509536189737612
     k1 = 4 * start * (1 + beyond)
     found = thresholds(k1, inf, 0.0, 60.0, accuracy=1e-8)
