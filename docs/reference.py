@@ -431,8 +431,8 @@ def curve_rows(job: Job) -> Iterator[tuple[str, list[str]]]:
     assert isinstance(job.config, PhaseDiagramConfig)
     line, row = job.config.plane_parameters
     for variable in curve_variables(line, row).values():
-        system = variable.name.startswith(("partial_beam", "filament"))
-        yield "diagrams over F and k1" if system else "", variable_row(variable, list(variable.extra))
+        is_of_limit = variable.name.startswith(("partial_beam", "filament"))
+        yield "diagrams over F and k1" if is_of_limit else "", variable_row(variable, list(variable.extra))
     for variable in criticality_variables(line, row).values():
         yield "phase_diagram.criticality: true", variable_row(variable, list(variable.extra))
     cycle_curves = cycle_curve_variables(line, row) | curve_extremum_variables(line, row)
