@@ -210,10 +210,8 @@ class TransientIntegration:
         count, distance = repetition(states[-1 - RETURN_SETTINGS.max_returns_per_period :])
         often_failed = self.successive_failures >= TRANSIENT_SETTINGS.max_successive_failures
         if often_failed and distance < TRANSIENT_SETTINGS.max_periodic_distance:
-            distance_text = f"the motion repeats within {distance:.0e}"
-            self.unsolved_message = (
-                f"{distance_text}, but Newton's method finds no cycle near it on finer meshes"
-            )
+            repeats_text = f"the motion repeats within {distance:.0e}, but Newton's method"
+            self.unsolved_message = f"{repeats_text} finds no cycle near this motion on finer meshes"
             return None
         if distance >= self._newton_start_distance() or self.returns < self.next_attempt:
             return None
