@@ -7,7 +7,7 @@ The folder is a Python package that is not installed with rodsweep. The package 
 which returns the versions of the installed peers by name. For each study with peers, it has a module with the
 name of the study and the function
 
-    peers(quick: bool, folder: Path) -> Peers
+    peers(quick: bool, folder: Path) -> PeerContribution
 
 where `folder` is an empty directory for the programs that peers compile.
 """

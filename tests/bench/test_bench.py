@@ -289,10 +289,11 @@ def write_peers(directory):
     (directory / "__init__.py").write_text("def versions():\n    return {'mine': '1.2'}\n")
     (directory / "spectrum.py").write_text(
         "import numpy as np\n"
-        "from rodsweep.bench.peers import Peers\n"
+        "from rodsweep.bench.peers import PeerContribution\n"
         "from rodsweep.bench.study import TimedMethod\n"
         "def peers(quick, place):\n"
-        "    return Peers({'spectrum': [TimedMethod('zero', '1', 'g', lambda rod: np.zeros(5))]})\n"
+        "    zero = TimedMethod('zero', '1', 'g', lambda rod: np.zeros(5))\n"
+        "    return PeerContribution({'spectrum': [zero]})\n"
     )
 
 
