@@ -706,6 +706,24 @@ def test_folds_of_rows_are_marked_where_no_curve_goes_through_them():
     assert len(folds.get_xydata()) == 3
 
 
+def test_a_fold_beside_an_extremum_of_its_curve_lies_on_it():
+    """The chords of a curve that is flat there are farther from the fold along the row than across it."""
+    F = 83.8 + 1.6 * np.arange(-8, 5)
+    variables = {
+        "F": np.array([50.0, 120.0]),
+        "k1": np.array([132.5, 133.051, 135.0]),
+        "status": np.zeros(3),
+        "cycle_special_kind": np.array([[0], [2], [0]]),
+        "cycle_special_F": np.array([[np.nan], [83.0], [np.nan]]),
+        "cycle_curve_number": np.ones(13),
+        "cycle_curve_kind": np.full(13, 2),
+        "cycle_curve_F": F,
+        "cycle_curve_k1": 133 + 0.051 * ((F - 79) / 4) ** 2,
+    }
+    view = ResultView(Path("f.h5"), {"task": "phase_diagram"}, variables, ("k1",), {0: "ok"}, 0)
+    assert mark_cycles_on_rows(Figure().subplots(), view, "F", "k1") == []
+
+
 def figure_of(task, **words):
     """The figure of a sweep as it is written."""
     figures = []

@@ -203,6 +203,8 @@ def test_files_that_are_merged_keep_the_reasons_of_both():
     attributes = [{FAILURE_REASONS_ATTRIBUTE: text} for text in (one, f"{one}\n{other}")] + [{}]
     assert merged_history(attributes)[FAILURE_REASONS_ATTRIBUTE] == f"{one}\n{other}"
     assert FAILURE_REASONS_ATTRIBUTE not in merged_history([{}])
+    # Without an empty line, which is no failed point, where only the second file has reasons.
+    assert merged_history([{}, {FAILURE_REASONS_ATTRIBUTE: one}])[FAILURE_REASONS_ATTRIBUTE] == one
     assert (
         joined_failure_reasons("F=1.0: failed after 3 steps", "F=2.0: failed after 4 steps")[
             FAILURE_REASONS_ATTRIBUTE

@@ -92,7 +92,7 @@ def joined_failure_reasons(*reason_texts: str) -> dict[str, str]:
     MAX_ATTRIBUTE_LENGTH characters.
     """
     lines: dict[str, str] = {}
-    for line in "\n".join(reason_texts).splitlines():
+    for line in (line for text in reason_texts for line in text.splitlines()):
         lines.setdefault(failure_kind(line), line)
     text = "\n".join([*lines.values()][:MAX_FAILURE_REASONS])[:MAX_ATTRIBUTE_LENGTH]
     return {FAILURE_REASONS_ATTRIBUTE: text} if text else {}

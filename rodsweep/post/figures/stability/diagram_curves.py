@@ -13,6 +13,7 @@ from ...stability_curves import curves_bounding_stability
 from ..style import GREEN, SYMBOLS
 from ..style import number_in_tex as number_text
 from .curve_labels import label_longest_curve, lowest_parts
+from .regions import DrawnPlane
 
 CURVE_LOOKS = {1: ("Hopf points", 1.4, "-"), 0: ("double eigenvalue", 1.0, "--")}
 """(legend entry, width, style) of a boundary curve, by code of the kind in the file."""
@@ -33,7 +34,7 @@ CYCLE_MARKS = {
 }
 """(legend entry, marker) of special points of cycles on rows that lie on no curve, by kind."""
 CURVE_TOLERANCE = 1e-3
-"""A point lies on a curve if its distance from the chords, divided by the axis length, is at most this
+"""A point lies on a curve if its distance from the chords, in fractions of the axes, is at most this
 number."""
 CYCLE_CURVE_STYLES = {"fold": ("folds of cycles", "#9B1B30"), "torus": ("torus points of cycles", GREEN)}
 """(legend entry, colour) of curves of special points of cycles, by kind."""
@@ -140,16 +141,17 @@ def _is_on_curve(view: ResultView, kind: int, line: str, row: str, x: Array, y: 
     is_near = np.zeros(len(x), dtype=bool)
     if "cycle_curve_number" not in v:
         return is_near
+    row_values = view.point_columns[row]
+    plane = DrawnPlane(v[line], row_values[np.isfinite(row_values)])
+    points = plane.fractions_of_axes(x, y)
     for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
         mask = v["cycle_curve_number"] == curve
-        line_values = v[f"cycle_curve_{line}"][mask]
-        row_values = v[f"cycle_curve_{row}"][mask]
-        below = row_values[:-1, None] - y
-        above = row_values[1:, None] - y
-        fraction = np.divide(below, below - above, out=np.zeros_like(below), where=below != above)
-        crossings = line_values[:-1, None] + fraction * np.diff(line_values)[:, None]
-        distances = np.where(below * above <= 0, np.abs(crossings - x), np.inf)
-        is_near |= distances.min(axis=0, initial=np.inf) <= CURVE_TOLERANCE * np.ptp(v[line])
+        vertices = plane.fractions_of_axes(*(v[f"cycle_curve_{name}"][mask] for name in (line, row)))
+        vertices = vertices[np.append(True, np.diff(vertices, axis=0).any(axis=1))]
+        for start, chord in zip(vertices[:-1], np.diff(vertices, axis=0), strict=True):
+            fractions = np.clip((points - start) @ chord / (chord @ chord), 0, 1)
+            distances = np.linalg.norm(points - start - fractions[:, None] * chord, axis=1)
+            is_near |= distances <= CURVE_TOLERANCE
     return is_near
 
 
