@@ -76,7 +76,7 @@ def _equivalent_filament(rod: Rod) -> tuple[Rod, float]:
     deflection_ratio^2; y of `rod` = y of the equivalent rod * deflection_ratio.
 
     A partial beam (k2 = inf, gamma3 = 0) is equivalent to the filament under the force F nu, with times
-    scaled by nu^2. Near crushing the matrices of the system are too badly scaled. Another rod is returned
+    scaled by nu^2. Near crushing the matrices of the partial beam are badly scaled. Another rod is returned
     unchanged, with the ratio 1.
     """
     if rod.c2 == 0 and rod.rotational_drag == 0 and rod.nu != 1:
