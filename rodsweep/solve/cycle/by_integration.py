@@ -70,7 +70,7 @@ class _IntegrationUntilSettled:
         self.system = ExplicitSystem(self.rod, self.mesh)
         self.leading_mode = leading_mode(self.system)
         self.return_count = 0
-        self.clock = ReturnTimes(self.leading_mode.period)
+        self.return_times = ReturnTimes(self.leading_mode.period)
         self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
     def cycle(self) -> Cycle:
@@ -130,7 +130,7 @@ class _IntegrationUntilSettled:
                 z,
                 TRANSIENT_SETTINGS.max_run_duration_ratio
                 * TRANSIENT_SETTINGS.returns_per_run
-                * self.clock.time_per_return,
+                * self.return_times.time_per_return,
                 step,
                 return_limit(row, z, TRANSIENT_SETTINGS.returns_per_run),
             )
@@ -138,7 +138,7 @@ class _IntegrationUntilSettled:
             # The last time step of a run is the first time step of the next run, which continues the motion.
             step = float(run.times[-1] - run.times[-2])
             times, states = self._crossings(run)
-            self.clock.record_run(times, float(run.times[-1]))
+            self.return_times.record_run(times, float(run.times[-1]))
             past_moments.extend(self.system.layout.stress_field(states, "m3"))
             self.return_count += max(len(states), 1)
             if self.leading_mode.w.real < 0 and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
@@ -189,7 +189,7 @@ class _IntegrationUntilSettled:
         returns = settled.returns_per_period + 2
         limit = return_limit(tip_angle_row(self.system), settled.state, returns)
         tolerance = min(self.scheme.tolerance, INTEGRATION_SETTINGS.max_measurement_tolerance)
-        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.clock.time_per_return
+        duration = TRANSIENT_SETTINGS.max_run_duration_ratio * returns * self.return_times.time_per_return
         scheme = replace(self.scheme, tolerance=tolerance)
         run = self._integrate(settled.state, duration, settled.last_time_step, limit, scheme)
         times = self._crossings(run)[0]

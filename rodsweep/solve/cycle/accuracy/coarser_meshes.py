@@ -47,7 +47,7 @@ class CoarserMeshSettings:
     max_interval_ratio: float = 2.0
     """A coarse mesh predicts the cycle on a fine mesh only if the ratio of the numbers of time intervals,
     fine mesh to coarse mesh, is at most this number."""
-    min_error_ratio: float = 0.033
+    min_predicted_error_ratio: float = 0.033
     """Lower limit of a predicted error in space or in time of period and largest y, divided by the accuracy:
     the coarse cycles are solved to a tenth of the accuracy, and their difference may be small because an
     error changes its sign between their meshes. Without this limit two of 400 errors of the largest y
@@ -75,7 +75,7 @@ class CoarserMeshes:
         intervals = round(mesh.full_intervals / (1 + COARSER_MESH_SETTINGS.added_interval_fraction)) + 1
         self._fine_mesh = mesh
         self.coarse_mesh = replace(mesh.with_order(order), interval_count=intervals)
-        self._min_error = COARSER_MESH_SETTINGS.min_error_ratio * accuracy
+        self._min_error = COARSER_MESH_SETTINGS.min_predicted_error_ratio * accuracy
         self._tolerance = FINER_MESH_SETTINGS.newton_tolerance_ratio * accuracy
         self._workspace = workspace
         self._coarse_cycle = self._solve_on_mesh(self.coarse_mesh, start)

@@ -31,7 +31,7 @@ class CycleErrorSettings:
     """Smallest relative error estimate of period and extrema: the rounding error on any mesh."""
     min_error_ratio: float = 0.1
     """Lower limit of error estimates, divided by the accuracy: a smaller estimate may be a coincidence."""
-    min_largest_y_error_ratio: float = 0.2
+    min_largest_y_error_over_accuracy: float = 0.2
     """Lower limit of the error estimate of the largest y, divided by the accuracy: this error changes its
     sign along a chain, so that a small error may be measured at one cycle and used at the next cycles. With a
     limit of 0.1, two of 1500 errors exceeded their estimates, by a factor of 1.5."""
@@ -85,7 +85,7 @@ def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Ar
     min_period_error = CALIBRATION_SETTINGS.min_period_error_ratio * space[PATH_INDEX] + time_path_error
     min_height_error = np.maximum(
         CALIBRATION_SETTINGS.min_largest_y_error_ratio * space[PATH_INDEX] + time_path_error,
-        CYCLE_ERROR_SETTINGS.min_largest_y_error_ratio * accuracy,
+        CYCLE_ERROR_SETTINGS.min_largest_y_error_over_accuracy * accuracy,
     )
     stated_errors = [
         np.maximum(np.maximum(scaled_errors[PERIOD_INDEX], min_period_error), min_errors),
