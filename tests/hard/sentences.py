@@ -1057,7 +1057,7 @@ def _state_sentences(view, page, fine, row):
         found += ranges(page, rf"^branches that .*: on \d+ of \d+ rows?, {row} = RANGE", detached)
     name = "cycle_curves_lost_beyond"
     lost = int(view.variables[name]) if name in view.variables else 0
-    found += counts(page, "^curves of folds that were lost beyond the range: NUMBER;", lost)
+    found += counts(page, "^ends of curves of folds lost beyond the range: NUMBER;", lost)
     for line, match in read(
         page, rf"^this curve crosses the row {row} = NUMBER between F = NUMBER and NUMBER, but no branch"
     ):

@@ -38,7 +38,7 @@ def lost_beyond_lines(view: ResultView) -> list[str]:
         return []
     count = int(view.variables[CURVES_LOST_BEYOND.name])
     return [
-        f"curves of folds that were lost beyond the range: {count}; rows that only these curves lead to lack "
+        f"ends of curves of folds lost beyond the range: {count}; rows that only these curves lead to lack "
         "their cycles in the stable states"
     ]
 

@@ -16,5 +16,5 @@ CURVES_LOST_BEYOND = integer(
     "cycle_curves_lost_beyond",
     "number of ends of curves of folds that were lost beyond the range",
 )
-"""Variable of a diagram with rows that curves beyond the range may lead to, but could not be followed to; a
-file without such curves does not have it."""
+"""Number of lost ends. Rows that only these curves lead to lack their cycles. A file without lost ends does
+not have this variable."""

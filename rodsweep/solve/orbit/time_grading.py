@@ -99,8 +99,9 @@ UNIFORM_TIME = TimeGrading()
 
 def fitted_grading(tails: Array, edges: Array, stages: int, harmonic: int) -> TimeGrading:
     """The grading for which the tails of all intervals are as equal as possible. tails: last Legendre
-    coefficients in the intervals of an orbit, (K,). edges: mesh times of their ends with the present grading,
-    as times, (K + 1,). stages: number of stages of an interval. harmonic: harmonic of the grading."""
+    coefficients in the intervals of an orbit, (K,). edges: times of the ends of these intervals, as
+    fractions of the solved part of the period, (K + 1,). stages: number of stages of an interval. harmonic:
+    `TimeGrading.harmonic` of the result."""
     lengths = np.diff(edges)
     limited = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
     # A coefficient of degree s in an interval of length h, over h^(s + 1), is a measure of the error density.
