@@ -35,14 +35,19 @@ def reaction(form, X):
     """
     _, V = form.stresses_and_velocities(X)
     WD = -form.mesh.matrices.weak_derivative.T
-    return form.mesh.quadrature[-1] * ad(along(form.rod.material.rest_strain, V), V)[..., -1] - V @ WD[:, -1]
+    return (
+        form.mesh.quadrature[-1] * ad(along(form.rod.balance_coefficients.rest_strain, V), V)[..., -1]
+        - V @ WD[:, -1]
+    )
 
 
 def energy(form, X):
     """U = 1/2 int Sigma C Sigma in k3/L, shape (...)."""
     S, _ = form.stresses_and_velocities(X)
     return (
-        energy_per_length(form.rod.material, S + along(form.rod.material.tip_stress, S))
+        energy_per_length(
+            form.rod.balance_coefficients, S + along(form.rod.balance_coefficients.tip_stress, S)
+        )
         @ form.mesh.quadrature
     )
 
@@ -50,6 +55,6 @@ def energy(form, X):
 def dissipation(form, X):
     """<Gamma V, V>, the power lost to the fluid in k3/(L tau2), shape (...)."""
     return (
-        dissipated_power_per_length(form.rod.material, form.stresses_and_velocities(X)[1])
+        dissipated_power_per_length(form.rod.balance_coefficients, form.stresses_and_velocities(X)[1])
         @ form.mesh.quadrature
     )

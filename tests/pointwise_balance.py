@@ -3,7 +3,7 @@ reference of the compiled functions, with the notation and shapes of `rodsweep.m
 
 import numpy as np
 
-from rodsweep.model.balance import Material, axial_vector, coad
+from rodsweep.model.balance import BalanceCoefficients, axial_vector, coad
 
 PLANE_COMPONENTS = [0, 1, 5]
 """Indices of the three components of se(2) among the six components of se(3)."""
@@ -18,11 +18,11 @@ def embed_in_se3(plane):
 
 def material_in_space(rod, twist_stiffness, twist_drag):
     """Material of a uniform rod in space. twist_stiffness: in k3. twist_drag: in gamma2 L^2."""
-    c1, c2, bending = rod.material.compliance
-    axial, normal, rotational = rod.material.drag
+    c1, c2, bending = rod.balance_coefficients.compliance
+    axial, normal, rotational = rod.balance_coefficients.drag
     compliance = np.array([c1, c2, c2, 1 / twist_stiffness, bending, bending])
     drag = np.array([axial, normal, normal, twist_drag, rotational, rotational])
-    return Material(compliance, drag, rod.F, axial_vector(rod.nu, 6))
+    return BalanceCoefficients(compliance, drag, rod.F, axial_vector(rod.nu, 6))
 
 
 def unloaded_strain(material):

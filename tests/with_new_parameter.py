@@ -111,7 +111,10 @@ def derivatives() -> None:
     rod = Rod(F=30.0, gamma3=1e-2, roughness=3.0, **ROD)
     assert rod.coordinate("roughness") == 3.0
     there = rod.with_coordinate("roughness", 4.0)
-    agree(there.material.drag, rod.material.drag + rod.material_derivative("roughness").drag)
+    agree(
+        there.balance_coefficients.drag,
+        rod.balance_coefficients.drag + rod.balance_coefficient_derivative("roughness").drag,
+    )
     assert rod.coefficient_derivative("gamma3").gamma3 == 3.0
     assert repr(rs.Rod(F=30, gamma3=1e-2, roughness=3, **ROD)).endswith("roughness=3)")
 

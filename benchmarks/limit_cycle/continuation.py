@@ -124,7 +124,7 @@ def measure_continuation(
 
 def first_cycles(point: Rod, settings: Sequence[AutoSetting]) -> dict[int, Orbit]:
     """First cycle of AUTO's runs, by the order of the single element in space."""
-    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), parameter="F"))
+    near = orbit_of(solve_cycle(point, cycle_request(SETTLING_TOLERANCE), parameter_name="F"))
     orders = {setting.order for setting in settings}
     moved = {
         order: near.on_mesh(uniform_mesh(1, order), REFERENCE_INTERVALS, REFERENCE_STAGES) for order in orders
@@ -143,7 +143,7 @@ def seconds_per_cycle(short: TimedRuns, long: TimedRuns) -> float:
 def judged_measurement(exact: AccurateCycle, m: Measurement, outcome: Any) -> Measurement:
     """The measurement `m` completed by the errors of its outcome, or by the reason of its failure.
 
-    outcome: `AutoCycle` of AUTO, `Cycle` of rodsweep, or the exception raised.
+    outcome: `AutoCycle` of AUTO, `CycleOutcome` of rodsweep, or the exception raised.
     """
     if isinstance(outcome, Exception):
         return replace(m, failure=f"failed ({outcome})", seconds=nan)

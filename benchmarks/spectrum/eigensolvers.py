@@ -127,7 +127,7 @@ def chebyshev_first_order(rod: Rod, size: int) -> Eigenvalues:
     The first-order system contains compliances instead of stiffnesses. An arm is divided at its jumps, and
     every segment has `size` intervals.
     """
-    edges = (0.0, 1.0) if rod.is_uniform_and_linear else rod.build.breaks
+    edges = (0.0, 1.0) if rod.is_uniform_and_linear else rod.material.breaks
     pieces = [_first_order(rod, a, b, size) for a, b in zip(edges[:-1], edges[1:], strict=True)]
     A, B = (scipy.linalg.block_diag(*blocks) for blocks in zip(*pieces, strict=True))
     n, last = size + 1, 4 * (size + 1) * (len(pieces) - 1)

@@ -18,13 +18,13 @@ from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import DRAG_NAMES
 from ..model.arm.quantities import LOAD_OF_RATIO, LOADS
-from ..model.material.build import DEFAULT_BUILD
+from ..model.material.rod_material import DEFAULT_MATERIAL
 from ..solve.solve_lock import defer_signals
 from ..tasks.running.job import Job, job_of_config, machine_memory
 
 ArmKind = TypeVar("ArmKind", bound=SlenderArm)
 """Type variable for the class of an arm: an argument and the result of a function have the same class."""
-DEFAULT_VALUES = {"drag": DRAG_NAMES[0], "law": DEFAULT_BUILD.law, "section": DEFAULT_BUILD.section}
+DEFAULT_VALUES = {"drag": DRAG_NAMES[0], "law": DEFAULT_MATERIAL.law, "section": DEFAULT_MATERIAL.section}
 """Default values of drag, law and section. A key of an arm with its default value is not written into the
 config tree."""
 ConfigTree = dict[str, Any]

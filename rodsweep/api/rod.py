@@ -18,7 +18,7 @@ from ..config.values import as_float, short_repr
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.as_config import material_config_of, rod_parameters_of
-from ..model.material.build import DEFAULT_BUILD
+from ..model.material.rod_material import DEFAULT_MATERIAL
 from ..model.parameters import OPTIONAL_PARAMETERS, PARAMETERS
 from ..sweep.points.grid import refuse_invalid_axes
 from ..wording import enumeration
@@ -92,10 +92,14 @@ class SoftRod:
             name: _parameter_value(name, value) for name, value in values.items() if value is not None
         }
         self._material = _material_section(material)
-        build = DEFAULT_BUILD if self._material is None else self._material.build
-        if arm is not None and build.section == "swelling":
-            replace(arm, law=build.law, section=build.section)  # refuses a Poisson's ratio that contradicts
-        refuse_invalid_axes({name: np.array([value]) for name, value in self._values.items()}, build=build)
+        rod_material = DEFAULT_MATERIAL if self._material is None else self._material.rod_material
+        if arm is not None and rod_material.section == "swelling":
+            replace(
+                arm, law=rod_material.law, section=rod_material.section
+            )  # refuses a Poisson's ratio that contradicts
+        refuse_invalid_axes(
+            {name: np.array([value]) for name, value in self._values.items()}, material=rod_material
+        )
 
     @property
     def parameters(self) -> dict[str, float]:

@@ -74,7 +74,7 @@ def _arm_lines(job: Job) -> list[str]:
     if "F" in job.task.coordinates():  # rows along F
         load_clause = ", and compression, by the loads of the rows"
     # The load is known before the run, or the law of rubber includes large compression.
-    if "F" in job.points.names or isinf(job.config.build.constitutive_law.crushing_load):
+    if "F" in job.points.names or isinf(job.config.rod_material.constitutive_law.crushing_load):
         load_clause = ""
     return [
         f"the arm: {quantities_as_typed(arm.quantity_axes)}{_material_text(arm)}",

@@ -9,7 +9,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, model_validator
 
-from ..model.material.build import DEFAULT_BUILD, Build
+from ..model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ..model.parameters import LINEAR_PARAMETERS, NONLINEAR_PARAMETERS, OPTIONAL_PARAMETERS
 from .arm.shape import MATERIAL_KEYS, SHAPE_KEYS, refuse_compressible, refuse_misused_shape
 from .material import MaterialConfig
@@ -61,17 +61,17 @@ class Config(StrictConfigSection):
         return tuple(name for name in OPTIONAL_PARAMETERS if name in used_names)
 
     @property
-    def stated_build(self) -> Build | None:
+    def stated_rod_material(self) -> RodMaterial | None:
         """Constitutive law and profile in the section `material`; None if the section is not given."""
-        return None if self.material is None else self.material.build
+        return None if self.material is None else self.material.rod_material
 
     @property
-    def build(self) -> Build:
+    def rod_material(self) -> RodMaterial:
         """Constitutive law and profile of the rods, from the section `material`, else from the arm, else the
         default."""
-        if self.stated_build is not None:
-            return self.stated_build
-        return DEFAULT_BUILD if self.parameters.arm is None else self.parameters.arm.build
+        if self.stated_rod_material is not None:
+            return self.stated_rod_material
+        return DEFAULT_MATERIAL if self.parameters.arm is None else self.parameters.arm.rod_material
 
     @property
     def is_uniform_and_linear(self) -> bool:
@@ -81,7 +81,9 @@ class Config(StrictConfigSection):
         if "taper" in (self.parameters.columns or ()):
             return False
         tapers = self.parameters.given_axes.get("taper")
-        return self.build.is_uniform_and_linear and (tapers is None or bool((tapers.array() == 1).all()))
+        return self.rod_material.is_uniform_and_linear and (
+            tapers is None or bool((tapers.array() == 1).all())
+        )
 
     @classmethod
     def rod_parameters_used(cls, options: Mapping[str, Any]) -> tuple[str, ...]:
@@ -112,7 +114,7 @@ class Config(StrictConfigSection):
         options = getattr(self, self.task).model_dump(mode="json", exclude=set(self.options_without_effect))
         numbers = dict(self.parameters.constant_parameters)
         settings = {"task": self.task, "parameters": numbers, "accuracy": self.accuracy, self.task: options}
-        if self.material is not None and not self.build.is_uniform_and_linear:
+        if self.material is not None and not self.rod_material.is_uniform_and_linear:
             settings["material"] = self.material.model_dump(mode="json", exclude_none=True)
         if self.parameters.arm is None:
             return settings
@@ -140,7 +142,7 @@ class Config(StrictConfigSection):
                 f"material and parameters.arm.{key} are both given; give law and section in parameters.arm"
             )
         refuse_misused_shape(arm, self.parameters.given_axes)
-        refuse_compressible(arm, self.build.section)
+        refuse_compressible(arm, self.rod_material.section)
         return self
 
 

@@ -9,8 +9,8 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, model_validator
 
 from ..errors import InputError
-from ..model.material.build import Build
 from ..model.material.profile import FACTOR_NAMES, Profile
+from ..model.material.rod_material import RodMaterial
 from .values import Number, StrictConfigSection, cell_number, short_repr
 
 MAX_PROFILE_ROWS = 1000
@@ -87,15 +87,15 @@ class MaterialConfig(StrictConfigSection):
     along the arm."""
 
     @cached_property
-    def build(self) -> Build:
+    def rod_material(self) -> RodMaterial:
         """Constitutive law and profile; ValueError if the law does not allow the cross-section."""
-        return Build(self.law, self.section, self.profile.profile if self.profile else None)
+        return RodMaterial(self.law, self.section, self.profile.profile if self.profile else None)
 
     @model_validator(mode="after")
-    def _require_valid_build(self) -> "MaterialConfig":
+    def _require_valid_material(self) -> "MaterialConfig":
         if not self.model_fields_set:
             raise ValueError("the section is empty; give law, section or profile")
-        assert self.build
+        assert self.rod_material
         return self
 
 

@@ -69,7 +69,7 @@ def _rounding_by_squares(
             error_of_z = (rounding_product + z * rounding_large) / max_z
             rounding_slope = 2 * contrast * size + 2 * soft * (T * abs(F) + 2 * nu) + z * max_slope
             rounding_slope = rounding_slope / max_z + dz * rounding_large / max_z
-        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENT_SETTINGS.least_divisor))
+        bound = math.exp(root.real - S) / 2 * min(1.0, 2 / max(z, EXPONENT_SETTINGS.min_divisor))
         error += bound * (rounding_slope + dz * (1 + q / 4 + error_of_z / 2 / max(1.0, q)))
     return error
 

@@ -19,7 +19,7 @@ from ..model.rod import Coefficients
 class ExponentSettings(KernelConstants):
     """Settings for the exponents of D and for entire functions of the exponents."""
 
-    least_divisor: float = 1e-300
+    min_divisor: float = 1e-300
     """A divisor with a smaller modulus is replaced by this number, which is far below every nonzero number in
     the formulas of D and has a finite inverse."""
     max_exponent: float = 600.0

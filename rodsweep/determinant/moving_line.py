@@ -32,19 +32,22 @@ from .parameter_path import determinant_along_path, dispersion_coefficient_deriv
 class MovingLineSettings(KernelConstants):
     """Settings for the rectangles that prove that no eigenvalue crosses a moving line."""
 
-    first_half_height: float = 0.35
+    first_half_height_ratio: float = 0.35
     """Half-height (in y) of the first rectangle over the distance of the line from the imaginary axis."""
-    half_height_growth: float = 1.6
+    half_height_growth_factor: float = 1.6
     """After a proved rectangle, the half-height of the next rectangle is larger by this factor."""
-    max_half_height: float = 0.6
+    max_half_height_ratio: float = 0.6
     """Largest half-height of a rectangle divided by |w| at its lower edge. The discs about the centre of the
     rectangle must not contain w = 0."""
-    overlap: float = 1e-7
+    overlap_fraction: float = 1e-7
     """The half-widths of every rectangle are enlarged by this fraction, so that rounding leaves no gap."""
     min_fraction: float = 1e-6
     """The proof fails if a rectangle is needed whose width in p is below this fraction of the interval of p,
     or whose half-height is below this fraction of the distance of the line from the imaginary axis."""
-    field_ranges: ClassVar = {"half_height_growth": (1.0, math.inf), "max_half_height": (0.0, 1.0)}
+    field_ranges: ClassVar = {
+        "half_height_growth_factor": (1.0, math.inf),
+        "max_half_height_ratio": (0.0, 1.0),
+    }
 
 
 MOVING_LINE_SETTINGS = MovingLineSettings()
@@ -150,7 +153,7 @@ def proves_no_crossing(
     width = last.p - first.p
     slope = (last.line - first.line) / width
     count = 0
-    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height * depth)]
+    stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_ratio * depth)]
     while len(stack) > 0:
         start, stop, y, half_y = stack.pop()
         middle = interpolate_ends((start + stop) / 2, first, last)
@@ -162,12 +165,15 @@ def proves_no_crossing(
             count += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             centre_y = y + half_y if y > 0 else 0.0
-            half = ((1 + MOVING_LINE_SETTINGS.overlap) * half_y, (1 + MOVING_LINE_SETTINGS.overlap) * half_p)
+            half = (
+                (1 + MOVING_LINE_SETTINGS.overlap_fraction) * half_y,
+                (1 + MOVING_LINE_SETTINGS.overlap_fraction) * half_p,
+            )
             proved, cost_y, cost_p = examine_rectangle(middle, centre_y, direction, half, slope)
             if proved:
                 y = centre_y + half_y
-                max_half = MOVING_LINE_SETTINGS.max_half_height * math.hypot(middle.line, y)
-                half_y = min(MOVING_LINE_SETTINGS.half_height_growth * half_y, max_half)
+                max_half = MOVING_LINE_SETTINGS.max_half_height_ratio * math.hypot(middle.line, y)
+                half_y = min(MOVING_LINE_SETTINGS.half_height_growth_factor * half_y, max_half)
             elif cost_p > cost_y:
                 # Split in p from the height y upwards: the strip below y is already proved for both halves.
                 stack.append(UnprovedStrip((start + stop) / 2, stop, y, half_y))

@@ -177,4 +177,4 @@ class ParameterPlane:
     def is_uncrushed_at(self, x: float, y: float) -> bool:
         """Whether the force at scaled coordinates (x, y) is below the force that crushes the rod."""
         values = {**self.rod.values} | {a.name: a.value(v) for a, v in zip(self.axes, (x, y), strict=True)}
-        return values["F"] < values["k1"] * self.rod.build.relative_crushing_force(values["taper"])
+        return values["F"] < values["k1"] * self.rod.material.relative_crushing_force(values["taper"])

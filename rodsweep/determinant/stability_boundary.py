@@ -25,9 +25,9 @@ class BoundaryPointSettings:
     """Newton's method fails if it has not converged after this number of steps."""
     max_step: float = 0.5
     """Newton's method fails after a step larger than this number, in units of the scaled axes or of h."""
-    converged_step: float = 4.0
+    converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the point."""
-    min_jacobian_determinant: float = EXPONENT_SETTINGS.least_divisor
+    min_jacobian_determinant: float = EXPONENT_SETTINGS.min_divisor
     """Newton's method fails if |determinant| of the 3 x 3 matrix of a step is below this number; the
     determinants of regular matrices are far larger."""
     converging_step_ratio: float = 0.5
@@ -99,7 +99,7 @@ class StabilityBoundary:
             error = float(np.abs(inverse[:, :2]).sum(axis=1).max()) * rounding
             size = float(np.abs(step).max())
             v = v + step
-            if size <= BOUNDARY_POINT_SETTINGS.converged_step * error or (
+            if size <= BOUNDARY_POINT_SETTINGS.converged_step_in_rounding_errors * error or (
                 size < BOUNDARY_POINT_SETTINGS.stagnant_step
                 and size > BOUNDARY_POINT_SETTINGS.converging_step_ratio * previous_size
             ):

@@ -39,7 +39,7 @@ class DeterminantSettings(KernelConstants):
     have the median 0.05, the upper quartile 0.1 and the maximum 0.7."""
     zero_replacement: float = 1e-200
     """D(0) is computed at this w, in 1/tau2, so that no formula divides by 0; |D - 1| is rounding there."""
-    second_difference_step: float = 1e-4
+    second_difference_step_ratio: float = 1e-4
     """Step of the central difference of D' for D'', divided by |w|. The relative error of D'' is about the
     square of this number: enough to distinguish a double root from two close roots."""
 
@@ -121,7 +121,7 @@ def second_difference(
 @compiled
 def second_derivative(w: complex, S: float, coefficients: Coefficients) -> complex:
     """D'' exp(-S) of a uniform rod at w, by a central difference of D'; real for real w."""
-    h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
+    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
     value_after = scaled_determinant(w + h, coefficients)
     value_before = scaled_determinant(w - h, coefficients)
     D_ww = second_difference(value_after, value_before, S, h)
@@ -136,7 +136,7 @@ def distance_to_next_root(w: complex, coefficients: Coefficients) -> float:
     return (
         2
         * abs(value.D_w)
-        / max(abs(second_derivative(w, value.log_scale, coefficients)), EXPONENT_SETTINGS.least_divisor)
+        / max(abs(second_derivative(w, value.log_scale, coefficients)), EXPONENT_SETTINGS.min_divisor)
     )
 
 
@@ -152,7 +152,7 @@ def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tupl
     value, slope, _, rounding_error = scaled_determinant(w, coefficients)
     # |D| far below its rounding error is accidental and does not mean a smaller error of w.
     error = max(abs(value), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error) / max(
-        abs(slope), EXPONENT_SETTINGS.least_divisor
+        abs(slope), EXPONENT_SETTINGS.min_divisor
     )
     P, P1, _, plus, minus = exponent_derivatives(w, coefficients)
     root_plus = math.sqrt(abs(plus))
@@ -161,4 +161,4 @@ def newton_correction_and_scales(w: complex, coefficients: Coefficients) -> tupl
     # D is even in P: for z+ close to z- the branch point of P does not affect D, and P' is limited.
     P1 *= min(1.0, abs(P) / max(1.0, root_plus, root_minus))
     max_rate = max(abs(drag + 2 * P1) / max(1.0, root_plus), abs(drag - 2 * P1) / max(1.0, root_minus))
-    return error, 2 / max(max_rate, EXPONENT_SETTINGS.least_divisor), (root_plus + root_minus) / 2
+    return error, 2 / max(max_rate, EXPONENT_SETTINGS.min_divisor), (root_plus + root_minus) / 2

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..model.balance import Material
+from ..model.balance import BalanceCoefficients
 from ..model.material.jump import SIDE_COLUMNS
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh
@@ -62,25 +62,28 @@ class NodalRodDerivative(NamedTuple):
 
 
 def nodal_rod(
-    material: Material,
+    coefficients: BalanceCoefficients,
     mesh: Mesh,
     unknown_velocities: tuple[int, ...] = (),
     law: int = 0,
     jumps: Jumps = NO_JUMPS,
 ) -> NodalRod:
-    """The `NodalRod` of a material on a mesh. unknown_velocities: indices of the components of V that are
-    unknowns. law: number of the constitutive law. jumps: jumps of the material on this mesh."""
+    """The `NodalRod` of a rod on a mesh. coefficients: of the balance at the nodes. unknown_velocities:
+    indices of the components of V that are unknowns. law: number of the constitutive law. jumps: jumps of the
+    material on this mesh."""
     size = mesh.node_count + 1
-    rest_strain = _expanded_to_nodes(material.rest_strain, size)
-    compliance = _expanded_to_nodes(material.compliance, size)
-    resistance = _cached_drag_arrays(material.drag.tobytes(), material.drag.shape, mesh, unknown_velocities)
-    return NodalRod(material.tip_stress, rest_strain, compliance, *resistance, law, *jumps)
+    rest_strain = _expanded_to_nodes(coefficients.rest_strain, size)
+    compliance = _expanded_to_nodes(coefficients.compliance, size)
+    resistance = _cached_drag_arrays(
+        coefficients.drag.tobytes(), coefficients.drag.shape, mesh, unknown_velocities
+    )
+    return NodalRod(coefficients.tip_stress, rest_strain, compliance, *resistance, law, *jumps)
 
 
 def nodal_rod_derivative(
-    change: Material, mesh: Mesh, sides: Array = NO_JUMP_DERIVATIVE
+    change: BalanceCoefficients, mesh: Mesh, sides: Array = NO_JUMP_DERIVATIVE
 ) -> NodalRodDerivative:
-    """The `NodalRodDerivative` of a mesh. change: derivative of the material by a parameter. sides:
+    """The `NodalRodDerivative` of a mesh. change: derivative of the coefficients by a parameter. sides:
     derivatives of nu, c1 and c3 on both sides of each jump, (k, 2, 3)."""
     fields = change.rest_strain, change.compliance, change.drag
     rest_strain, compliance, drag = (_expanded_to_nodes(field, mesh.node_count + 1) for field in fields)

@@ -16,9 +16,9 @@ from ..model.balance import Values
 from ..model.material.laws import LINEAR
 from ..model.material.stress_strain import LocalSection, stress_tangent
 from ..model.rod import Rod
+from .coefficients_on_mesh import balance_coefficients_at_nodes, jumps_on_mesh
 from .element_strains import write_element_strain_rates, write_element_strains
 from .elements.mesh import Mesh, shape_from_strains
-from .material_on_mesh import jumps_on_mesh, material_at_nodes
 from .nodal_rod import NodalRod, nodal_rod
 from .state_layout import StateLayout, plane_layout
 from .stresses_at_jumps import interpolate_state_stress, interpolate_stress, stresses_at_both_sides
@@ -61,14 +61,14 @@ class RodOnMesh(ABC):
         """The rod at the nodes of the mesh, as an argument of compiled functions."""
         rod = self.rod
         mesh = self.mesh
-        law = rod.build.law_number
+        law = rod.material.law_number
         jumps = jumps_on_mesh(rod, mesh)
-        return nodal_rod(material_at_nodes(rod, mesh), mesh, self.unknown_velocities, law, jumps)
+        return nodal_rod(balance_coefficients_at_nodes(rod, mesh), mesh, self.unknown_velocities, law, jumps)
 
     @property
     def has_continuous_stresses(self) -> bool:
         """Whether S is continuous along the rod: the material does not jump, or the law is linear."""
-        return self.rod.build.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
+        return self.rod.material.constitutive_law is LINEAR or not len(self.nodal_rod.jumps)
 
     def strains(self, x: Values) -> Values:
         """Strains (h1, h2, Pi) of states x at all nodes, tip included, (3, ..., nodes + 1); at a jump, the
@@ -131,7 +131,7 @@ class RodOnMesh(ABC):
         """Energy per length of stretching and bending, without shear, at the nodes. nu: stretch of the
         straight rod. c1, c3: compliances of stretching and bending. q1, q3: stresses S1 and S3."""
         F = self.rod.F
-        law = self.rod.build.constitutive_law
+        law = self.rod.material.constitutive_law
         load = F * c1
         h1 = nu + c1 * q1
         # shortening/load tends to 1 for load -> 0. For c1 = 0 this limit replaces (h1 - 1)/c1 = 0/0.

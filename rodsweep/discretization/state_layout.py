@@ -90,10 +90,10 @@ class StateLayout:
         return vector
 
 
-def plane_layout(nodes: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
-    """Layout of the states of a rod in the plane. nodes: number of nodes without the tip. unknown_velocities:
-    indices of the components of V that are unknowns."""
-    return StateLayout(PLANE_COMPONENT_COUNT, nodes, unknown_velocities)
+def plane_layout(node_count: int, unknown_velocities: tuple[int, ...] = ()) -> StateLayout:
+    """Layout of the states of a rod in the plane. node_count: number of nodes without the tip.
+    unknown_velocities: indices of the components of V that are unknowns."""
+    return StateLayout(PLANE_COMPONENT_COUNT, node_count, unknown_velocities)
 
 
 @compiled_for_vectors

@@ -15,12 +15,12 @@ from ..model.compiled.compilation import compiled
 from ..model.material.jump import LawUnknowns, unknowns_before_jump, unknowns_behind_jump
 from ..model.material.laws import LINEAR
 from ..model.rod import Rod
+from .coefficients_on_mesh import jumps_on_mesh
 from .element_strains import index_before_jump
 from .elements.basis import lagrange_interpolation_matrix
 from .elements.elements import ELEMENT_SETTINGS
 from .elements.mesh import Mesh, interpolation_matrix
 from .elements.quadrature import gauss_lobatto_rule
-from .material_on_mesh import jumps_on_mesh
 from .nodal_rod import NO_JUMPS, IntegerArray, NodalRod
 
 STRETCHING_STRESS_INDEX = 0
@@ -83,7 +83,7 @@ def interpolate_stress(rod: Rod, S: Values, source: Mesh, target: Mesh) -> Value
     """
     E = interpolation_matrix(source, target)
     out = S @ E.T
-    target_jumps = NO_JUMPS if rod.build.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
+    target_jumps = NO_JUMPS if rod.material.constitutive_law is LINEAR else jumps_on_mesh(rod, target)
     if len(target_jumps.nodes):
         source_nodes = jumps_on_mesh(rod, source).nodes
         for column, component in zip(SHARE_COLUMNS, JUMPING_COMPONENTS, strict=True):

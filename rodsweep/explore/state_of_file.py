@@ -126,10 +126,10 @@ def _second_parameter(tab: str, axes: Mapping[str, np.ndarray]) -> str:
 def _law_key(config: Config, path: Path) -> str:
     """Constitutive law of a config, as a key of `MATERIAL_CHOICES`; "linear" for a law that the page does not
     offer. Raises InputError if the arm has a profile."""
-    build = config.build
-    if build.profile is not None:
+    rod_material = config.rod_material
+    if rod_material.profile is not None:
         raise InputError(f"{path}: the page cannot show an arm with a profile, only uniform arms and cones")
-    law_values = {"law": build.law, "section": build.section}
+    law_values = {"law": rod_material.law, "section": rod_material.section}
     return next((key for key, value in MATERIAL_CHOICES.items() if value == law_values), "linear")
 
 

@@ -14,7 +14,7 @@ rod, give the energy law dU/dt = Sigma(1) V(1) - <Gamma V, V> with U = <Sigma, C
 
 Arrays have the shape (3, ...) in the plane and (6, ...) in space. A compliance may be 0, since no formula
 divides by a compliance. `rodsweep.discretization.straight.mixed_form` uses these functions;
-`rodsweep.discretization.stress.balance` uses `algebra` and `Material`.
+`rodsweep.discretization.stress.balance` uses `algebra` and `BalanceCoefficients`.
 """
 
 from typing import Any, NamedTuple
@@ -46,7 +46,7 @@ def coad(E: Values, Sigma: Values) -> Values:
     return out
 
 
-class Material(NamedTuple):
+class BalanceCoefficients(NamedTuple):
     """Coefficients of the nonlinear balance of one rod under its tip force F. compliance: diagonal of C.
     drag: diagonal of Gamma. rest_strain: deformation E of the straight rod under the force. Each array has
     the shape (3,) or (6,) for a uniform rod, and (3, nodes + 1) for other rods."""

@@ -2,14 +2,14 @@
 
 from collections.abc import Mapping
 
-from .material.build import Build
+from .material.rod_material import RodMaterial
 
 TAPER_ACCURACY = 1e-9
 """Relative tolerance of the smallest taper at which the force does not crush the tip."""
 
 
 def uncrushed_interval(
-    build: Build, rod: Mapping[str, float], varied: tuple[str, float, float], margin: float = 0.0
+    material: RodMaterial, rod: Mapping[str, float], varied: tuple[str, float, float], margin: float = 0.0
 ) -> tuple[float, float]:
     """(smallest, largest) value of a parameter at which the force does not crush the rod, within an interval;
     the second is not above the first if the force crushes the rod everywhere in the interval.
@@ -20,8 +20,8 @@ def uncrushed_interval(
     """
     name, low, high = varied
     if name == "taper":
-        return _smallest_uncrushed_taper(build, rod, (low, high), margin), high
-    relative_force = build.relative_crushing_force(rod.get("taper", 1.0))
+        return _smallest_uncrushed_taper(material, rod, (low, high), margin), high
+    relative_force = material.relative_crushing_force(rod.get("taper", 1.0))
     if name == "F":
         return low, min(high, (1 - margin) * relative_force * rod["k1"])
     if name == "k1":
@@ -30,13 +30,13 @@ def uncrushed_interval(
 
 
 def _smallest_uncrushed_taper(
-    build: Build, rod: Mapping[str, float], interval: tuple[float, float], margin: float
+    material: RodMaterial, rod: Mapping[str, float], interval: tuple[float, float], margin: float
 ) -> float:
     """Smallest taper of the interval at which the force does not crush the rod; the largest one if it crushes
     the rod everywhere."""
 
     def is_uncrushed(taper: float) -> bool:
-        return (1 - margin) * build.relative_crushing_force(taper) * rod["k1"] > rod["F"]
+        return (1 - margin) * material.relative_crushing_force(taper) * rod["k1"] > rod["F"]
 
     low, high = interval
     if is_uncrushed(low) or not is_uncrushed(high):

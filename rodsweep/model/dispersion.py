@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .material.build import Build, LocalCoefficients
+from .material.rod_material import LocalCoefficients, RodMaterial
 from .rod import Rod
 
 SAMPLE_COUNT = 64
@@ -23,7 +23,7 @@ SAMPLE_COUNT = 64
 SAMPLES_PER_INTERVAL = 33
 """Number of points between two neighbouring breaks of an arm's profile at which local waves are computed."""
 CACHED_ARM_COUNT = 16
-"""Maximum number of arms, and of builds, in the caches of this module."""
+"""Maximum number of arms, and of materials, in the caches of this module."""
 MIN_K_FRACTION = 1e-4
 """Ratio K/(F g) of the smallest sample of K = kappa^2. Every wave with K > F g decays."""
 K_FRACTIONS: Array = MIN_K_FRACTION ** (1 - np.arange(SAMPLE_COUNT) / SAMPLE_COUNT)
@@ -54,16 +54,16 @@ class SampledArm(NamedTuple):
 @lru_cache(maxsize=CACHED_ARM_COUNT)
 def sampled_arm(rod: Rod) -> SampledArm:
     """Sample points of the arm `rod` and the local coefficients at these points, cached."""
-    points, weights = _interval_midpoints(rod.build)
+    points, weights = _interval_midpoints(rod.material)
     return SampledArm(points, weights, rod.local_coefficients(points))
 
 
 @lru_cache(maxsize=CACHED_ARM_COUNT)
-def _interval_midpoints(build: Build) -> tuple[Array, Array]:
+def _interval_midpoints(material: RodMaterial) -> tuple[Array, Array]:
     """Returns (midpoints, lengths) of short intervals of u between breaks of a profile, (points,) each."""
-    lengths = np.diff(build.breaks)
+    lengths = np.diff(material.breaks)
     fractions = (np.arange(SAMPLES_PER_INTERVAL) + 0.5) / SAMPLES_PER_INTERVAL
-    points = (build.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
+    points = (material.breaks[:-1, None] + lengths[:, None] * fractions).ravel()
     return points, np.repeat(lengths / SAMPLES_PER_INTERVAL, SAMPLES_PER_INTERVAL)
 
 

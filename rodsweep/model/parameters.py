@@ -109,9 +109,9 @@ class Parameter:
             raise ValueError(f"{self.name} = {value} is not {self.allowed.description_for(value)}")
 
 
-SMALLEST_TAPER = 0.01
-LARGEST_TAPER = 100.0
-"""SMALLEST_TAPER, LARGEST_TAPER: range of the taper. Taper 0 is excluded: a point has no stiffness."""
+MIN_TAPER = 0.01
+MAX_TAPER = 100.0
+"""MIN_TAPER, MAX_TAPER: range of the taper. Taper 0 is excluded: a point has no stiffness."""
 
 
 def stiffness_parameter(name: str, symbol: str, meaning: str, rigid: str) -> Parameter:
@@ -169,9 +169,9 @@ PARAMETERS = {
             meaning="tip radius over base radius",
             remark=" of a circular cone",
             allowed=Range(
-                lambda value: SMALLEST_TAPER <= value <= LARGEST_TAPER,
-                f"a number from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g}",
-                {"minimum": SMALLEST_TAPER, "maximum": LARGEST_TAPER},
+                lambda value: MIN_TAPER <= value <= MAX_TAPER,
+                f"a number from {MIN_TAPER:g} to {MAX_TAPER:g}",
+                {"minimum": MIN_TAPER, "maximum": MAX_TAPER},
             ),
             optional=True,
             default=1.0,

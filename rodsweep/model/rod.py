@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from .balance import Material, axial_vector
-from .material.build import DEFAULT_BUILD, Build, CrossSections, LocalCoefficients
+from .balance import BalanceCoefficients, axial_vector
+from .base_coefficients import stiffnesses_and_drags_at_base, stretch_of_straight_rod
+from .material.rod_material import DEFAULT_MATERIAL, CrossSections, LocalCoefficients, RodMaterial
 from .parameters import PARAMETERS, RANGE_CHECKS, STIFFNESSES, TRANSVERSE_PARAMETERS, with_parameter_fields
-from .scaling import stiffnesses_and_drags_at_base, stretch_of_straight_rod
 
 
 class Crushed(ValueError):
@@ -48,7 +48,7 @@ def coefficients_of(values: Mapping[str, Any]) -> Coefficients:
 class Rod:
     """A rod under its follower force, with every parameter of the table.
 
-    Every parameter is a field; annotations exist only for parameters that code uses by name. build:
+    Every parameter is a field; annotations exist only for parameters that code uses by name. material:
     constitutive law and profile. Raises ValueError for a parameter outside its range, and Crushed for a force
     that is not below `crushing_force`.
     """
@@ -59,7 +59,7 @@ class Rod:
     gamma3: float
     gamma1: float = PARAMETERS["gamma1"].neutral_value
     taper: float = PARAMETERS["taper"].neutral_value
-    build: Build = field(default=DEFAULT_BUILD, repr=False)
+    material: RodMaterial = field(default=DEFAULT_MATERIAL, repr=False)
     values: Mapping[str, float] = field(init=False, repr=False, compare=False)
     """All parameters by name."""
     _coefficients: Coefficients | None = field(init=False, repr=False, compare=False)
@@ -73,7 +73,7 @@ class Rod:
         # The dataclass is frozen; computed fields are set here only.
         object.__setattr__(self, "values", values)
         coefficients = None
-        if self.build.is_uniform_and_linear and self.taper == 1:
+        if self.material.is_uniform_and_linear and self.taper == 1:
             # Kernels are compiled for floats; an int would cause another compilation.
             coefficients = Coefficients(*map(float, coefficients_of(values)))
         object.__setattr__(self, "_coefficients", coefficients)
@@ -91,40 +91,42 @@ class Rod:
 
     def local_coefficients(self, u: Array) -> LocalCoefficients:
         """Coefficients of the transverse operator at points u, (points,), away from breaks of the profile."""
-        return self.build.local_coefficients(self.F, stiffnesses_and_drags_at_base(self.values), u)
+        return self.material.local_coefficients(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     @staticmethod
     def local_coefficients_of_rods(rods: Sequence["Rod"], u: Array) -> LocalCoefficients:
-        """Results of `local_coefficients` at points u of n rods with the same build, (n, *u.shape)."""
+        """Results of `local_coefficients` at points u of n rods with the same material, (n, *u.shape)."""
         if len(rods) == 1:
             return LocalCoefficients(*(x[None] for x in rods[0].local_coefficients(u)))
         shape = (len(rods), *(1,) * u.ndim)
         values = {name: np.array([getattr(rod, name) for rod in rods]).reshape(shape) for name in PARAMETERS}
-        coefficients = rods[0].build.local_coefficients(values["F"], stiffnesses_and_drags_at_base(values), u)
+        coefficients = rods[0].material.local_coefficients(
+            values["F"], stiffnesses_and_drags_at_base(values), u
+        )
         full = (len(rods), *u.shape)
         return LocalCoefficients(*(x if x.shape == full else np.broadcast_to(x, full) for x in coefficients))
 
     @property
     def crushing_force(self) -> float:
         """The force that crushes the weakest section, in k3/L^2; inf if no force crushes the section."""
-        return self.build.relative_crushing_force(self.taper) * self.stretch_stiffness
+        return self.material.relative_crushing_force(self.taper) * self.stretch_stiffness
 
     @property
     def least_rotational_drag(self) -> float:
         """Smallest rotational drag along the arm, in gamma2 L^2."""
         if self.is_uniform_and_linear:
             return self.rotational_drag
-        return self.build.relative_least_rotational_drag(self.taper) * self.rotational_drag
+        return self.material.relative_least_rotational_drag(self.taper) * self.rotational_drag
 
     @property
     def least_axial_drag(self) -> float:
         """Smallest axial drag along the arm, in gamma2."""
-        return self.build.relative_least_axial_drag * self.axial_drag
+        return self.material.relative_least_axial_drag * self.axial_drag
 
     @property
     def is_uniform(self) -> bool:
         """Whether stiffnesses and drags are constant along the rod."""
-        return self.taper == 1 and self.build.profile is None
+        return self.taper == 1 and self.material.profile is None
 
     @property
     def is_uniform_and_linear(self) -> bool:
@@ -138,7 +140,7 @@ class Rod:
         K, gamma3), and rate = K. Raises NotUniform for an arm that varies."""
         if not self.is_uniform:
             raise NotUniform(f"{self} is not uniform")
-        law = self.build.constitutive_law
+        law = self.material.constitutive_law
         shortening = float(law.shortening(self.F * self.c1))
         # With the unit K k3 the bending stiffness is 1; the unit of time is then gamma2 L^4/(K k3).
         K = float(law.bending_factor(1 - shortening))
@@ -149,7 +151,7 @@ class Rod:
     @property
     def without_nonlinear_parameters(self) -> "Rod":
         """The rod with the same parameters of the transverse linear problem, and defaults of all others."""
-        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, build=self.build)
+        return Rod(**{name: self.values[name] for name in TRANSVERSE_PARAMETERS}, material=self.material)
 
     def coordinate(self, name: str) -> float:
         """Coordinate of the parameter `name` of the rod: 1/k for a stiffness k, otherwise the value."""
@@ -162,7 +164,7 @@ class Rod:
     def with_values(self, **values: float) -> "Rod":
         """The same rod with the given parameter values, by name. Raises ValueError for an invalid value."""
         # `dataclasses.replace` takes a third longer.
-        return Rod(**{**self.values, **values}, build=self.build)
+        return Rod(**{**self.values, **values}, material=self.material)
 
     @property
     def stretch_stiffness(self) -> float:
@@ -209,28 +211,28 @@ class Rod:
         return Coefficients(F, nu, slopes.get("k2", 0.0), slopes.get("gamma3", 0.0))
 
     @property
-    def material(self) -> Material:
+    def balance_coefficients(self) -> BalanceCoefficients:
         """Coefficients of the balance for motion in the plane. Raises NotUniform as `coefficients`."""
         compliance = np.array([self.c1, self.c2, 1.0])
         drag = np.array([self.axial_drag, 1.0, self.rotational_drag])
-        return Material(compliance, drag, self.F, axial_vector(self.nu, 3))
+        return BalanceCoefficients(compliance, drag, self.F, axial_vector(self.nu, 3))
 
     def sections(self, u: Array) -> CrossSections:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
-        return self.build.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
+        return self.material.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
     def section_derivatives(self, name: str, u: Array) -> CrossSections:
         """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
         slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
-        return self.build.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)
+        return self.material.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)
 
-    def material_derivative(self, name: str) -> Material:
-        """Derivative of `material` with respect to the coordinate of the parameter `name`."""
+    def balance_coefficient_derivative(self, name: str) -> BalanceCoefficients:
+        """Derivative of `balance_coefficients` with respect to the coordinate of the parameter `name`."""
         slopes = self._derivatives_by_coordinate(name)
         F, nu, c2, gamma3 = self.coefficient_derivative(name)
         compliance = np.array([slopes.get("k1", 0.0), c2, 0.0])
         drag = np.array([slopes.get("gamma1", 0.0), 0.0, gamma3])
-        return Material(compliance, drag, F, axial_vector(nu, 3))
+        return BalanceCoefficients(compliance, drag, F, axial_vector(nu, 3))
 
     def _derivatives_by_coordinate(self, name: str) -> dict[str, float]:
         """Nonzero derivatives of force, compliances and drags with respect to the coordinate of `name`.

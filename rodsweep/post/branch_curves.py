@@ -187,7 +187,7 @@ def stability_runs(stable: NDArray[np.integer]) -> Iterator[tuple[slice, int]]:
     yield from ((slice(a, b + 1), int(stable[a])) for a, b in pairwise(starts) if b > a)
 
 
-def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBranch:
+def _stored_branch(v: dict[str, Array], parameter_name: str, number: int) -> StoredBranch:
     """Branch with the given number, from 1."""
     cycles = np.flatnonzero(v["branch"] == number)
     special = np.flatnonzero(v["special_branch"] == number)
@@ -197,13 +197,13 @@ def _stored_branch(v: dict[str, Array], parameter: str, number: int) -> StoredBr
         order.append((True, int(index)))
         order += [(False, int(i)) for i in special[v["special_point"][special] == index + 1]]
     values = [
-        (v[f"branch_{parameter}"][i], v["tip_y_max"][i], v["period"][i])
+        (v[f"branch_{parameter_name}"][i], v["tip_y_max"][i], v["period"][i])
         if is_cycle
         else (v["special_at"][i], v["special_tip_y_max"][i], v["special_period"][i])
         for is_cycle, i in order
     ]
     x, y, period = np.array(values, dtype=float).reshape(-1, 3).T
-    errors = np.array([v[f"branch_{parameter}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
+    errors = np.array([v[f"branch_{parameter_name}_error"][i] if is_cycle else 0.0 for is_cycle, i in order])
     x = _within_special_points(x, errors * np.abs(x), np.array([not is_cycle for is_cycle, _ in order]))
     crossing = zip(v["unstable_multipliers"], v["multiplier"], v["multiplier_error"], strict=True)
     outside = [min_unstable_count(int(count), float(size), float(error)) for count, size, error in crossing]

@@ -8,17 +8,17 @@ from ..arrays import Array
 from ..config.document.reading import config_from_resolved
 from ..errors import InputError
 from ..model.crushing import uncrushed_interval
-from ..model.material.build import Build
+from ..model.material.rod_material import RodMaterial
 from ..results.file.view import ResultView
 from .branch_curves import branch_ends, followed_parameter
 from .range_unions import ParameterRange
 
 
-def build_of_rods(view: ResultView) -> Build:
+def material_of_rods(view: ResultView) -> RodMaterial:
     """Constitutive law and profile of the rods of a file. Raises InputError if this version of rodsweep does
     not accept the config of the file."""
     try:
-        return config_from_resolved(view.config).build
+        return config_from_resolved(view.config).rod_material
     except ValueError as error:
         raise InputError(f"{view.path}: {error}") from None
 
@@ -29,19 +29,20 @@ def uncrushed_ranges(view: ResultView, rods: Iterable[int]) -> list[ParameterRan
     """
     low, high = branch_ends(view)
     parameter = followed_parameter(view)
-    build = build_of_rods(view)
+    material = material_of_rods(view)
     columns = {name: values.ravel() for name, values in view.point_columns.items()}
     rods_values = ({name: float(column[index]) for name, column in columns.items()} for index in rods)
-    return [uncrushed_interval(build, rod, (parameter, low, high)) for rod in rods_values]
+    return [uncrushed_interval(material, rod, (parameter, low, high)) for rod in rods_values]
 
 
-def crushing_ratio(view: ResultView, line: str, row: str, x: Array, y: Array) -> Array:
+def crushing_ratio(view: ResultView, line_parameter: str, row_parameter: str, x: Array, y: Array) -> Array:
     """Force divided by the crushing force (zero stretch), at the points x, y of the plane of a phase diagram;
     0 if no force crushes the rod.
 
-    line, row: parameters along a row, and constant on a row. x, y: their values, of shapes that broadcast.
+    line_parameter, row_parameter: parameters along a row, and constant on a row. x, y: their values, of
+    shapes that broadcast.
     """
     fixed = {name: np.asarray(values[0]) for name, values in view.parameter_values.items()}
-    values = {"taper": np.asarray(1.0)} | fixed | {line: x, row: y}
-    force_per_k1 = build_of_rods(view).relative_crushing_forces(values["taper"])
+    values = {"taper": np.asarray(1.0)} | fixed | {line_parameter: x, row_parameter: y}
+    force_per_k1 = material_of_rods(view).relative_crushing_forces(values["taper"])
     return np.asarray(values["F"] / (values["k1"] * force_per_k1) + 0 * (x + y))

@@ -9,7 +9,7 @@ from ..results.layouts.thresholds import CROSSING_KINDS
 from .located_thresholds import STABILITY_CHANGES
 
 
-def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int, bool]:
+def curves_bounding_stability(view: ResultView, line_parameter: str, row_parameter: str) -> dict[int, bool]:
     """For each curve of Hopf points, by number: whether the curve bounds the region of stable rods.
 
     A curve bounds the region if it is, for some change of stability on a row, the nearest curve along the
@@ -18,10 +18,13 @@ def curves_bounding_stability(view: ResultView, line: str, row: str) -> dict[int
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == 1]).astype(int).tolist()
     is_bound = dict.fromkeys(numbers, False)
-    rows = view.point_columns[row]
+    rows = view.point_columns[row_parameter]
     kinds, counts, positions = map(view.by_point, ("crossing_kind", "unstable_after", "crossing_at"))
     masks = ((number, v["curve_number"] == number) for number in numbers)
-    paths = {number: (v[f"curve_{line}"][mask], v[f"curve_{row}"][mask]) for number, mask in masks}
+    paths = {
+        number: (v[f"curve_{line_parameter}"][mask], v[f"curve_{row_parameter}"][mask])
+        for number, mask in masks
+    }
     for index, i in zip(*np.nonzero(np.isfinite(positions)), strict=True):
         kind = CROSSING_KINDS[int(kinds[index, i])]
         if numbers and (kind, int(counts[index, i])) in STABILITY_CHANGES and np.isfinite(rows[index]):

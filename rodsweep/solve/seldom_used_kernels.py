@@ -11,8 +11,8 @@ from ..determinant.parameter_path import ParameterPath
 from ..determinant.stability_changes import stability_change_between
 from ..discretization.elements.mesh import uniform_mesh
 from ..discretization.stress.form import StressForm
-from ..model.material.build import Build
 from ..model.material.profile import Profile
+from ..model.material.rod_material import RodMaterial
 from ..model.rod import Rod
 from .changes.thresholds import ThresholdsRequest, solve_thresholds
 from .cycle.limit_cycle import solve_cycle
@@ -35,7 +35,7 @@ SAMPLE_SEGMENTS = Rod(
     k1=1e4,
     k2=1e2,
     gamma3=1e-2,
-    build=Build(profile=Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6,) * 2 + ((0.8,) * 6,) * 2)),
+    material=RodMaterial(profile=Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6,) * 2 + ((0.8,) * 6,) * 2)),
 )
 """An arm whose properties jump at its middle."""
 SAMPLE_ACCURACY = 1e-4

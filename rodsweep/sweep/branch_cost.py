@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ..arrays import Array
-from ..model.material.build import Build
 from ..model.material.laws import LINEAR
+from ..model.material.rod_material import RodMaterial
 from .cost_estimate import CostEstimate, sampled_points
 from .points.points import Points
 
@@ -47,19 +47,22 @@ def branches_cost(points: Points, name: str, limits: tuple[float, float], accura
     seconds = per_force * F / taper**2 * (1 + F / (values["k2"] * min_area)) ** BRANCH_BENDING_EXPONENT
     if not indices.size:
         return CostEstimate(0.0)
-    builds = [points.build_of(int(index)) for index in indices]
+    materials = [points.material_of(int(index)) for index in indices]
     return CostEstimate(
-        float(np.mean(seconds)) * points.count, doubt=_doubt_text(builds, values | {"F": F}, taper)
+        float(np.mean(seconds)) * points.count,
+        doubt=_underestimated_rods_text(materials, values | {"F": F}, taper),
     )
 
 
-def _doubt_text(builds: Sequence[Build], values: Mapping[str, Array | float], taper: Array) -> str:
+def _underestimated_rods_text(
+    materials: Sequence[RodMaterial], values: Mapping[str, Array | float], taper: Array
+) -> str:
     """Kind of rods among the sampled rods whose branches may take many times as long as estimated, or empty.
-    builds: build of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,)."""
+    materials: material of every rod. values: parameters, numbers or (rods,). taper: a number or (rods,)."""
     min_taper, max_taper = MEASURED_TAPERS
-    if any(build.constitutive_law is not LINEAR for build in builds):
+    if any(material.constitutive_law is not LINEAR for material in materials):
         return "branches of rubber"
-    if any(build.profile is not None for build in builds):
+    if any(material.profile is not None for material in materials):
         return "branches of arms with a profile"
     if bool(((taper < min_taper) | (taper > max_taper)).any()):
         return f"branches of cones with a taper outside {min_taper:g} to {max_taper:g}"

@@ -30,9 +30,9 @@ NO_WORK_LEFT: IndexRange = (0, 0)
 """Empty range of items: the answer to a request for a chunk if no item is left to solve."""
 
 
-def chunk_seconds(ranks: int) -> float:
-    """Planned time of a chunk, in s, in a run with `ranks` ranks."""
-    return max(CHUNK_SECONDS, ranks * CHUNK_SECONDS_PER_RANK)
+def chunk_seconds(rank_count: int) -> float:
+    """Planned time of a chunk, in s, in a run with `rank_count` ranks."""
+    return max(CHUNK_SECONDS, rank_count * CHUNK_SECONDS_PER_RANK)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +60,10 @@ class ChunkQueue:
     """Queue of the unsolved items, on the first rank; safe to use from two threads. ranges: ranges of items.
     ranks: number of ranks."""
 
-    def __init__(self, ranges: list[IndexRange], ranks: int):
+    def __init__(self, ranges: list[IndexRange], rank_count: int):
         self.unsolved = deque(ranges)
         self.items_left = index_count(ranges)
-        self.ranks = ranks
+        self.ranks = rank_count
         self.outstanding: Counter[int] = Counter()
         """Number of chunks that a rank has received but not reported on, by rank."""
         self.stored_points = 0
@@ -141,8 +141,8 @@ class DependentItemQueue(ChunkQueue):
     chooses the next items from the results. results: results of solved items, by number of the item; at first
     from an earlier run, later also from the reports. ranks: number of ranks."""
 
-    def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], ranks: int):
-        super().__init__([], ranks)
+    def __init__(self, item_chooser: ItemChooser, results: dict[int, Any], rank_count: int):
+        super().__init__([], rank_count)
         self.item_chooser = item_chooser
         self.results = results
         self.in_progress: dict[int, IndexRange] = {}

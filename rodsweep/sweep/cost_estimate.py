@@ -117,18 +117,18 @@ def with_loading_time(cost: CostEstimate) -> CostEstimate:
     return replace(cost, seconds=cost.seconds + ARM_LOADING_SECONDS)
 
 
-def modes_cost(spectra: CostEstimate, count: int, modes: int, growth: bool) -> CostEstimate:
-    """Cost of `modes` eigenvectors at each of `count` points, from the cost `spectra` of the eigenvalues.
-    growth: whether the transient growth is computed too."""
-    extra_seconds = count * 1e-3 * (MODES_MS * modes**2 + (GROWTH_MS if growth else 0))
+def modes_cost(spectra: CostEstimate, count: int, mode_count: int, growth: bool) -> CostEstimate:
+    """Cost of `mode_count` eigenvectors at each of `count` points, from the cost `spectra` of the
+    eigenvalues. growth: whether the transient growth is computed too."""
+    extra_seconds = count * 1e-3 * (MODES_MS * mode_count**2 + (GROWTH_MS if growth else 0))
     return replace(spectra, seconds=spectra.seconds + extra_seconds, unknowns=None)
 
 
 def followed_spectra_cost(
-    separate: CostEstimate, groups: PointGroups, points: Points, modes: int
+    separate: CostEstimate, groups: PointGroups, points: Points, mode_count: int
 ) -> CostEstimate:
     """Estimated cost of the spectra of `points` followed along groups. separate: cost of solving every
-    point alone. modes: number of eigenvalues."""
+    point alone. mode_count: number of eigenvalues."""
     firsts = FIRST_POINT_COST * groups.count / points.count
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     point_ms = (
@@ -136,16 +136,16 @@ def followed_spectra_cost(
     )
     growing = np.array([0.0 if rod.is_uniform_and_linear else expected_unstable_count(rod) for rod in rods])
     extra_ms = np.where(
-        growing > modes + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
+        growing > mode_count + MAX_EXTRA_UNSTABLE_MODES, MS_PER_SQUARED_UNSTABLE_MODE * growing**2, 0.0
     )
     point_ms += float(extra_ms.mean()) if rods else 0.0
     return replace(separate, seconds=separate.seconds * min(1.0, firsts) + points.count * 1e-3 * point_ms)
 
 
-def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate:
-    """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. modes: number of eigenvalues.
-    accuracy: relative accuracy."""
-    single = spectra_cost(points, modes, accuracy, certify=False)
+def two_meshes_cost(points: Points, mode_count: int, accuracy: float) -> CostEstimate:
+    """Estimated cost of the spectra of `points` by Krylov-Schur on two meshes. mode_count: number of
+    eigenvalues. accuracy: relative accuracy."""
+    single = spectra_cost(points, mode_count, accuracy, certify=False)
     rods = [points.rod(int(index)) for index in sampled_points(points)]
     hard = points.count * 1e-3 * float(np.mean([_soft_or_pulled_rod_ms(rod) for rod in rods] or [0.0]))
     seconds = COST_OF_TWO_MESHES * (single.seconds - hard) + UNCOUNTED_SHARE * hard
@@ -153,12 +153,12 @@ def two_meshes_cost(points: Points, modes: int, accuracy: float) -> CostEstimate
     return replace(single, seconds=seconds, unknowns=unknowns)
 
 
-def spectra_cost(points: Points, modes: int, accuracy: float, certify: bool) -> CostEstimate:
+def spectra_cost(points: Points, mode_count: int, accuracy: float, certify: bool) -> CostEstimate:
     """Estimated cost of the spectra of `points`, extrapolated from evenly spaced points of the sweep; 0 if
-    none of these points has a rod. modes: number of eigenvalues. accuracy: relative accuracy. certify:
+    none of these points has a rod. mode_count: number of eigenvalues. accuracy: relative accuracy. certify:
     whether spectra are certified."""
     rods = [points.rod(int(index)) for index in sampled_points(points)]
-    sizes = [_unknowns(rod, modes, accuracy) for rod in rods]
+    sizes = [_unknowns(rod, mode_count, accuracy) for rod in rods]
     if not sizes:  # no rod covers any point of the sample
         return CostEstimate(0.0)
     fraction = sum(not rod.is_uniform_and_linear for rod in rods) / len(rods)
@@ -192,13 +192,13 @@ def _soft_or_pulled_rod_ms(rod: Rod) -> float:
     return PULLED_MS_PER_WAVE_NUMBER * wave_number * (wave_number > MIN_WAVE_NUMBER_OF_LAYERS)
 
 
-def _unknowns(rod: Rod, modes: int, accuracy: float) -> int:
-    """Number of unknowns of the first mesh on which `rod` is solved for `modes` modes to the relative
+def _unknowns(rod: Rod, mode_count: int, accuracy: float) -> int:
+    """Number of unknowns of the first mesh on which `rod` is solved for `mode_count` modes to the relative
     accuracy `accuracy`."""
     if not rod.is_uniform_and_linear:
-        return arm_mesh(rod, modes, accuracy).unknown_count
+        return arm_mesh(rod, mode_count, accuracy).unknown_count
     _, wave = most_amplified_wave(rod)
-    return resolution_for(expected_wave_number(modes, wave), accuracy).unknown_count
+    return resolution_for(expected_wave_number(mode_count, wave), accuracy).unknown_count
 
 
 def sampled_points(points: Points, max_count: int = MAX_SAMPLED_POINTS) -> NDArray[np.int64]:

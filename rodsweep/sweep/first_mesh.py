@@ -17,12 +17,13 @@ from .cost_estimate import sampled_points
 from .points.points import Points
 
 
-def spectrum_mesh(rod: Rod, modes: int, accuracy: float) -> Elements:
-    """Initial mesh for the `modes` leading eigenvalues of a rod; accuracy: relative error due to the mesh."""
+def spectrum_mesh(rod: Rod, mode_count: int, accuracy: float) -> Elements:
+    """Initial mesh for the `mode_count` leading eigenvalues of a rod; accuracy: relative error due to the
+    mesh."""
     if not rod.is_uniform:
-        return arm_mesh(rod, modes, accuracy)
+        return arm_mesh(rod, mode_count, accuracy)
     _, wave = most_amplified_wave(rod.equivalent_linear_rod[0])
-    resolution = resolution_for(expected_wave_number(modes, wave), accuracy)
+    resolution = resolution_for(expected_wave_number(mode_count, wave), accuracy)
     return Elements(equal_edges(resolution.element_count), resolution.order)
 
 

@@ -67,11 +67,13 @@ def thresholds_cost(points: Points, F_max: float, certify: bool, is_varying: boo
     return replace(lines, seconds=lines.seconds + soft_searches_seconds(points, F_max, is_varying))
 
 
-def diagram_cost(rows: int, certify: bool, is_varying: bool, curves: bool, criticality: bool) -> CostEstimate:
-    """Estimated cost of a phase diagram of `rows` rows, without limit cycles. certify: whether each row is
-    certified. is_varying: whether any arm is not uniform. curves, criticality: whether boundary curves and
+def diagram_cost(
+    row_count: int, certify: bool, is_varying: bool, curves: bool, criticality: bool
+) -> CostEstimate:
+    """Estimated cost of a phase diagram of `row_count` rows, without limit cycles. certify: whether each row
+    is certified. is_varying: whether any arm is not uniform. curves, criticality: whether boundary curves and
     their criticality are computed; the cost for uniform rods is neglected."""
-    lines = searches_cost(rows, certify, is_varying)
+    lines = searches_cost(row_count, certify, is_varying)
     arm_seconds = CURVES_OF_ARMS_SECONDS * curves + CRITICALITY_OF_ARMS_SECONDS * criticality
     return replace(lines, seconds=lines.seconds + arm_seconds * is_varying)
 

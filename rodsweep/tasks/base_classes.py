@@ -80,7 +80,7 @@ class CertifiedTask(Task):
         """Whether the material or the cross-section of some arm varies along its length. The characteristic
         determinant D then has no closed form."""
         tapers = self.points.columns_by_name.get("taper", np.ones(1))
-        return self.config.build.profile is not None or bool((tapers != 1).any())
+        return self.config.rod_material.profile is not None or bool((tapers != 1).any())
 
     def check_rows(self) -> list[CheckRow]:
         """Rows of the table of modelled and neglected effects, with a row on the certificate."""

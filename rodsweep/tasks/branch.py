@@ -76,13 +76,15 @@ class BranchTask(HopfPointTask):
         )
 
 
-def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_count: int) -> dict[str, Any]:
+def branch_values(
+    result: "BranchesOfRod", parameter_name: str, point_count: int, special_count: int
+) -> dict[str, Any]:
     """Variables of the file for all branches of a rod.
 
-    points: length of the list of cycles. special_count: length of the list of special points.
+    point_count: length of the list of cycles. special_count: length of the list of special points.
     """
     numbered = [(number, point) for number, curve in enumerate(result.curves, 1) for point in curve.points]
-    cycles = [_cycle_values(point, parameter) | {"branch": number} for number, point in numbered]
+    cycles = [_cycle_values(point, parameter_name) | {"branch": number} for number, point in numbered]
     crossing_by_value = {crossing.value: crossing for crossing in result.crossings}
     others = branches_at_breakings(result.curves)
     specials = []
@@ -99,8 +101,8 @@ def branch_values(result: "BranchesOfRod", parameter: str, points: int, special_
     values: dict[str, Any] = {f"{name}_count": count if is_complete else -1 for name, count in counts.items()}
     values |= {"unstable_at_start": result.unstable_at_start, "certified": result.proved}
     values["followed_from"], values["followed_to"] = result.followed_range
-    values |= value_lists(followed_variables(parameter), cycles, points)
-    values |= value_lists(special_variables(parameter), specials, special_count)
+    values |= value_lists(followed_variables(parameter_name), cycles, point_count)
+    values |= value_lists(special_variables(parameter_name), specials, special_count)
     return values | {"seconds": result.seconds, "status": result.status}
 
 
@@ -119,14 +121,14 @@ def branches_at_breakings(curves: "Sequence[BranchCurve]") -> dict[tuple[int, in
     return numbers
 
 
-def _cycle_values(point: "BranchPoint", parameter: str) -> dict[str, Any]:
+def _cycle_values(point: "BranchPoint", parameter_name: str) -> dict[str, Any]:
     """A cycle of a branch as variables of the file."""
     attribute_names = {
-        f"branch_{parameter}": "parameter_value",
-        f"branch_{parameter}_error": "parameter_value_error",
+        f"branch_{parameter_name}": "parameter_value",
+        f"branch_{parameter_name}_error": "parameter_value_error",
         "unstable_multipliers": "unstable_count",
     }
-    variables = [v for v in followed_variables(parameter) if v.name != "branch"]
+    variables = [v for v in followed_variables(parameter_name) if v.name != "branch"]
     return outcome_values(variables, point, point.measures, point.errors, names=attribute_names)
 
 

@@ -18,7 +18,7 @@ def crushing_clause(config: Config) -> str:
     crushes the arm."""
     if config.is_uniform_and_linear:
         return ", or to just below k1"
-    can_be_crushed = np.isfinite(config.build.constitutive_law.crushing_load)
+    can_be_crushed = np.isfinite(config.rod_material.constitutive_law.crushing_load)
     return ", or to just below the force that crushes the weakest section" * bool(can_be_crushed)
 
 
@@ -95,7 +95,7 @@ def _shape_texts(config: Config, columns: Mapping[str, np.ndarray]) -> list[str]
     ratios = "a cone of radius ratio" if len(np.unique(tapers)) == 1 else "cones of radius ratios"
     ends = " to ".join(f"{end:g}" for end in np.unique([tapers.min(), tapers.max()]))
     shapes = [] if (tapers == 1).all() else [f"{ratios} {ends}"]
-    profile = config.build.profile
+    profile = config.rod_material.profile
     if profile is not None:
         shapes.append(_profile_text(config, profile))
     return shapes
@@ -105,7 +105,7 @@ def _profile_text(config: Config, profile: Profile) -> str:
     """Text describing a profile. The profile of a cone in SI units is computed by rodsweep: the drag at each
     radius."""
     arm = config.parameters.arm
-    if config.stated_build is None and arm is not None and arm.cone_parameters:
+    if config.stated_rod_material is None and arm is not None and arm.cone_parameters:
         return "the drag of each local radius"
     jumps = len(profile.u) - len(profile.breaks)
     rows = f"a profile of {counted(len(profile.u), 'row')}"
@@ -114,8 +114,8 @@ def _profile_text(config: Config, profile: Profile) -> str:
 
 def _law_text(config: Config) -> str:
     """Text describing the constitutive law and the cross-section."""
-    law = "linear material" if config.build.law == "linear" else "neo-Hookean rubber"
-    return f"{law} with a swelling section" if config.build.section == "swelling" else law
+    law = "linear material" if config.rod_material.law == "linear" else "neo-Hookean rubber"
+    return f"{law} with a swelling section" if config.rod_material.section == "swelling" else law
 
 
 def _deformation_row(parameter: Parameter, values: np.ndarray) -> CheckRow:

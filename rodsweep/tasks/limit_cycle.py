@@ -34,13 +34,13 @@ from .hopf.lines import HopfLine, hopf_lines_of, hopf_variables
 from .protocol import CheckRow, OrderedMap, Solver, Task, solve_on_one_rank
 
 if TYPE_CHECKING:
-    from ..solve.cycle.limit_cycle import Cycle, CycleRequest
+    from ..solve.cycle.limit_cycle import CycleOutcome, CycleRequest
 
 NON_SOLVER_OPTIONS = ("method", "along", "direction", "time")
 """Options of the task that concern the sweep or the file; all other options are passed to the solver of a
 cycle."""
 MULTIPLIER_FIELDS = {f"multiplier_{part}": f"multipliers_{part}" for part in ("real", "imag")}
-"""Field of `Cycle` by name of the variable, where the two names differ."""
+"""Field of `CycleOutcome` by name of the variable, where the two names differ."""
 ALLOWED_K2_WITH_TAU1 = Range(isfinite, "a finite number")
 """Values of k2 for which tau1 exists."""
 ALLOWED_GAMMA3_WITH_TAU1 = Range(lambda value: value > 0, "a number above 0")
@@ -174,10 +174,10 @@ class LimitCycleTask(Task):
         chain_parameter = self.config.chain_parameter if chains else None
         workspace = NewtonWorkspace()
 
-        def solve(index: int, start: "CycleStart | None" = None) -> "Cycle":
+        def solve(index: int, start: "CycleStart | None" = None) -> "CycleOutcome":
             return solve_cycle(self.points.rod(index), request, start, chain_parameter, workspace)
 
-        def solve_from(index: int, start: "CycleStart | None") -> "tuple[Cycle, CycleStart | None]":
+        def solve_from(index: int, start: "CycleStart | None") -> "tuple[CycleOutcome, CycleStart | None]":
             cycle = solve(index, start)
             return cycle, cycle.neighbour if cycle.status == CycleStatus.cycle else None
 
@@ -206,7 +206,7 @@ class LimitCycleTask(Task):
         options = self.config.limit_cycle.model_dump(exclude=set(NON_SOLVER_OPTIONS))
         return CycleRequest(accuracy=self.config.accuracy, **options)
 
-    def record(self, point: dict[str, float], cycle: "Cycle") -> dict[str, Any]:
+    def record(self, point: dict[str, float], cycle: "CycleOutcome") -> dict[str, Any]:
         """Variables of the file for the cycle of one point; point: parameters by name."""
         options = self.config.limit_cycle
         unknown = np.full(STORED_MULTIPLIERS, COMPLEX_NAN)

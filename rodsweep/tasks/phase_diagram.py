@@ -198,12 +198,12 @@ class PhaseDiagramTask(CertifiedTask):
         )
 
 
-def row_values(result: "DiagramRow", line: str, max_crossings: int) -> dict[str, Any]:
+def row_values(result: "DiagramRow", line_parameter: str, max_crossings: int) -> dict[str, Any]:
     """Variables of the file for one row.
 
     max_crossings: length of the list of crossings.
     """
     classes = {"class": result.rod_class, "unstable_count": result.unstable_count}
-    changes = crossing_values(result.thresholds, max_crossings, line, "crossing_at")
+    changes = crossing_values(result.thresholds, max_crossings, line_parameter, "crossing_at")
     certified = result.thresholds.search_result.proved_to_the_end
     return classes | changes | {"certified": certified, "seconds": result.seconds}

@@ -61,13 +61,13 @@ class SweepWideSolver(Protocol):
         view: the file with all points. results: results of work items so far, by number.
         """
 
-    def initial_data(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
+    def cached_starts(self, items: Any, item_numbers: Sequence[int]) -> dict[Any, Any]:
         """Initial data, by key, that this rank has cached for the work items numbered `item_numbers` of
         `items`, to be sent to all ranks."""
 
-    def add_initial_data(self, starts: Mapping[Any, Any]) -> None:
+    def add_starts(self, starts: Mapping[Any, Any]) -> None:
         """Caches initial data received from a different rank. starts: initial data by key, as from
-        `initial_data`."""
+        `cached_starts`."""
 
     def solve_item(self, items: Any, item: int) -> NamedArrays:
         """Solves the work item number `item` of `items`, and returns its result."""

@@ -14,8 +14,8 @@ from ..discretization.elements.resolution import mesh_accuracy
 from ..discretization.straight.longitudinal_modes import longitudinal_modes
 from ..errors import InputError
 from ..model.longitudinal import longitudinal_eigenvalues
-from ..model.material.build import Build
 from ..model.material.laws import LINEAR
+from ..model.material.rod_material import RodMaterial
 from ..model.rod import Crushed, Rod
 from ..results.layouts.spectrum import (
     FOLLOWED_POINT_VARIABLES,
@@ -84,7 +84,9 @@ class SpectrumTask(CertifiedTask):
             return ((variables[0], np.reshape(rates, (*shape, modes))),)
         values = zip(*(column.tolist() for column in columns.values()), strict=True)
         rods = [dict(zip(columns, each, strict=True)) | {"gamma1": gamma1} for each in values]
-        table = np.array(in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.build, modes)))
+        table = np.array(
+            in_order(rods, lambda rod: longitudinal_rates_of_arm(rod, self.config.rod_material, modes))
+        )
         return tuple((variable, table[:, i].reshape(*shape, modes)) for i, variable in enumerate(variables))
 
     def _longitudinal_points(self) -> tuple[tuple[str, ...], tuple[int, ...], dict[str, np.ndarray]]:
@@ -92,7 +94,7 @@ class SpectrumTask(CertifiedTask):
         names of the dimensions of these points. shape: their lengths. columns: values of the parameters on
         which the rates depend, by name, flattened to (points,)."""
         points = self.points
-        linear = self.config.build.constitutive_law is LINEAR
+        linear = self.config.rod_material.constitutive_law is LINEAR
         parameter_names = longitudinal_parameters(self.config.is_uniform_and_linear, linear)
         names = [name for name in parameter_names if name in points.columns_by_name]
         columns = {name: points.columns_by_name[name] for name in names}
@@ -179,13 +181,13 @@ class SpectrumTask(CertifiedTask):
         return GroupResult(spectrum_values(followed.spectra), followed.is_solved)
 
 
-def longitudinal_rates_of_arm(values: dict[str, float], build: Build, modes: int) -> np.ndarray:
+def longitudinal_rates_of_arm(values: dict[str, float], material: RodMaterial, mode_count: int) -> np.ndarray:
     """(longitudinal growth rates in 1/tau2, relative errors) of an arm, (2, modes); NaN for a crushed arm."""
     try:
-        rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, build=build)
+        rod = Rod(**{"F": 0.0, "k2": np.inf, "gamma3": 0.0} | values, material=material)
     except Crushed:
-        return np.full((2, modes), np.nan)
-    return np.array(longitudinal_modes(rod, modes))
+        return np.full((2, mode_count), np.nan)
+    return np.array(longitudinal_modes(rod, mode_count))
 
 
 def spectrum_values(result: "Spectrum") -> dict[str, Any]:

@@ -80,14 +80,14 @@ def threshold_values(result: "Thresholds", max_crossings: int) -> dict[str, Any]
 
 
 def crossing_values(
-    result: "Thresholds | Criticality", max_crossings: int, line: str, position_name: str
+    result: "Thresholds | Criticality", max_crossings: int, line_parameter: str, position_name: str
 ) -> dict[str, Any]:
-    """Variables of the file for a search for crossings along the parameter `line`.
+    """Variables of the file for a search for crossings along the parameter `line_parameter`.
 
     max_crossings: length of the list of crossings. position_name: name of the variable with the parameter
     value at a crossing."""
     search_result = result.search_result
-    variables = crossing_variables(line, position_name)
+    variables = crossing_variables(line_parameter, position_name)
     thresholds = search_result.thresholds
     names = {position_name: "value"}
     rows = [outcome_values(variables, each, prefix="crossing_", names=names) for each in thresholds]

@@ -117,7 +117,7 @@ def _weakest_section_shortening(arm: SlenderArm, F: float) -> float:
     """Compressive strain of the arm's weakest section under the force F. F: in k3/L^2."""
     smallest = min(station.young * station.section.area for station in arm.shape.stations)
     largest = arm.shape.base.young * arm.cross_section.area
-    return float(arm.build.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
+    return float(arm.material.constitutive_law.shortening(F / (arm.k1 * smallest / largest)))
 
 
 def rubber_stiffening(strain: float) -> float:

@@ -19,7 +19,7 @@ from ..determinant.roots.newton import LocatedEigenvalue
 from ..errors import InputError
 from ..model.arm.arm import SlenderArm
 from ..model.arm.drag import Drag
-from ..model.material.build import Build
+from ..model.material.rod_material import RodMaterial
 from ..model.rod import Rod
 from ..solve.changes.search_range import end_below_crushing
 from ..solve.changes.threshold_kinds import ThresholdKind
@@ -50,31 +50,31 @@ def with_exchanged_sides(arm: A) -> A:
 
 
 def rods_by_plane(
-    arm: SlenderArm, build: Build | None = None, taper: float | None = None
+    arm: SlenderArm, material: RodMaterial | None = None, taper: float | None = None
 ) -> list[tuple[Rod, float]]:
     """Pairs (rod, scale), one per plane of motion. rod: dimensionless rod without load, for the most likely
-    drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm. build: constitutive law and profile. taper:
-    ratio of tip to base radius. If given, `build` and `taper` replace the values of the arm."""
-    planes = [(_rod_in_its_plane(arm, build, taper), 1.0)]
+    drag. scale: k3/L^2 of the rod divided by k3/L^2 of the arm. material: constitutive law and profile.
+    taper: ratio of tip to base radius. If given, `material` and `taper` replace the values of the arm."""
+    planes = [(_rod_in_its_plane(arm, material, taper), 1.0)]
     if not arm.is_equally_stiff_in_all_planes:
         exchanged = with_exchanged_sides(arm)
         scale = exchanged.cross_section.second_moment / arm.cross_section.second_moment
-        planes.append((_rod_in_its_plane(exchanged, build, taper), scale))
+        planes.append((_rod_in_its_plane(exchanged, material, taper), scale))
     return planes
 
 
-def _rod_in_its_plane(arm: SlenderArm, build: Build | None, taper: float | None) -> Rod:
-    """The arm as a rod that bends in the plane of the section's height. build: constitutive law and profile.
-    taper: ratio of tip to base radius."""
-    rod = rod_with_drag(arm, arm.drags[0], build)
+def _rod_in_its_plane(arm: SlenderArm, material: RodMaterial | None, taper: float | None) -> Rod:
+    """The arm as a rod that bends in the plane of the section's height. material: constitutive law and
+    profile. taper: ratio of tip to base radius."""
+    rod = rod_with_drag(arm, arm.drags[0], material)
     return rod if taper is None else replace(rod, taper=taper)
 
 
-def rod_with_drag(arm: SlenderArm, drag: Drag, build: Build | None = None) -> Rod:
+def rod_with_drag(arm: SlenderArm, drag: Drag, material: RodMaterial | None = None) -> Rod:
     """The arm with the given drag as a dimensionless rod without load, which bends in the plane of the
-    section's height. build: constitutive law and profile; None for the build of the arm."""
+    section's height. material: constitutive law and profile; None for the material of the arm."""
     parameters = {"k1": arm.k1, "k2": arm.k2, "gamma3": arm.gamma3_with(drag), "taper": arm.taper}
-    return Rod(F=0.0, **parameters, build=build or arm.build_with_drag(drag))
+    return Rod(F=0.0, **parameters, material=material or arm.material_with_drag(drag))
 
 
 @cache

@@ -102,7 +102,7 @@ def test_tables_show_what_failed():
 @cache
 def soft_rod():
     """A cycle of the first rod as the task finds it."""
-    return orbit_of(solve_cycle(RODS[0], cycle_request(ACCURACY), parameter="F"))
+    return orbit_of(solve_cycle(RODS[0], cycle_request(ACCURACY), parameter_name="F"))
 
 
 @cache
@@ -114,7 +114,7 @@ def test_the_reference_is_the_cycle_on_its_mesh():
     assert exact().period == pytest.approx(cycle().period, rel=1e-8)  # one element of order 18 leaves 1e-9
     assert exact().tip_y_max == pytest.approx(cycle().tip_y_max, rel=1e-8)
     moved = exact().cycle_at_force(50.5)
-    solved = solve_cycle(replace(RODS[0], F=50.5), cycle_request(ACCURACY), parameter="F")
+    solved = solve_cycle(replace(RODS[0], F=50.5), cycle_request(ACCURACY), parameter_name="F")
     errors = moved.errors_of(solved.measures.period, solved.measures.tip_y_max)
     assert max(errors.values()) < ACCURACY
 

@@ -124,7 +124,7 @@ def test_every_integrator_takes_part_where_it_is_installed(tmp_path):
 @cache
 def soft_rod():
     """A cycle of the first rod as the task finds it."""
-    return orbit_of(solve_cycle(RODS[0], cycle_request(ACCURACY), parameter="F"))
+    return orbit_of(solve_cycle(RODS[0], cycle_request(ACCURACY), parameter_name="F"))
 
 
 @cache

@@ -40,8 +40,8 @@ def points_of(rod: DescribedRod) -> dict[str, float]:
 def test_an_arm_in_segments_has_the_profile_of_its_config():
     segments = ["5 cm: radius 6 mm, young 80 kPa", "5 cm: radius 4 mm, young 100 kPa"]
     found = rod_of_options({}, {"segments": segments, "viscosity": "12 Pa s"}, NO_MATERIAL)
-    build = PortraitRequest(rod=found).job_of_task("thresholds", {}).config.build
-    assert build == rs.Arm(segments=segments, viscosity="12 Pa s").build
+    material = PortraitRequest(rod=found).job_of_task("thresholds", {}).config.rod_material
+    assert material == rs.Arm(segments=segments, viscosity="12 Pa s").material
     assert found.description == f"segments {segments[0]} | {segments[1]}, viscosity 12 Pa s"
 
 

@@ -41,7 +41,7 @@ def test_lists_are_proved_complete_and_none_that_lacks_an_eigenvalue(seed):
         proved += prove_complete(line, w, error, determinant, hull)[0]
         for lacking in np.flatnonzero((w.real >= line) & (w.imag >= 0)):
             kept = (w != w[lacking]) & (w != w[lacking].conjugate())
-            assert not prove_complete(line, w[kept], error[kept], determinant, hull)[0], (rod, rod.build)
+            assert not prove_complete(line, w[kept], error[kept], determinant, hull)[0], (rod, rod.material)
     assert proved >= 3
 
 
@@ -77,7 +77,7 @@ def test_every_term_is_positive_in_the_hull_and_as_large_as_stated_right_of_the_
     assert (phi.real >= 0).all()
     rod = Rod(F=5.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5)
     none, level = np.empty(0, complex), ArmDeterminant(rod).propagators_for(points[-1])
-    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).least_contribution
+    least = remainder_of_sum(line, none, np.empty(0), hull, points, level).min_contribution
     right = v.real >= line
     contribution = np.where(v.imag == 0, 1, 2) * phi.real
     assert least <= contribution[right].min() * (1 + 1e-12)

@@ -15,8 +15,8 @@ from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_er
 from rodsweep.determinant.arm.roots import refine_mesh_eigenvalues
 from rodsweep.determinant.certificate.box import eigenvalue_box, frequency_bound
 from rodsweep.determinant.certificate.winding_number import count_right_of as count_of_uniform
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.1,) * 6, (0.1,) * 6))
@@ -42,7 +42,7 @@ def test_counts_and_hulls_agree_with_dense_eigenvalues(seed):
             )
         line = line_in_gap(w)
         counted = count_right_of(line, determinant, hull)
-        assert counted.number == int((w.real > line).sum()), (rod, rod.build, counted)
+        assert counted.number == int((w.real > line).sum()), (rod, rod.material, counted)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -91,15 +91,15 @@ def test_clearance_is_no_more_than_the_distance_from_the_hull(share):
 
 def test_stepped_arm_without_rotational_drag_is_bounded_by_its_clamp():
     """No best weight is continuous across the jump; theta(0) = 0 bounds what is left."""
-    stiff = Rod(F=2.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
+    stiff = Rod(F=2.0, k1=1e4, k2=1e4, gamma3=0.0, material=RodMaterial(profile=STEP))
     assert 0 < hull_of(stiff).c < 0.5
     count = count_right_of(-100.0, ArmDeterminant(stiff), hull_of(stiff))
-    reference = eigenvalues(Rod(F=2.0, k1=1e4, k2=1e4, gamma3=1e-9, build=Build(profile=STEP)))
+    reference = eigenvalues(Rod(F=2.0, k1=1e4, k2=1e4, gamma3=1e-9, material=RodMaterial(profile=STEP)))
     assert count.number == int((reference.real > -100.0).sum())
 
 
 def test_without_a_bound_no_count_is_given():
-    pulled = Rod(F=-3.0, k1=1e4, k2=1.0, gamma3=0.0, build=Build(profile=STEP))
+    pulled = Rod(F=-3.0, k1=1e4, k2=1.0, gamma3=0.0, material=RodMaterial(profile=STEP))
     assert hull_of(pulled).a == np.inf
     refused = count_right_of(-1.0, ArmDeterminant(pulled), hull_of(pulled))
     assert refused.number is None
@@ -110,8 +110,8 @@ def test_without_a_bound_no_count_is_given():
 @pytest.mark.parametrize("F", [2.0, 4.0])
 def test_arms_with_soft_segments_are_bounded_and_counted_with_and_without_known_modes(F, gamma3):
     """Of the tip's growing modes those close to the line are divided out of D, or none."""
-    rod = Rod(F=F, k1=1e4, k2=1.0, gamma3=gamma3, build=Build(profile=SOFT_STEP))
-    dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, build=rod.build), 10)
+    rod = Rod(F=F, k1=1e4, k2=1.0, gamma3=gamma3, material=RodMaterial(profile=SOFT_STEP))
+    dense = eigenvalues(rod if gamma3 else Rod(F=F, k1=1e4, k2=1.0, gamma3=1e-9, material=rod.material), 10)
     hull, determinant = hull_of(rod), ArmDeterminant(rod)
     for value in dense[:12]:
         assert distance_and_normal(complex(value.real, abs(value.imag)), hull.a, hull.c)[0] <= 1e-6 * abs(

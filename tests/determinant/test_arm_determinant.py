@@ -8,8 +8,8 @@ from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_and_derivatives
 from rodsweep.determinant.arm.elements.minor_rates import PADDED
 from rodsweep.determinant.value import scaled_determinant
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 PLACES = (0.3 + 0j, -2.0 + 0j, 40j, -300 + 700j, -3000 + 20j, 2e4j, 1e6j)
@@ -59,7 +59,7 @@ def by_ode(rod, w):
         rows = nu * theta + c2 * s, c3 * m, w * gamma2 * y + rod.F * c3 * m, w * gamma3 * theta - g * s
         return np.concatenate(rows)
 
-    for a, b in zip(rod.build.breaks[:-1], rod.build.breaks[1:], strict=True):
+    for a, b in zip(rod.material.breaks[:-1], rod.material.breaks[1:], strict=True):
         inside = (a + 1e-13, b - 1e-13)  # at a break itself the coefficients are those of one side
         solution = solve_ivp(rates, inside, columns.ravel(), method="DOP853", rtol=1e-13, atol=1e-14)
         columns = solution.y[:, -1].reshape(4, 2)
@@ -67,20 +67,20 @@ def by_ode(rod, w):
 
 
 @pytest.mark.parametrize(
-    ("taper", "build"),
+    ("taper", "material"),
     [
-        (0.2, Build()),
-        (3.0, Build()),
-        (1.0, Build(law="neo_hookean")),
-        (0.6, Build(law="neo_hookean", section="swelling")),
-        (1.0, Build(profile=JUMP)),
-        (0.7, Build(law="neo_hookean", section="swelling", profile=JUMP)),
+        (0.2, RodMaterial()),
+        (3.0, RodMaterial()),
+        (1.0, RodMaterial(law="neo_hookean")),
+        (0.6, RodMaterial(law="neo_hookean", section="swelling")),
+        (1.0, RodMaterial(profile=JUMP)),
+        (0.7, RodMaterial(law="neo_hookean", section="swelling", profile=JUMP)),
     ],
     ids=["thin tip", "thick tip", "rubber", "swelling cone", "jump", "everything"],
 )
 @pytest.mark.parametrize("w", [-2.0 + 0j, 60j, -40 + 90j])
-def test_arms_that_vary_agree_with_an_ode_solver(taper, build, w):
-    rod = Rod(F=1.5, k1=300.0, k2=80.0, gamma3=0.02, taper=taper, build=build)
+def test_arms_that_vary_agree_with_an_ode_solver(taper, material, w):
+    rod = Rod(F=1.5, k1=300.0, k2=80.0, gamma3=0.02, taper=taper, material=material)
     found = ArmDeterminant(rod).value(w)
     expected = by_ode(rod, w)
     assert abs(found.D * np.exp(found.log_scale) / expected - 1) < 1e-9
@@ -101,7 +101,7 @@ def test_cone_of_radius_ratio_one_half_flutters_where_collocation_says():
 @pytest.mark.parametrize("section", ["fixed", "swelling"])
 @pytest.mark.parametrize("F", [-50.0, 1e-3, 60.0, 900.0])
 def test_uniform_rods_of_rubber_are_equivalent_to_linear_ones(law, section, F):
-    rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, build=Build(law=law, section=section))
+    rod = Rod(F=F, k1=500.0, k2=70.0, gamma3=0.01, material=RodMaterial(law=law, section=section))
     linear, rate = rod.equivalent_linear_rod
     for w in PLACES[:5]:
         found = ArmDeterminant(rod).value(w)
@@ -127,7 +127,9 @@ ARMS = [
         k2=10 ** float(RANDOM.uniform(1, 5)),
         gamma3=10 ** float(RANDOM.uniform(-6, 0)),
         taper=float(RANDOM.uniform(0.15, 2.5)),
-        build=Build(profile=JUMP) if case % 3 == 0 else Build(law="neo_hookean", section="swelling"),
+        material=RodMaterial(profile=JUMP)
+        if case % 3 == 0
+        else RodMaterial(law="neo_hookean", section="swelling"),
     )
     for case in range(6)
 ]

@@ -13,10 +13,10 @@ from rodsweep.determinant.arm.family_values import (
     write_propagators,
 )
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
-from rodsweep.determinant.arm.value import path_value_by_chain
+from rodsweep.determinant.arm.value import path_value_from_propagators
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -28,7 +28,7 @@ def along(family, w, p):
     shape = family.coefficients.shape[1:]
     polynomials, changes = np.empty(shape), np.empty(shape)
     write_propagators(family, p, polynomials, changes)
-    return path_value_by_chain(w, family.largest_w, polynomials, changes)
+    return path_value_from_propagators(w, family.largest_w, polynomials, changes)
 
 
 @pytest.mark.parametrize("name", ["F", "k1", "k2", "gamma3", "taper"])
@@ -58,7 +58,7 @@ def test_families_have_the_determinants_of_their_arms_and_their_slopes(name, see
 
 def test_a_family_of_compressed_rubber_is_spaced_by_the_force():
     """Equal steps would need an interval of a tenth of the length."""
-    rod = Rod(F=0.0, k1=20.0, k2=200.0, gamma3=1e-2, taper=0.9, build=Build("neo_hookean", "fixed"))
+    rod = Rod(F=0.0, k1=20.0, k2=200.0, gamma3=1e-2, taper=0.9, material=RodMaterial("neo_hookean", "fixed"))
     path = ParameterPath(rod, "F")
     family = interpolated_family(path, 0.0, 60.0, 4.0**5)
     assert family is not None
@@ -89,7 +89,7 @@ def test_eigenvalues_of_a_family_are_those_of_the_arm_within_their_errors():
 
 
 def test_an_interval_too_long_for_polynomials_has_no_family():
-    rod = Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, build=Build("neo_hookean", "swelling"))
+    rod = Rod(F=1.0, k1=1.0, k2=1e3, gamma3=1e-3, taper=0.9, material=RodMaterial("neo_hookean", "swelling"))
     path = ParameterPath(rod, "F")
     assert interpolated_family(path, -30.0, 300.0, 4.0**5) is None
     assert interpolated_family(path, 1.0, 1.3, 4.0**5) is not None
@@ -100,16 +100,20 @@ def test_errors_of_double_eigenvalues_hold_where_minors_are_large_amid_the_arm()
     factors = ((1.0, 1.0, 1.0), (1.34, 0.956, 0.746), (2.66, 0.633, 0.243), (2.08, 0.483, 0.209))
     factors += ((1.29, 0.56, 0.381), (1.3, 0.722, 0.323), (0.999, 2.48, 0.397), (1.03, 1.82, 0.453))
     u = (0.0, 0.23, 0.23, 0.45, 0.45, 0.71, 0.71, 1.0)
-    build = Build("neo_hookean", "fixed", Profile(u, tuple((*row, 1.0, 1.0, 1.0) for row in factors)))
-    path = ParameterPath(Rod(F=20.0, k1=151.37, k2=10.358, gamma3=0.08934, build=build), "F")
+    material = RodMaterial(
+        "neo_hookean", "fixed", Profile(u, tuple((*row, 1.0, 1.0, 1.0) for row in factors))
+    )
+    path = ParameterPath(Rod(F=20.0, k1=151.37, k2=10.358, gamma3=0.08934, material=material), "F")
     family = interpolated_family(path, 0.0, 60.0, 4.0**8)
     of_family = ArmAlongPath(path, lambda p: family).double_eigenvalue(254.4652, 22.71770, 0.5)
     of_arms = ArmAlongPath(path).double_eigenvalue(254.4652, 22.71770, 0.5)
     assert abs(of_family.p - of_arms.p) <= of_family.error_of_p + of_arms.error_of_p < 1e-9
 
 
-RUBBER_CONE = Rod(F=1.0, k1=2000.0, k2=30.0, gamma3=1e-3, taper=0.6, build=Build("neo_hookean", "fixed"))
-SOFT_IN_SHEAR = Rod(F=1.0, k1=664.0, k2=1.05, gamma3=0.0017, build=Build("neo_hookean", "fixed"))
+RUBBER_CONE = Rod(
+    F=1.0, k1=2000.0, k2=30.0, gamma3=1e-3, taper=0.6, material=RodMaterial("neo_hookean", "fixed")
+)
+SOFT_IN_SHEAR = Rod(F=1.0, k1=664.0, k2=1.05, gamma3=0.0017, material=RodMaterial("neo_hookean", "fixed"))
 
 
 @pytest.mark.parametrize("rod", [RUBBER_CONE, SOFT_IN_SHEAR], ids=["cone", "soft in shear"])
@@ -143,7 +147,7 @@ def test_double_eigenvalues_have_no_interpolation_error(rod, x, F):
 def test_hopf_points_of_rubber_that_is_very_soft_in_shear_are_within_their_errors():
     """Small entries of propagators have larger truncation than rounding errors here. F by the closed form of
     D with 40 digits."""
-    rod = Rod(F=0.0, k1=60.0, k2=0.3, gamma3=1.0, build=Build("neo_hookean", "swelling"))
+    rod = Rod(F=0.0, k1=60.0, k2=0.3, gamma3=1.0, material=RodMaterial("neo_hookean", "swelling"))
     found = find_axis_crossings(ParameterPath(rod, "F"), 0.0, 400.0).thresholds
     near = min(found, key=lambda one: abs(one.value - 57))
     assert abs(near.value - 56.9264722670805158) <= near.error < 1e-11

@@ -9,11 +9,11 @@ from surveyed import RODS
 from rodsweep.determinant.arm.arm_family import interpolated_family
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.family_values import eigenvalue_of_family_arm
-from rodsweep.determinant.arm.rounding import rounding_error_by_chain
-from rodsweep.determinant.arm.value import determinant_along_chain
+from rodsweep.determinant.arm.rounding import rounding_error_from_propagators
+from rodsweep.determinant.arm.value import determinant_from_propagators
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.search import SpectrumRequest, SpectrumStatus, solve_spectrum
 
@@ -22,7 +22,7 @@ CLOSE_PAIR = Rod(
     k1=109.83750492645562,
     k2=7.02,
     gamma3=0.21681568646611862,
-    build=Build(
+    material=RodMaterial(
         profile=Profile(
             (0.0, 1.0),
             (
@@ -46,7 +46,9 @@ def nearly_crushed(rng):
         k1=k1,
         k2=k1 * 10 ** rng.uniform(-3, 0.5),
         gamma3=float(rng.choice([0.0, 10 ** rng.uniform(-6, -0.5)])),
-        build=Build(profile=Profile(u, tuple((f, f, f * f, 1.0, 1.0, 1.0) for f in factors.tolist()))),
+        material=RodMaterial(
+            profile=Profile(u, tuple((f, f, f * f, 1.0, 1.0, 1.0) for f in factors.tolist()))
+        ),
     )
 
 
@@ -73,7 +75,7 @@ def test_eigenvalues_close_to_crushing_are_within_their_errors(seed):
     determinant = ArmDeterminant(rod)
     for w, error in leading(rod):
         for factor in (1.4, 2.2, 3.5):
-            assert abs(refined(w, determinant, factor) - w) <= 2 * error, (rod, rod.build)
+            assert abs(refined(w, determinant, factor) - w) <= 2 * error, (rod, rod.material)
 
 
 def test_two_close_eigenvalues_have_larger_errors_than_the_products_at_the_tip():
@@ -82,8 +84,8 @@ def test_two_close_eigenvalues_have_larger_errors_than_the_products_at_the_tip()
     assert len(pair) == 2
     for w, error in pair:
         W, polynomials = determinant.propagators_for(abs(w))
-        value = determinant_along_chain(w, W, polynomials)
-        assert rounding_error_by_chain(w, W, polynomials, value.log_scale) > 20 * value.rounding_error
+        value = determinant_from_propagators(w, W, polynomials)
+        assert rounding_error_from_propagators(w, W, polynomials, value.log_scale) > 20 * value.rounding_error
         spread = [abs(refined(w, determinant, factor) - w) for factor in (1.4, 2.2, 3.5)]
         assert 1e-12 < max(spread) <= 2 * error < 1e-8
 
@@ -101,5 +103,5 @@ def test_eigenvalues_of_families_close_to_crushing_are_within_their_errors():
 def test_the_rounding_error_does_not_depend_on_the_scale():
     determinant = ArmDeterminant(CLOSE_PAIR)
     W, polynomials = determinant.propagators_for(3000.0)
-    one, other = (rounding_error_by_chain(2500.0 + 10j, W, polynomials, S) for S in (0.0, 5.0))
+    one, other = (rounding_error_from_propagators(2500.0 + 10j, W, polynomials, S) for S in (0.0, 5.0))
     assert one == pytest.approx(other * math.exp(5.0), rel=1e-12)

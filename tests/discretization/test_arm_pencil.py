@@ -11,8 +11,8 @@ from rodsweep.discretization.straight.arm_pencil import ArmPencil
 from rodsweep.discretization.straight.arm_resolution import ArmMesh, arm_mesh, finer_arm_mesh
 from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenproblem
 from rodsweep.discretization.straight.pencil import assemble_pencil
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 SHIFT = 500.0
@@ -49,7 +49,7 @@ def test_eigenvalues_of_the_chosen_mesh_are_roots_of_the_determinant(seed):
 
 def test_elements_that_end_at_the_jump_are_worth_ten_digits():
     jump = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.01,) * 6, (0.01,) * 6))
-    rod = Rod(F=0.1, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=jump))
+    rod = Rod(F=0.1, k1=1e4, k2=1e4, gamma3=1e-4, material=RodMaterial(profile=jump))
     determinant = ArmDeterminant(rod)
 
     def worst(mesh):
@@ -66,7 +66,7 @@ def test_elements_that_end_at_the_jump_are_worth_ten_digits():
 
 def test_mesh_ends_elements_at_breaks_and_gets_finer():
     profile = Profile((0.0, 0.3, 0.3, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.2,) * 6, (0.3,) * 6))
-    rod = Rod(F=3.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.2, build=Build(profile=profile))
+    rod = Rod(F=3.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.2, material=RodMaterial(profile=profile))
     mesh = arm_mesh(rod, 4, 1e-4)
     assert {0.0, 0.3, 1.0} <= set(mesh.edges)
     for _ in range(6):
@@ -87,7 +87,7 @@ def test_coefficients_are_sampled_at_the_nodes_and_on_their_own_side_of_a_jump()
     """1e-9 of an element beside its ends moved the largest y of cycles next to Hopf points by 1e-8."""
     mesh = Elements((0.0, 0.3, 0.3 + 1e-6, 1.0), 12)
     edges = np.array(mesh.edges)
-    points = mesh.points_inside_elements.reshape(mesh.element_count, -1)
+    points = mesh.one_sided_nodes.reshape(mesh.element_count, -1)
     assert (np.diff(points) > 0).all()
     assert (points[:, 0] > edges[:-1]).all()
     assert (points[:, -1] < edges[1:]).all()

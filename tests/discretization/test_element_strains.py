@@ -7,9 +7,9 @@ from numpy.polynomial import Polynomial
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.rod import Rod
 
@@ -24,7 +24,7 @@ FIELDS = {"n1": Polynomial([9, -20, 11]), "n2": Polynomial([-8, 3, 5]), "m3": Po
 
 def arm(order, names=LINEAR_ARM, ratios=(), **values):
     grid = mesh_with_edges((0.0, JUMP, 1.0), order, ratios)
-    return StressForm(Rod(**VALUES | values, build=Build(*names, STEP)), grid)
+    return StressForm(Rod(**VALUES | values, material=RodMaterial(*names, STEP)), grid)
 
 
 def smooth_state(form):

@@ -8,8 +8,8 @@ from scipy.optimize import brentq
 
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.longitudinal import longitudinal_eigenvalues
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 LAWS = (("linear", "fixed"), ("neo_hookean", "fixed"), ("neo_hookean", "swelling"))
@@ -26,15 +26,15 @@ def stepped(rng):
     u, factors = tuple(float(row[0]) for row in rows), tuple(tuple(map(float, row[1:])) for row in rows)
     law, section = LAWS[rng.integers(3)]
     k1, gamma1 = float(10 ** rng.uniform(2, 4)), float(10 ** rng.uniform(-1, 1))
-    build = Build(law=law, section=section, profile=Profile(u, factors))
-    return Rod(F=1e-3 * k1, k1=k1, k2=50.0, gamma3=0.1, gamma1=gamma1, build=build)
+    material = RodMaterial(law=law, section=section, profile=Profile(u, factors))
+    return Rod(F=1e-3 * k1, k1=k1, k2=50.0, gamma3=0.1, gamma1=gamma1, material=material)
 
 
 def tip_stress(rod, w):
     """K x' at the tip for x(0) = 0, K x'(0) = 1, of an arm with constant segments, in thirty digits."""
-    breaks = rod.build.breaks
+    breaks = rod.material.breaks
     here = rod.sections((breaks[:-1] + breaks[1:]) / 2)
-    stiffness = rod.build.constitutive_law.stiffness(here.nu) / here.compliance[0]
+    stiffness = rod.material.constitutive_law.stiffness(here.nu) / here.compliance[0]
     x, stress = mpmath.mpf(0), mpmath.mpf(1)
     for length, K, drag in zip(
         np.diff(breaks).tolist(), stiffness.tolist(), here.drag[0].tolist(), strict=True
@@ -50,7 +50,7 @@ def test_uniform_arms_have_the_closed_form():
     assert longitudinal_modes(linear, 8)[0] == pytest.approx(
         longitudinal_eigenvalues(100.0, 0.7, 8), rel=1e-13
     )
-    rubber = Rod(F=30.0, k1=100.0, k2=50.0, gamma3=0.1, build=Build(law="neo_hookean"))
+    rubber = Rod(F=30.0, k1=100.0, k2=50.0, gamma3=0.1, material=RodMaterial(law="neo_hookean"))
     (nu,) = np.roots([1, 3 * 0.3, 0, -1])[np.isreal(np.roots([1, 0.9, 0, -1]))].real
     tangent = 100.0 * (1 + 2 / nu**3) / 3
     assert longitudinal_modes(rubber, 3)[0] == pytest.approx(
@@ -75,8 +75,8 @@ def test_stepped_arms_have_the_eigenvalues_of_transfer_matrices_and_no_other(see
 @pytest.mark.parametrize(("law", "section"), LAWS)
 def test_cones_with_a_jump_have_the_eigenvalues_of_integration_along_the_arm(law, section):
     ends = ((1.0,) * 6, (1.3,) * 6, (5.0,) * 6, (20.0,) * 6)
-    build = Build(law=law, section=section, profile=Profile((0.0, 0.4, 0.4, 1.0), ends))
-    rod = Rod(F=30.0, k1=100.0, k2=50.0, gamma3=0.1, gamma1=0.7, taper=0.3, build=build)
+    material = RodMaterial(law=law, section=section, profile=Profile((0.0, 0.4, 0.4, 1.0), ends))
+    rod = Rod(F=30.0, k1=100.0, k2=50.0, gamma3=0.1, gamma1=0.7, taper=0.3, material=material)
 
     def tip(w):
         state = np.array([0.0, 1.0])
@@ -84,7 +84,7 @@ def test_cones_with_a_jump_have_the_eigenvalues_of_integration_along_the_arm(law
 
             def change(u, y, inside=(start + 1e-13, stop - 1e-13)):
                 here = rod.sections(np.array([np.clip(u, *inside)]))
-                tangent = build.constitutive_law.stiffness(here.nu[0]) / here.compliance[0, 0]
+                tangent = material.constitutive_law.stiffness(here.nu[0]) / here.compliance[0, 0]
                 return [y[1] / tangent, w * here.drag[0, 0] * y[0]]
 
             state = solve_ivp(change, (start, stop), state, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]

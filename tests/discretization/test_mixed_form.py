@@ -47,8 +47,8 @@ def some_state(form, seed=1, imaginary=False):
 def consistent(form, X):
     """X with the velocities that its stresses give it, of a rod with rotational drag."""
     S, _ = form.stresses_and_velocities(X)
-    Sigma = S + form.rod.material.tip_stress[:, None]
-    return form.state(S, velocity(form.rod.material, Sigma, Sigma @ form.mesh.matrices.D.T))
+    Sigma = S + form.rod.balance_coefficients.tip_stress[:, None]
+    return form.state(S, velocity(form.rod.balance_coefficients, Sigma, Sigma @ form.mesh.matrices.D.T))
 
 
 def finite_eigenvalues(form):
@@ -147,7 +147,7 @@ def test_equations_are_the_balance_weighted_by_the_quadrature(elements, order):
     """By the derivative within each element, of whose residuals those of shared nodes are the sum."""
     form, material = (
         mixed_form(SOFT.with_values(gamma1=GAMMA1), elements, order),
-        SOFT.with_values(gamma1=GAMMA1).material,
+        SOFT.with_values(gamma1=GAMMA1).balance_coefficients,
     )
     X = some_state(form)
     S, V = form.stresses_and_velocities(X)
@@ -212,7 +212,7 @@ def test_consistent_velocities_satisfy_their_equation(elements, order):
 @MESHES
 def test_it_is_the_form_from_which_the_velocities_are_eliminated(rod, elements, order):
     form = mixed_form(rod.with_values(gamma1=GAMMA1), elements, order)
-    root = np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count)
+    root = np.repeat(np.sqrt(form.rod.balance_coefficients.compliance), form.mesh.node_count)
     X = consistent(form, some_state(form))
     z = root * X[: form.stress_count]
     expected = ExplicitSystem(rod.with_values(gamma1=GAMMA1), uniform_mesh(elements, order)).state_derivative(
@@ -231,7 +231,7 @@ def test_row_of_the_tip_is_the_slope_of_the_reconstructed_tip(rod, elements, ord
     )
     u, root = (
         form.mesh.node_positions[:-1],
-        np.repeat(np.sqrt(form.rod.material.compliance), form.mesh.node_count),
+        np.repeat(np.sqrt(form.rod.balance_coefficients.compliance), form.mesh.node_count),
     )
     S = np.concatenate([np.sin(k * u + k) * (1 - u) for k in (1, 2, 3)])
     exact = system.tip_position_and_velocity(np.zeros(system.layout.unknown_count), root * S)[1][1]

@@ -11,12 +11,12 @@ from rodsweep.discretization.elements.mesh import mesh_with_edges, uniform_mesh
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
-from rodsweep.solve.cycle.accuracy.cycle_verdict import RefinedCycle
+from rodsweep.solve.cycle.accuracy.refined_cycle import RefinedCycle
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.neighbour import CycleStart, cycle_from_neighbour
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.unsolvable import Unsolvable
@@ -106,7 +106,7 @@ def finer(orbit):
 def broken_promises(found, accuracy):
     """What of a cycle is less accurate than its estimates say, or than asked for: sentences."""
     exact = finer(found.orbit)
-    extrema, measures, errors = CyclePath(exact.orbit).extrema, found.measures, found.errors
+    extrema, measures, errors = CycleMotion(exact.orbit).extrema, found.measures, found.errors
     period = abs(measures.period / exact.orbit.period - 1)
     off = {name: abs(getattr(measures, name) - extrema[name]) / extrema["tip_y_max"] for name in EXTREMA}
     multipliers, rounding = multipliers_and_trivial_error(exact)

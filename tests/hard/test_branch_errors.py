@@ -25,7 +25,7 @@ from rodsweep.solve.branch.start.first_cycle import first_cycle
 from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error, newton, newton_step
 from rodsweep.solve.orbit.orbit_mesh import mesh_of
 from rodsweep.solve.unsolvable import Unsolvable
@@ -118,7 +118,7 @@ def broken_promises(case: Case) -> list[str]:
             mesh, order=mesh.order + 6, interval_count=longer, stage_count=min(mesh.stage_count + 1, 6)
         )
         exact = newton_step(newton(fine.interpolated_orbit(point.orbit), 1e-11, NewtonWorkspace()))
-        extrema, slope = CyclePath(exact.orbit).extrema, point.calibration.sensitivity
+        extrema, slope = CycleMotion(exact.orbit).extrema, point.calibration.sensitivity
         y, multipliers = extrema["tip_y_max"], multipliers_and_trivial_error(exact)[0]
         others = max(abs(getattr(stored.measures, name) - value) for name, value in extrema.items())
         errors = stored.errors

@@ -11,8 +11,8 @@ import pytest
 from surveyed import survey_only
 
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
@@ -95,7 +95,7 @@ def in_two_segments(rod, start, factor, names):
     first = (1.0,) * 6
     behind = tuple(factor if name in names else 1.0 for name in COLUMNS)
     profile = Profile((0.0, start, start, 1.0), (first, first, behind, behind))
-    return Rod(**rod, build=Build(profile=profile))
+    return Rod(**rod, material=RodMaterial(profile=profile))
 
 
 @pytest.mark.parametrize("rod, segment, chain_steps", TWO_SEGMENTS.values(), ids=TWO_SEGMENTS.keys())
@@ -126,7 +126,7 @@ def random_arm(index):
         "gamma3": random.uniform(0, 3) / rod["k2"],
         "taper": float(random.choice([1.0, random.uniform(0.4, 1)])),
     }
-    rod |= {"build": Build(law, profile=profile) if profile else Build(law)}
+    rod |= {"material": RodMaterial(law, profile=profile) if profile else RodMaterial(law)}
     crushing = Rod(F=0.0, **rod).crushing_force
     hopf = hopf_point_below(Rod(F=min(150.0, 0.8 * crushing), **rod))
     parameter = random.choice(["F", "k2"])

@@ -20,7 +20,7 @@ from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import multipliers_and_trivial_error
 from rodsweep.solve.unsolvable import Unsolvable
 
@@ -115,7 +115,7 @@ def test_fourier_collocation_of_the_mixed_form_has_the_same_cycle(name):
     exact = finer(found.orbit).orbit
     period, y = period_and_largest_y(exact, phases)
     assert exact.period == pytest.approx(period, rel=1e-12)
-    assert CyclePath(exact).extrema["tip_y_max"] == pytest.approx(y, rel=1e-9)
+    assert CycleMotion(exact).extrema["tip_y_max"] == pytest.approx(y, rel=1e-9)
     assert abs(found.measures.period / period - 1) <= found.errors.period_error + 1e-12
     assert abs(found.measures.tip_y_max / y - 1) <= found.errors.amplitude_error + 1e-9
 

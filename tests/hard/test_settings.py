@@ -38,8 +38,8 @@ from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
 from rodsweep.model.compiled.digest import kernel_digest, kernel_of
 from rodsweep.model.compiled.kernel_constants import KernelConstants
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.backend.solver_pools import destroy_pooled_solvers
 from rodsweep.solve.branch import branches
@@ -53,7 +53,7 @@ from rodsweep.solve.changes.diagram.rows import RowRequest, solve_row
 from rodsweep.solve.changes.thresholds import Thresholds, ThresholdsRequest, solve_thresholds
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.by_integration import solve_by_integration
-from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleOutcome, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.hopf.bautin_curves import BautinProblem, as_curve_point, bautin_curve
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 from rodsweep.solve.hopf.hopf_coefficients import hopf_coefficients
@@ -379,10 +379,10 @@ def segments(accuracy: float) -> Answer:
     """Spectra of an arm of two segments, the second softer, before its flutter and far beyond it."""
     stiff = (1.0,) * 6
     soft = (0.36, 0.36, 0.1296, 0.36, 0.36, 0.36)
-    build = Build(profile=Profile((0.0, 0.4, 0.4, 1.0), (stiff, stiff, soft, soft)))
+    material = RodMaterial(profile=Profile((0.0, 0.4, 0.4, 1.0), (stiff, stiff, soft, soft)))
     answer: dict[str, tuple[float, float]] = {}
     for F in (3.0, 25.0):
-        rod = Rod(F=F, k1=1e3, k2=1e3, gamma3=1e-3, build=build)
+        rod = Rod(F=F, k1=1e3, k2=1e3, gamma3=1e-3, material=material)
         found = solve_spectrum(rod, SpectrumRequest(4, accuracy, True))
         if found.status.value:
             return None
@@ -455,7 +455,7 @@ def motion(accuracy: float) -> Answer:
     return {f"z{i}": (float(z), 30 * accuracy * size) for i, z in enumerate(run.states[-1])}
 
 
-def cycle_answer(cycle: Cycle) -> Answer:
+def cycle_answer(cycle: CycleOutcome) -> Answer:
     """Period, extrema and largest multiplier of a cycle; of a torus the multiplier of the cycle inside."""
     if not cycle.status.succeeded:
         return None
@@ -483,7 +483,7 @@ def cycle_of_segments(accuracy: float) -> Answer:
     """A cycle of an arm whose base is stiff, on elements of unequal orders."""
     soft = (0.36, 0.36, 0.1296, 0.36, 0.36, 0.36)
     profile = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + (soft,) * 2)
-    rod = Rod(F=14.0, k1=1e4, k2=1e4, gamma3=1e-3, build=Build(profile=profile))
+    rod = Rod(F=14.0, k1=1e4, k2=1e4, gamma3=1e-3, material=RodMaterial(profile=profile))
     return cycle_answer(solve_cycle(rod, request(accuracy), None, "F"))
 
 

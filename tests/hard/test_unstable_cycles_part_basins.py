@@ -16,7 +16,7 @@ from rodsweep.solve.branch.start.hopf_point import hopf_branch_start
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 
 from .displacement_form import Displaced, march_from
 
@@ -51,7 +51,7 @@ def stable(unstable):
 def marched(unstable, share):
     """Where the rod goes from the unstable cycle, its distance from rest in units of the cycle's."""
     rod = Displaced(unstable.parameter_coordinate, *STIFFNESS, 1.0, ORDER)
-    on_cycle = CyclePath(unstable.orbit).shapes_from_mean_crossing(1, ORDER + 1)[:, 0, 1:].ravel()
+    on_cycle = CycleMotion(unstable.orbit).shapes_from_mean_crossing(1, ORDER + 1)[:, 0, 1:].ravel()
     start = share * (on_cycle - rod.straight)
     return march_from(rod, start, PERIODS * unstable.orbit.period, 1e-6, 1e-8)
 

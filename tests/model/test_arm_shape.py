@@ -13,7 +13,7 @@ from rodsweep.model.arm.neglected import SELF_BUCKLING_WEIGHT, neglected_effects
 from rodsweep.model.arm.shape import MAX_RADIUS_RATIO
 
 ROUND = {"length": "10 cm", "radius": "5 mm", "young": "100 kPa", "viscosity": "50 Pa s", "pressure": "2 kPa"}
-PARAMETERS = ("k1", "k2", "gamma3", "gamma1", "F", "tau2", "taper", "build", "crushing_force")
+PARAMETERS = ("k1", "k2", "gamma3", "gamma1", "F", "tau2", "taper", "material", "crushing_force")
 SEVEN = "7 cm: radius 5 mm"
 FLUID = {"viscosity": "50 Pa s"}
 """The fluid alone: what an arm in segments needs beside them."""
@@ -47,7 +47,7 @@ def test_an_arm_alike_all_along_is_the_uniform_arm(changes):
     assert other.is_uniform_and_linear
     for name in PARAMETERS:
         value = getattr(uniform(), name)
-        assert getattr(other, name) == (pytest.approx(value, rel=1e-14) if name != "build" else value)
+        assert getattr(other, name) == (pytest.approx(value, rel=1e-14) if name != "material" else value)
 
 
 def test_a_cone_has_the_stiffness_of_its_base_and_the_face_of_its_tip():
@@ -67,12 +67,12 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
     u = np.linspace(0, 1, 1001)[1:-1]
     values = {name: cone.parameter(name) for name in ("k1", "k2", "gamma3", "taper")}
     for number, form, error in ((0, cox_drag, 3e-4), (1, gray_hancock_drag, 3e-4), (3, lighthill_drag, 6e-4)):
-        local = cone.build_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
+        local = cone.material_with_drag(cone.drags[number]).local_coefficients(0.0, values, u)
         slenderness = 0.1 / (radius * (1 - (1 - taper) * u))
         across = np.array([form(each)[1] for each in slenderness])
         assert local.gamma2 == pytest.approx(across / form(0.1 / radius)[1], rel=error)
     assert local.gamma3 == pytest.approx(values["gamma3"] * (1 - (1 - taper) * u) ** 2, rel=1e-12)
-    radii = 1 - (1 - taper) * cone.build.breaks
+    radii = 1 - (1 - taper) * cone.material.breaks
     steps = np.maximum(radii[1:] / radii[:-1], radii[:-1] / radii[1:])
     assert steps.max() <= MAX_RADIUS_RATIO * (1 + 1e-12)
 
@@ -80,7 +80,7 @@ def test_the_drags_of_a_cone_are_those_of_its_local_radius(taper):
 def test_factors_of_segments_by_hand():
     """A solid base of 6 mm and 80 kPa, and a tube of 4 and 2 mm and 200 kPa; Cowper's kappa, drag of Cox."""
     arm = segmented("4 cm: radius 6 mm, young 80 kPa", "6 cm: radius 4 mm, inner radius 2 mm, young 200 kPa")
-    u, rows = arm.build.profile.u, arm.build.profile.rows
+    u, rows = arm.material.profile.u, arm.material.profile.rows
     assert u == pytest.approx((0, 0.4, 0.4, 1), rel=1e-14)
     assert rows[0] == rows[1] == (1.0,) * 6
     kappa = 9 * 1.5625 / (10 * 1.5625 + 26 * 0.25)
@@ -107,7 +107,7 @@ def test_many_segments_have_the_coefficients_of_a_cone():
         for arm in (cone, steps):
             values = {name: arm.parameter(name) for name in ("k1", "k2", "taper")}
             drag = arm.drags[number]
-            own = arm.build_with_drag(drag).local_coefficients(
+            own = arm.material_with_drag(drag).local_coefficients(
                 0.0, values | {"gamma3": arm.gamma3_with(drag)}, middles
             )
             stiffness, L = arm.bending_stiffness, arm.si.length
@@ -132,7 +132,7 @@ def test_units_of_segments_do_not_matter():
     again = segmented(*other.segments)
     assert again == other
     for arm in (other, again):
-        assert arm.build.profile.rows[-1] == pytest.approx(same.build.profile.rows[-1], rel=1e-13)
+        assert arm.material.profile.rows[-1] == pytest.approx(same.material.profile.rows[-1], rel=1e-13)
         assert [getattr(arm, n) for n in ("k1", "k2", "gamma3")] == pytest.approx(
             [getattr(same, n) for n in ("k1", "k2", "gamma3")], rel=1e-13
         )

@@ -19,7 +19,7 @@ from rodsweep.model.balance import ad, coad
 from rodsweep.model.rod import Rod
 
 ROD, GAMMA1 = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2), 0.7
-PLANE = ROD.with_values(gamma1=GAMMA1).material
+PLANE = ROD.with_values(gamma1=GAMMA1).balance_coefficients
 SPACE = material_in_space(ROD.with_values(gamma1=GAMMA1), twist_stiffness=0.6, twist_drag=0.02)
 SIZES = pytest.mark.parametrize("size", [3, 6], ids=["plane", "space"])
 

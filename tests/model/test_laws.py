@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS, law_of
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Crushed, NotUniform, Rod
 
 STRETCHES = np.array([0.2, 0.55, 0.9, 1.0, 1.3, 2.5])
@@ -69,7 +69,7 @@ def test_only_the_linear_material_is_crushed():
     with pytest.raises(Crushed, match="not below the crushing force 25$"):
         Rod(F=25.0, **arm, taper=0.5)
     assert Rod(F=24.0, **arm, taper=0.5).crushing_force == 25
-    assert Rod(F=1000.0, **arm, taper=0.5, build=Build(law="neo_hookean")).crushing_force == np.inf
+    assert Rod(F=1000.0, **arm, taper=0.5, material=RodMaterial(law="neo_hookean")).crushing_force == np.inf
 
 
 def test_an_arm_that_varies_states_no_constant_coefficients():
@@ -78,12 +78,12 @@ def test_an_arm_that_varies_states_no_constant_coefficients():
 
 
 def test_a_rod_elsewhere_keeps_its_build():
-    rod = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5, build=Build(law="neo_hookean"))
+    rod = Rod(F=1.0, k1=100.0, k2=50.0, gamma3=0.01, taper=0.5, material=RodMaterial(law="neo_hookean"))
     assert (
-        rod.with_values(F=2.0).build
-        == rod.with_coordinate("k1", 0.0).build
-        == rod.without_nonlinear_parameters.build
-        == rod.build
+        rod.with_values(F=2.0).material
+        == rod.with_coordinate("k1", 0.0).material
+        == rod.without_nonlinear_parameters.material
+        == rod.material
     )
 
 
@@ -93,8 +93,8 @@ def test_the_relative_load_is_1_where_the_weakest_section_is_crushed(taper):
     crushing = 170.0 * min(taper, 1.0) ** 2
     for share in (0.5, 0.999):
         rod = Rod(F=share * crushing, **at_base)
-        assert rod.build.crushing_ratio(rod.F, rod.k1, rod.taper) == pytest.approx(share, rel=1e-12)
+        assert rod.material.crushing_ratio(rod.F, rod.k1, rod.taper) == pytest.approx(share, rel=1e-12)
     with pytest.raises(Crushed):
         Rod(F=1.001 * crushing, **at_base)
-    rubber = Rod(F=3 * crushing, **at_base, build=Build("neo_hookean"))
-    assert rubber.build.crushing_ratio(rubber.F, rubber.k1, rubber.taper) == 0
+    rubber = Rod(F=3 * crushing, **at_base, material=RodMaterial("neo_hookean"))
+    assert rubber.material.crushing_ratio(rubber.F, rubber.k1, rubber.taper) == 0

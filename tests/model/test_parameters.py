@@ -21,7 +21,7 @@ from rodsweep.results.layouts.variables import DIMENSIONS
 
 
 def test_the_rod_has_all_parameters():
-    assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "build")
+    assert tuple(field.name for field in fields(Rod) if field.init) == (*PARAMETERS, "material")
     assert NONLINEAR_PARAMETERS[:4] == LINEAR_PARAMETERS
     assert OPTIONAL_PARAMETERS == ("taper",)
     assert parameter_names_except("F") == LINEAR_PARAMETERS[1:]

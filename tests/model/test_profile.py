@@ -5,8 +5,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 
 
@@ -120,7 +120,7 @@ def test_a_cone_scales_as_its_radius():
 )
 def test_coefficients_do_not_depend_on_those_computed_before(table):
     """Factors along the arm are cached, so a changed result must not change the next one."""
-    rod = Rod(F=5.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.7, build=Build(profile=table))
+    rod = Rod(F=5.0, k1=1e3, k2=1e2, gamma3=1e-3, taper=0.7, material=RodMaterial(profile=table))
     u = np.linspace(0.05, 0.95, 10)
     first = [np.array(part) for part in rod.local_coefficients(u)]
     for changed in rod.local_coefficients(u):

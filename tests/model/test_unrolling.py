@@ -17,13 +17,13 @@ from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra
 from rodsweep.model.rod import Rod
 
 ROD, GRID = Rod(F=50.0, k1=1e3, k2=1e2, gamma3=1e-2), uniform_mesh(2, 3)
-PLANE = ROD.with_values(gamma1=0.7).material
+PLANE = ROD.with_values(gamma1=0.7).balance_coefficients
 HEAD = "from rodsweep.model.compiled.unrolling import UnrolledOverAlgebra\n\n@UnrolledOverAlgebra\n"
 BOTH = pytest.mark.parametrize("g", [SE2, SE3], ids=["plane", "space"])
 
 
 def test_derivative_along_a_parameter_is_that_of_loops_in_python():
-    rod, change = nodal_rod(PLANE, GRID), nodal_rod_derivative(ROD.material_derivative("k1"), GRID)
+    rod, change = nodal_rod(PLANE, GRID), nodal_rod_derivative(ROD.balance_coefficient_derivative("k1"), GRID)
     x = np.random.default_rng(1).standard_normal(3 * GRID.node_count)
     V, G = np.empty((2, 3, GRID.node_count + 1))
     write_balance(SE2, x, V, G, rod, GRID.matrices)

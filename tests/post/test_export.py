@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.straight.longitudinal_modes import longitudinal_modes
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.post.tables.table_names import TABLE_NAMES
 
@@ -181,8 +181,10 @@ def test_longitudinal_rates_of_rubber_cones_stand_beside_the_modes_with_their_er
     rows = np.transpose([np.array(columns[name], float) for name in names])[::2]
     assert len(rows) == 8
     for F, k1, taper, rate, error in rows:
-        build = Build(law="neo_hookean")
-        alone = longitudinal_modes(Rod(F=F, k1=k1, k2=1e4, gamma3=0.0, gamma1=2, taper=taper, build=build), 1)
+        material = RodMaterial(law="neo_hookean")
+        alone = longitudinal_modes(
+            Rod(F=F, k1=k1, k2=1e4, gamma3=0.0, gamma1=2, taper=taper, material=material), 1
+        )
         assert (rate, error < 1e-12) == (pytest.approx(alone[0][0], rel=1e-12), True)
 
 

@@ -25,7 +25,7 @@ def _basis(x, at):
 def edges_of(rod, per_length):
     """Ends of elements: those of smooth pieces, and between them equal ratios of radii."""
     edges = [0.0]
-    breaks = rod.build.breaks
+    breaks = rod.material.breaks
     for a, b in zip(breaks[:-1], breaks[1:], strict=True):
         count = max(1, int(np.ceil(per_length * (b - a))))
         radii = [1 - (1 - rod.taper) * u for u in (a, b)]

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Crushed, Rod
 
 
@@ -37,6 +37,6 @@ def random_arm(rng, pulled=0.1):
         }
         numbers = {name: float(value) for name, value in values.items()}
         try:
-            return Rod(**numbers, taper=taper, build=Build(law, section, profile))
+            return Rod(**numbers, taper=taper, material=RodMaterial(law, section, profile))
         except Crushed:
             continue

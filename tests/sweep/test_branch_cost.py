@@ -4,34 +4,34 @@ import numpy as np
 import pytest
 
 from rodsweep.cli.checking import print_job_check
-from rodsweep.model.material.build import DEFAULT_BUILD, Build
+from rodsweep.model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from rodsweep.sweep.branch_cost import branches_cost
 from rodsweep.sweep.points.points import Points
 from rodsweep.tasks.running.job import job_of_file
 
 
-def points_of(build=None, **columns):
+def points_of(material=None, **columns):
     values = {"k1": 1e4, "k2": 1e4, "gamma3": 1e-3, "taper": 1.0} | columns
     columns = {name: np.atleast_1d(value) for name, value in values.items()}
     length = max(map(len, columns.values()))
     full = {name: np.resize(value, length) for name, value in columns.items()}
-    return Points(tuple(full), tuple(full.values()), is_grid=False, build=build or DEFAULT_BUILD)
+    return Points(tuple(full), tuple(full.values()), is_grid=False, material=material or DEFAULT_MATERIAL)
 
 
 @pytest.mark.parametrize(
-    ("columns", "build", "doubt"),
+    ("columns", "material", "doubt"),
     [
         ({}, None, ""),
         ({"taper": 0.5}, None, ""),
         ({"taper": [1.0, 0.19]}, None, "branches of cones with a taper outside 0.5 to 1.5"),
         ({"taper": 2.0}, None, "branches of cones with a taper outside 0.5 to 1.5"),
         ({"k1": [1e4, 60.0]}, None, "branches near the crushing force"),
-        ({}, Build("neo_hookean", "swelling"), "branches of rubber"),
-        ({}, Build("neo_hookean", "fixed"), "branches of rubber"),
+        ({}, RodMaterial("neo_hookean", "swelling"), "branches of rubber"),
+        ({}, RodMaterial("neo_hookean", "fixed"), "branches of rubber"),
     ],
 )
-def test_rods_without_measured_times_are_in_doubt(columns, build, doubt):
-    assert branches_cost(points_of(build, **columns), "F", (0.0, 60.0), 1e-7).doubt == doubt
+def test_rods_without_measured_times_are_in_doubt(columns, material, doubt):
+    assert branches_cost(points_of(material, **columns), "F", (0.0, 60.0), 1e-7).doubt == doubt
 
 
 @pytest.mark.parametrize(("material", "known"), [("", True), ("material: {law: neo_hookean}\n", False)])

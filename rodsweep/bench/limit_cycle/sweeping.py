@@ -13,11 +13,11 @@ from typing import Any
 from ...model.parameters import NONLINEAR_PARAMETERS
 from ...model.rod import Rod
 from ...solve.cycle.accuracy.refinement import refined_cycle_of_any_period
-from ...solve.cycle.limit_cycle import Cycle, CycleStatus, solve_cycle
+from ...solve.cycle.limit_cycle import CycleOutcome, CycleStatus, solve_cycle
 from ...solve.cycle.neighbour import CycleStart
 from ...solve.orbit.matrix.linearisation import Linearisation
 from ...solve.orbit.matrix.workspace import NewtonWorkspace
-from ...solve.orbit.measures import CyclePath
+from ...solve.orbit.measures import CycleMotion
 from ...solve.orbit.newton import newton
 from ...solve.orbit.orbit import Orbit
 from ..study import (
@@ -74,7 +74,7 @@ class AccurateCycle:
         stress_form = self.orbit.form
         moved_orbit = replace(self.orbit, form=replace(stress_form, rod=replace(stress_form.rod, F=F)))
         orbit = newton(moved_orbit, REFERENCE_NEWTON_TOLERANCE, NewtonWorkspace()).orbit
-        return AccurateCycle(orbit, orbit.period, CyclePath(orbit).extrema["tip_y_max"])
+        return AccurateCycle(orbit, orbit.period, CycleMotion(orbit).extrema["tip_y_max"])
 
     def errors_of(self, period: float, tip_y_max: float) -> dict[str, float]:
         """Relative errors of a computed period, in tau2, and largest tip y, in L, by name of the column."""
@@ -108,7 +108,7 @@ def swept_rod(point: Rod, accuracy: float) -> SweptRod:
             cycle = solve_cycle(earlier, cycle_request(accuracy), neighbour, axis, workspace)
             neighbour = require_cycle(cycle).neighbour
         neighbours[axis] = neighbour
-    solved = solve_cycle(point, cycle_request(accuracy), parameter=SWEPT_PARAMETERS[0])
+    solved = solve_cycle(point, cycle_request(accuracy), parameter_name=SWEPT_PARAMETERS[0])
     return SweptRod(point, AccurateCycle.converged_from_orbit(orbit_of(solved)), neighbours, workspace)
 
 
@@ -117,7 +117,7 @@ def earlier_rod(point: Rod, axis: str, steps: int) -> Rod:
     return replace(point, **{axis: getattr(point, axis) * STEP_RATIO**steps})
 
 
-def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
+def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
     """The last cycle of the timed points of a sweep along `axis`, each solved from its neighbour; raises
     ArithmeticError if a point has no stable cycle. accuracy: relative."""
     start = rod.neighbours[axis]
@@ -128,14 +128,14 @@ def solve_from_neighbour(axis: str, accuracy: float, rod: SweptRod) -> Cycle:
     return cycle
 
 
-def solve_without_neighbour(start: str, accuracy: float, rod: SweptRod) -> Cycle:
+def solve_without_neighbour(start_kind: str, accuracy: float, rod: SweptRod) -> CycleOutcome:
     """The cycle of a rod to a relative accuracy, without a neighbour; raises ArithmeticError if no stable
-    cycle is found. start: option `start`."""
-    request = replace(cycle_request(accuracy), start=start)
+    cycle is found. start_kind: option `start_kind`."""
+    request = replace(cycle_request(accuracy), start=start_kind)
     return require_cycle(solve_cycle(rod.rod, request, workspace=rod.workspace))
 
 
-def require_cycle(cycle: Cycle) -> Cycle:
+def require_cycle(cycle: CycleOutcome) -> CycleOutcome:
     """The argument `cycle`; raises ArithmeticError if no stable cycle was found."""
     if cycle.status != CycleStatus.cycle:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")
@@ -165,7 +165,7 @@ def measure_sweep_points(points: Sequence[Rod], rounds: int) -> list[Measurement
     return measure_cases(entries, cycle_contenders(ACCURACY), rounds)
 
 
-def cycle_errors(exact: AccurateCycle, cycle: Cycle) -> dict[str, Any]:
+def cycle_errors(exact: AccurateCycle, cycle: CycleOutcome) -> dict[str, Any]:
     """Fields of `Measurement` for a cycle: errors, error estimate, mesh, and number of Floquet multipliers.
     Mesh and number are missing if there is no orbit."""
     errors = exact.errors_of(cycle.measures.period, cycle.measures.tip_y_max)

@@ -1,7 +1,7 @@
 """Rods whose cycles are solved in the benchmark of sweeps, and their labels."""
 
-from ...model.material.build import DEFAULT_BUILD, Build
 from ...model.material.profile import Profile
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.rod import Rod
 from ..spectrum.arms import FIVE_SEGMENT_PROFILE
 
@@ -18,9 +18,9 @@ RODS = (
     Rod(F=60.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=100.0, k1=200.0, k2=1e4, gamma3=1e-4, gamma1=1.0),
     Rod(F=20.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, taper=0.5),
-    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build("neo_hookean", "swelling")),
-    Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=TWO_SEGMENT_PROFILE)),
-    Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, build=Build(profile=FIVE_SEGMENT_PROFILE)),
+    Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, material=RodMaterial("neo_hookean", "swelling")),
+    Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, material=RodMaterial(profile=TWO_SEGMENT_PROFILE)),
+    Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, gamma1=1.0, material=RodMaterial(profile=FIVE_SEGMENT_PROFILE)),
 )
 """Rods whose cycles are solved: near and far from Hopf points, stiff, shortened to half by the force, a cone
 as far from its Hopf point as the first rod, the first rod made of rubber, and arms of two and of five
@@ -32,9 +32,9 @@ def rod_label(point: Rod) -> str:
     """Label of a rod in the tables: F, k1, k2, gamma3, gamma1; taper, number of segments, law and section if
     not the default."""
     taper_texts = [] if point.taper == 1 else [f"taper {point.taper:g}"]
-    segments = len(point.build.breaks) - 1
+    segments = len(point.material.breaks) - 1
     taper_texts += [] if segments == 1 else [f"{segments} segments"]
-    linear = (point.build.law, point.build.section) == (DEFAULT_BUILD.law, DEFAULT_BUILD.section)
-    taper_texts += [] if linear else [point.build.law, point.build.section]
+    linear = (point.material.law, point.material.section) == (DEFAULT_MATERIAL.law, DEFAULT_MATERIAL.section)
+    taper_texts += [] if linear else [point.material.law, point.material.section]
     values = (point.F, point.k1, point.k2, point.gamma3, point.gamma1)
     return ", ".join([*(f"{value:g}" for value in values), *taper_texts])

@@ -21,7 +21,7 @@ from ...arrays import Array
 from ...discretization.elements.mesh import uniform_mesh
 from ...discretization.explicit_system import ExplicitSystem
 from ...model.rod import Rod
-from ...solve.cycle.limit_cycle import Cycle, CycleRequest, solve_cycle
+from ...solve.cycle.limit_cycle import CycleOutcome, CycleRequest, solve_cycle
 from ...solve.cycle.transient.returns import tip_angle_row
 from ...solve.motion.integrator import RunLimit, Trajectory, integrator
 from ...solve.motion.time_scheme import TimeScheme
@@ -86,12 +86,12 @@ def cycle_request(accuracy: float) -> CycleRequest:
     return CycleRequest(accuracy, START_DEFLECTION, 1, 0, 0, 0, MAX_RETURNS)
 
 
-def solve_cycle_at_force(force: float) -> Cycle:
+def solve_cycle_at_force(force: float) -> CycleOutcome:
     """The cycle of FIG5_ROD at F = `force`, solved as in the task `limit_cycle`."""
-    return solve_cycle(FIG5_ROD.with_values(F=force), cycle_request(SETTLING_TOLERANCE), parameter="F")
+    return solve_cycle(FIG5_ROD.with_values(F=force), cycle_request(SETTLING_TOLERANCE), parameter_name="F")
 
 
-def orbit_of(cycle: Cycle) -> Orbit:
+def orbit_of(cycle: CycleOutcome) -> Orbit:
     """The orbit of the solved cycle `cycle`; raises ArithmeticError if no cycle was found."""
     if cycle.neighbour is None:
         raise ArithmeticError(f"no cycle: {cycle.status.name} {cycle.message}")

@@ -12,8 +12,8 @@ from typing import Any
 from ...arrays import Complex
 from ...determinant.arm.determinant import ArmDeterminant
 from ...discretization.straight.arm_resolution import ArmMesh, arm_mesh
-from ...model.material.build import Build
 from ...model.material.profile import Profile
+from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 from ...solve.spectrum.arm_solver import arm_solver
 from ...solve.spectrum.problem import ArmProblem
@@ -40,11 +40,13 @@ FIVE_SEGMENT_PROFILE = Profile(
 )
 """Profile of an arm of five segments, with radii of 1, 0.6, 1.2, 0.5 and 0.8 times the radius at the
 clamp."""
-RUBBER = Build("neo_hookean", "swelling")
+RUBBER = RodMaterial("neo_hookean", "swelling")
 ARM_RODS = {
     "cone": Rod(F=12.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.5),
-    "five segments": Rod(F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, build=Build(profile=FIVE_SEGMENT_PROFILE)),
-    "cone of rubber": Rod(F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, build=RUBBER),
+    "five segments": Rod(
+        F=4.0, k1=1e4, k2=1e4, gamma3=1e-4, material=RodMaterial(profile=FIVE_SEGMENT_PROFILE)
+    ),
+    "cone of rubber": Rod(F=16.0, k1=2e2, k2=1e4, gamma3=1e-4, taper=0.5, material=RUBBER),
 }
 ELEMENT_ORDERS = (6, 8, 10, 12, 14, 16, 20)
 """Orders of the elements on which eigensolvers are run."""
@@ -65,12 +67,12 @@ class UncachedArms:
 
     def __init__(self, rod: Rod):
         self._values = dict(rod.values)
-        self._build = rod.build
+        self._material = rod.material
 
     def next_arm(self) -> Rod:
         """The next arm; its F is one rounding unit larger."""
         self._values["F"] = nextafter(self._values["F"], inf)
-        return Rod(**self._values, build=self._build)
+        return Rod(**self._values, material=self._material)
 
 
 def exact_arm_spectrum(rod: Rod) -> list[complex]:

@@ -44,13 +44,13 @@ def multiprecision_determinant(rod: Rod) -> Callable[[Any], Any]:
     return D
 
 
-def exact_spectrum(rod: Rod, modes: int) -> list[Any]:
-    """The `modes` leading eigenvalues of a rod to DIGIT_COUNT digits, as numbers of mpmath.
+def exact_spectrum(rod: Rod, mode_count: int) -> list[Any]:
+    """The `mode_count` leading eigenvalues of a rod to DIGIT_COUNT digits, as numbers of mpmath.
 
     Raises ArithmeticError if the list of eigenvalues is not certified, or if no root of D is found near an
     eigenvalue.
     """
-    spectrum = solve_spectrum(rod, SpectrumRequest(modes, 1e-11, certify=True))
+    spectrum = solve_spectrum(rod, SpectrumRequest(mode_count, 1e-11, certify=True))
     if spectrum.status != SpectrumStatus.ok or not spectrum.certified:
         raise ArithmeticError(f"{rod}: {spectrum.status.name} {spectrum.message}")
     roots = []

@@ -65,27 +65,27 @@ class SweepCase:
     solver_kind: str
 
 
-def spectrum_case(directory: Path, name: str, points: int, kind: str) -> SweepCase:
+def spectrum_case(directory: Path, name: str, point_count: int, kind: str) -> SweepCase:
     """A sweep of spectra, named `name`, over F, two values of k1, and k2, whose config is written into the
     new directory `directory`.
 
-    points: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4.
+    point_count: number of points, which is rounded down to a multiple of 100, below 200 to a multiple of 4.
     """
-    forces = 50 if points >= 200 else 2
-    softnesses = points // (2 * forces)
+    forces = 50 if point_count >= 200 else 2
+    softnesses = point_count // (2 * forces)
     directory.mkdir()
     (directory / CONFIG_NAME).write_text(SPECTRUM_CONFIG.format(forces=forces, softnesses=softnesses))
     return SweepCase(name, 2 * forces * softnesses, (directory,), kind)
 
 
-def cycle_case(directory: Path, points: int, kind: str) -> SweepCase:
+def cycle_case(directory: Path, point_count: int, kind: str) -> SweepCase:
     """A sweep of limit cycles whose costs differ much, in random order; its config is written into the new
     directory `directory`."""
     directory.mkdir()
-    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(points).tolist()]
+    rows = [f"{F!r},1e4,1e2,1e-2,1" for F in shuffled_forces(point_count).tolist()]
     (directory / "points.csv").write_text("\n".join(["F,k1,k2,gamma3,gamma1", *rows]) + "\n")
     (directory / CONFIG_NAME).write_text(CYCLE_CONFIG)
-    return SweepCase("limit cycles", points, (directory,), kind)
+    return SweepCase("limit cycles", point_count, (directory,), kind)
 
 
 def shuffled_forces(count: int) -> np.ndarray:
@@ -128,22 +128,22 @@ class CommandRunCost:
     SOLVED."""
 
 
-def launcher_words(ranks: int) -> list[str]:
-    """Arguments that start a command on `ranks` ranks; empty if there is no mpiexec."""
+def launcher_words(rank_count: int) -> list[str]:
+    """Arguments that start a command on `rank_count` ranks; empty if there is no mpiexec."""
     next_to_python = Path(sys.executable).with_name("mpiexec")
     mpiexec = str(next_to_python) if next_to_python.exists() else shutil.which("mpiexec")
-    return [mpiexec, "-n", str(ranks)] if mpiexec else []
+    return [mpiexec, "-n", str(rank_count)] if mpiexec else []
 
 
-def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = True) -> CommandRunCost:
-    """Runs a sweep on `ranks` ranks and returns its measurements. Raises EnvironmentIncomplete if a run that
-    is not to be killed fails.
+def run_case(command: Sequence[str], case: SweepCase, rank_count: int, fresh: bool = True) -> CommandRunCost:
+    """Runs a sweep on `rank_count` ranks and returns its measurements. Raises EnvironmentIncomplete if a run
+    that is not to be killed fails.
 
     command: first arguments of the measured command.
     """
     seconds_of_others = _other_process_seconds()
     start = time.monotonic()
-    full_command = [*launcher_words(ranks), *command]
+    full_command = [*launcher_words(rank_count), *command]
     kind = case.solver_kind
     processes = [_start_command(full_command, kind, directory, fresh) for directory in case.directories]
     stated_seconds = [_printed_seconds(process, kind) for process in processes]
@@ -152,7 +152,7 @@ def run_case(command: Sequence[str], case: SweepCase, ranks: int, fresh: bool = 
     files = [directory / RESULT for directory in case.directories]
     solve_times = [_solver_time_and_share(file) if kind == SOLVED else (0.0, nan) for file in files]
     journals = [page for file in files for page in journal_directory(file).glob("rank-*")]
-    prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:ranks]
+    prefixes = (FIRST_RANK_PREFIX, OTHER_RANKS_PREFIX)[:rank_count]
     return CommandRunCost(
         seconds=seconds,
         stated_seconds=max(stated_seconds),

@@ -122,15 +122,15 @@ def measure_in_turn(run: RunCase, entries: Sequence[tuple[SweepCase, int, int]])
     return [sweep_measurement(case, ranks, own_runs) for (case, ranks, _), own_runs in measured]
 
 
-def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost]) -> Measurement:
+def sweep_measurement(case: SweepCase, rank_count: int, runs: Sequence[CommandRunCost]) -> Measurement:
     """Measurement of a sweep from its runs; times are medians, the error is nan."""
     seconds = nan_median(run.seconds for run in runs)
-    processes = ranks * len(case.directories)
+    processes = rank_count * len(case.directories)
     memory = [max(values) / MEGABYTE for values in zip(*(run.peak_memory for run in runs), strict=True)]
     journal_bytes, is_killed = runs[0].journal_bytes, case.solver_kind == KILLED
     overheads = (processes * run.stated_seconds - run.solver_seconds for run in runs)
     extra = {
-        "ranks": float(ranks),
+        "ranks": float(rank_count),
         "points": float(case.points),
         "points_per_second": case.points / seconds,
         "inside_seconds": nan_median(run.stated_seconds for run in runs),
@@ -143,7 +143,9 @@ def sweep_measurement(case: SweepCase, ranks: int, runs: Sequence[CommandRunCost
         "processors_elsewhere": nan_median(run.processors_busy_elsewhere for run in runs),
         "share_busy": nan_median(run.busy_fraction for run in runs),
     }
-    return Measurement(case.name, counted(ranks, "rank"), f"{case.points} points", seconds, nan, extra=extra)
+    return Measurement(
+        case.name, counted(rank_count, "rank"), f"{case.points} points", seconds, nan, extra=extra
+    )
 
 
 def numbers_of_row(m: Measurement) -> dict[str, object]:

@@ -11,7 +11,7 @@ from functools import partial
 from math import inf, isinf, isnan, log10, nan
 from typing import Any
 
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.rod import Rod
 from ...solve.changes.thresholds import ThresholdsRequest, solve_thresholds, warm_up
 from ...wording import counted
@@ -38,7 +38,7 @@ threshold was missed."""
 @dataclass(frozen=True)
 class ThresholdCase:
     """A rod, with its name in the tables, and its exact first thresholds. k1, k2, gamma3, taper,
-    build: parameters, and constitutive law with profile, of the rod.
+    material: parameters, and constitutive law with profile, of the rod.
 
     onset, hopf: F of the first onset and of the first Hopf point, rounded from 30 digits; nan if the rod has
     no such threshold. search_end: F at which the searches of peers end.
@@ -52,10 +52,10 @@ class ThresholdCase:
     hopf: float
     search_end: float = 60.0
     taper: float = 1.0
-    build: Build = DEFAULT_BUILD
+    material: RodMaterial = DEFAULT_MATERIAL
 
     def rod(self, F: float) -> Rod:
-        return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, build=self.build)
+        return Rod(F=F, k1=self.k1, k2=self.k2, gamma3=self.gamma3, taper=self.taper, material=self.material)
 
     def error_of(self, kind: str, computed: float) -> float:
         """Relative error of the computed threshold `computed` of the kind `kind`, ONSET or HOPF.
@@ -98,11 +98,11 @@ of a coarse grid. In "soft", further pairs soon become unstable, so that a searc
 first pair."""
 QUICK_CASES = tuple(case for case in UNIFORM_CASES if case.name in ("Fig. 2b", "Fig. 2d", "filament"))
 """Uniform rods in a quick run."""
-FIVE_SEGMENTS = Build(profile=FIVE_SEGMENT_PROFILE)
+FIVE_SEGMENTS = RodMaterial(profile=FIVE_SEGMENT_PROFILE)
 ARM_CASES = (
     ThresholdCase("cone", 1e4, 1e2, 1e-2, 4.57243445318968512, 11.0801159252882371, taper=0.5),
     ThresholdCase(
-        "five segments", 1e4, 1e4, 1e-4, 2.98373047605650440, 5.68247274040263724, build=FIVE_SEGMENTS
+        "five segments", 1e4, 1e4, 1e-4, 2.98373047605650440, 5.68247274040263724, material=FIVE_SEGMENTS
     ),
 )
 """Arms that vary along their length."""

@@ -106,8 +106,8 @@ class SweepWideComputation:
         """Sends the special points at which missing half curves start to all ranks, so that no rank solves
         these points again."""
         item_numbers = self.ranks.call_on_first_rank(lambda: items.items_to_solve(self.results))
-        for starts in self.ranks.gather_on_all_ranks(self.solver.initial_data(items, item_numbers)):
-            self.solver.add_initial_data(starts)
+        for starts in self.ranks.gather_on_all_ranks(self.solver.cached_starts(items, item_numbers)):
+            self.solver.add_starts(starts)
 
     def _solve_item(self, items: WorkItems, item: int) -> Iterable[tuple[int, NamedArrays]]:
         try:

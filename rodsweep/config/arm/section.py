@@ -12,14 +12,22 @@ from ...arrays import Array
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, LOADS, QUANTITIES, SCALE_NAME, UNITS
-from ...model.material.build import Build
+from ...model.material.rod_material import RodMaterial
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from ..axis import Axis, ParameterAxis
 from ..material import LawName, SectionName
 from ..values import StrictConfigSection
 from .axes import LOAD_KEYS, NON_LOAD_KEYS, SINGLE_PARAMETER_OF
 from .quantities import DragAxis, QuantityAxis, drag_names, with_load_over_flutter
-from .shape import MATERIAL_KEYS, SEGMENTS_ALLOWED, Segments, build_of, builds_of, tapers_of, with_length
+from .shape import (
+    MATERIAL_KEYS,
+    SEGMENTS_ALLOWED,
+    Segments,
+    material_of,
+    materials_of,
+    tapers_of,
+    with_length,
+)
 from .status import STATUS_OF_ERROR, ArmOutsideModel
 
 QuantityField = Field(
@@ -95,9 +103,9 @@ class ArmConfig(StrictConfigSection):
         return self
 
     @cached_property
-    def build(self) -> Build:
+    def rod_material(self) -> RodMaterial:
         """Law and profile of all arms; ValueError if the profiles of a grid of parameters differ."""
-        return build_of(self)
+        return material_of(self)
 
     @property
     def material(self) -> dict[str, Any]:
@@ -113,8 +121,8 @@ class ArmConfig(StrictConfigSection):
     def is_uniform_and_linear(self) -> bool:
         """Whether all arms are uniform and of linear material."""
         if self.segments is None:
-            return self.build.is_uniform_and_linear and tapers_of(self) == {1.0}
-        return all(build.is_uniform_and_linear for build in builds_of(self))
+            return self.rod_material.is_uniform_and_linear and tapers_of(self) == {1.0}
+        return all(rod_material.is_uniform_and_linear for rod_material in materials_of(self))
 
     @property
     def load_key(self) -> str | None:

@@ -1,4 +1,5 @@
-"""Shape and material of an arm in a config: segments, taper, constitutive law, and the resulting `Build`."""
+"""Shape and material of an arm in a config: segments, taper, constitutive law, and the resulting
+`RodMaterial`."""
 
 from collections.abc import Iterator
 from contextlib import suppress
@@ -9,7 +10,7 @@ from pydantic import BeforeValidator, WithJsonSchema
 
 from ...errors import InputError
 from ...model.arm.segments import EXAMPLE_SEGMENT, MAX_SEGMENTS, SEGMENT_KEYS, segment_texts, segments_of
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.units import unit_of, value_in_unit
 from .status import ArmOutsideModel
 
@@ -46,7 +47,7 @@ def with_length(section: dict[str, Any]) -> dict[str, Any]:
     return section | {"length": f"{value_in_unit(total, unit, 'm'):.15g} {unit}"}
 
 
-def build_of(arm: "ArmConfig") -> Build:
+def material_of(arm: "ArmConfig") -> RodMaterial:
     """Constitutive law of all arms, with the profile of the first arm to which the rod model applies; without
     a profile if there is no such arm.
 
@@ -54,24 +55,26 @@ def build_of(arm: "ArmConfig") -> Build:
     different profiles.
     """
     try:
-        uniform_build = Build(arm.law or DEFAULT_BUILD.law, arm.section or DEFAULT_BUILD.section)
+        uniform_material = RodMaterial(
+            arm.law or DEFAULT_MATERIAL.law, arm.section or DEFAULT_MATERIAL.section
+        )
     except ValueError as error:
         raise ValueError(f"parameters.arm.{error}") from None
     if all(getattr(arm, name) is None for name in SHAPE_KEYS):
-        return uniform_build
-    if arm.is_parameter_grid and len(set(builds_of(arm))) > 1:
+        return uniform_material
+    if arm.is_parameter_grid and len(set(materials_of(arm))) > 1:
         raise ValueError(
             f"parameters.arm.{arm.varying_quantities[0]} has several values, and the ratios between "
             "the segments would differ from value to value; give one value"
         )
-    return next(builds_of(arm), uniform_build)
+    return next(materials_of(arm), uniform_material)
 
 
-def builds_of(arm: "ArmConfig") -> Iterator[Build]:
+def materials_of(arm: "ArmConfig") -> Iterator[RodMaterial]:
     """Yields the constitutive law and profile of every arm to which the rod model applies."""
     for values in arm.values_of_arms():
         with suppress(ArmOutsideModel):
-            yield arm.arm_of(values).build
+            yield arm.arm_of(values).material
 
 
 def tapers_of(arm: "ArmConfig") -> set[float]:

@@ -53,14 +53,14 @@ def message_of_problem(config: type[Config], problem: Any) -> str:
     return f"{key} = {short_repr(value)} is not allowed; it should be {allowed}"
 
 
-def unknown_key_hint(key: str, allowed: Sequence[str], start: str = "known keys are") -> str:
+def unknown_key_hint(key: str, allowed: Sequence[str], start_kind: str = "known keys are") -> str:
     """Hint for an unknown key: "did you mean ...?" with similar known keys, or a list of all known keys.
-    start: beginning of the list. For a diameter, the hint is to give the radius."""
+    start_kind: beginning of the list. For a diameter, the hint is to give the radius."""
     if radius := radius_of_diameter(key, allowed):
         return f"give {radius}, half of it"
     if similar := similar_keys(key, allowed):
         return f"did you mean {enumeration(tuple(similar), 'or')}?"
-    return f"{start} {', '.join(allowed)}"
+    return f"{start_kind} {', '.join(allowed)}"
 
 
 def similar_keys(key: str, allowed: Sequence[str]) -> list[str]:

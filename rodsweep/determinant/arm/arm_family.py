@@ -37,11 +37,12 @@ class ArmFamilySettings(KernelConstants):
     near complex forces of the size of the stiffness, where the stretch of rubber has branch points."""
     max_propagator_entries: int = 500_000
     """No family is made if the propagators of one arm have more entries: single arms are then faster."""
-    converged_tail: float = 1e-15
+    converged_tail_ratio: float = 1e-15
     """The series has converged if the last two Chebyshev coefficients of every propagator are at most this
     number times its largest entry."""
     coefficient_tail_factor: float = 10.0
-    """The tolerance for series of the coefficients along the arms is `converged_tail` times this factor."""
+    """The tolerance for series of the coefficients along the arms is `converged_tail_ratio` times this
+    factor."""
 
     def trials(self) -> list[tuple[int, float]]:
         """Pairs from `arm_counts` and `spacing_scales`, in the order of the trials."""
@@ -85,7 +86,7 @@ def interpolated_family(path: ParameterPath, low: float, high: float, W: float) 
         if entries > ARM_FAMILY_SETTINGS.max_propagator_entries:
             return None
         values = element_propagators([rod.F for rod in arms], elements.local, elements.lengths, W)
-        if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail):
+        if _has_small_coefficient_tail(values, ARM_FAMILY_SETTINGS.converged_tail_ratio):
             coefficients = np.tensordot(_chebyshev_coefficient_matrix(node_count), values, 1)
             # The last coefficients show truncation errors, which may exceed rounding errors of small entries.
             largest_entry = np.abs(values).max(axis=0) + np.abs(coefficients[-2:]).sum(axis=0) / ROUND_OFF
@@ -106,7 +107,7 @@ def has_smooth_coefficients(path: ParameterPath, low: float, high: float) -> boo
 
 def _series_converges(samples: CoefficientSamples) -> bool:
     """Whether the Chebyshev series in p of the coefficients along the arms converges at every sample."""
-    tolerance = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail
+    tolerance = ARM_FAMILY_SETTINGS.coefficient_tail_factor * ARM_FAMILY_SETTINGS.converged_tail_ratio
     return _has_small_coefficient_tail(np.moveaxis(np.array(samples.local), 1, 0), tolerance)
 
 

@@ -26,7 +26,7 @@ from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS
 from .determinant import ArmDeterminant
 from .hull.region import EigenvalueHull
-from .value import determinant_along_chain
+from .value import determinant_from_propagators
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,7 +42,7 @@ class CompletenessSettings(KernelConstants):
     max_last_point_ratios: tuple[float, ...] = (1.5, 6.0)
     """Largest x_k divided by the largest known |w|, for each of `point_counts`. Most proofs with a larger x_k
     fail, because there unknown and known eigenvalues contribute almost equally."""
-    min_first_point: float = 0.35
+    min_first_point_ratio: float = 0.35
     """Smallest x_1 divided by the distance of the line from the imaginary axis."""
     min_first_distance: float = 1e-6
     """Smallest x_1, in 1/tau2; needed if the line and the hull are close to 0."""
@@ -52,13 +52,13 @@ class CompletenessSettings(KernelConstants):
     """Factor by which the points x_j move outwards until every term of R has a real part >= 0."""
     strip_count: int = 24
     """Number of vertical strips of the hull right of the line, each with its own bound of Re phi."""
-    max_remainder: float = 0.7
+    max_remainder_fraction: float = 0.7
     """Completeness is proved if R with its rounding error, and -R, are below this fraction of the least
     contribution of an unknown eigenvalue."""
     rounding_of_slope: float = 10.0
     """Relative rounding error of D'/D divided by that of D. Measured: at most 0.08 between two sets of
     elements, over 45 random arms."""
-    field_ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder": (0.0, 1.0)}
+    field_ranges: ClassVar = {"widening_factor": (1.0, math.inf), "max_remainder_fraction": (0.0, 1.0)}
 
     def proof_trials(self) -> list[tuple[int, float]]:
         """Pairs (k, largest x_k divided by the largest known |w|) of all trials, in order."""
@@ -70,11 +70,11 @@ COMPLETENESS_SETTINGS = CompletenessSettings()
 
 class Remainder(NamedTuple):
     """The sum R of phi over all unknown eigenvalues (see the module docstring). rounding: rounding error of
-    R. least_contribution: lower bound of the contribution of an unknown eigenvalue right of the line to R."""
+    R. min_contribution: lower bound of the contribution of an unknown eigenvalue right of the line to R."""
 
     R: float
     rounding: float
-    least_contribution: float
+    min_contribution: float
 
 
 def prove_complete(
@@ -119,16 +119,17 @@ def largest_w_of_proof(line: float, hull: EigenvalueHull, known_w: Complex) -> f
     return math.inf
 
 
-def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, modes: int) -> tuple[int, float]:
+def cheapest_proof(line: float, hull: EigenvalueHull, known_w: Complex, mode_count: int) -> tuple[int, float]:
     """Returns (number of leading eigenvalues that the cheapest proof needs, largest |w| of this proof). line:
     Re w of the vertical line. known_w: approximate eigenvalues, (n,), leading first. The cheapest proof has
-    the smallest |w|, so the fewest elements. The number is at least `modes`; 0 if no proof is possible."""
+    the smallest |w|, so the fewest elements. The number is at least `mode_count`; 0 if no proof is
+    possible."""
     cheapest = 0, math.inf
     sizes = np.maximum.accumulate(np.abs(known_w)).tolist()
     ends_whole = [*(known_w[1:] != known_w[:-1].conj()).tolist(), True]
     for k, ratio in COMPLETENESS_SETTINGS.proof_trials():
         last_w = _last_proof_point(points_right_of_hull(line, hull.a, hull.c, k))
-        for count in range(modes, len(sizes) + 1):
+        for count in range(mode_count, len(sizes) + 1):
             largest_w = sizes[count - 1]
             if last_w <= ratio * largest_w and max(last_w, largest_w) < cheapest[1] and ends_whole[count - 1]:
                 cheapest = count, max(last_w, largest_w)
@@ -144,7 +145,7 @@ def _last_proof_point(points: Array) -> float:
 def proves_completeness(remainder: Remainder) -> bool:
     """Whether R excludes an unknown eigenvalue right of the line. False also if R is far below 0: some known
     eigenvalue is then not a root of D."""
-    max_remainder = COMPLETENESS_SETTINGS.max_remainder * remainder.least_contribution
+    max_remainder = COMPLETENESS_SETTINGS.max_remainder_fraction * remainder.min_contribution
     return remainder.R + remainder.rounding < max_remainder and -max_remainder < remainder.R
 
 
@@ -153,11 +154,11 @@ def points_right_of_hull(line: float, a: float, c: float, k: int) -> Array:
     """Points x_1 < ... < x_k, (k,), so far right that each term of R has real part >= 0; empty if such points
     would overflow. line: Re w of the vertical line. k: number of points. a, c: constants of the hull."""
     # As close to the hull as allowed: from farther away all eigenvalues contribute alike.
-    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point * abs(line))
+    x = max(a * a, COMPLETENESS_SETTINGS.min_first_point_ratio * abs(line))
     x = max(x, COMPLETENESS_SETTINGS.min_first_distance)
     points = x * (1 + COMPLETENESS_SETTINGS.point_spread * np.arange(k) / max(k - 1, 1))
     while not _largest_angle_sum(points, a, c) < math.pi / 2:
-        if not points[0] < 1 / EXPONENT_SETTINGS.least_divisor:
+        if not points[0] < 1 / EXPONENT_SETTINGS.min_divisor:
             return points[:0]
         points *= COMPLETENESS_SETTINGS.widening_factor
     return points
@@ -197,7 +198,7 @@ def remainder_of_sum(
         for i in range(k):
             if i != j:
                 weight /= points[i] - points[j]
-        value = determinant_along_chain(complex(points[j], 0.0), level[0], level[1])
+        value = determinant_from_propagators(complex(points[j], 0.0), level[0], level[1])
         slope = (value.D_w / value.D).real
         R += weight * slope
         # The c_j alternate in sign: R may be far smaller than the terms that are rounded.

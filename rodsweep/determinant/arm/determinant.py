@@ -13,14 +13,14 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.dispersion import sampled_arm
-from ...model.material.build import LocalCoefficients
+from ...model.material.rod_material import LocalCoefficients
 from ...model.rod import Rod
 from ..value import DeterminantValue, newton_correction_and_scales
 from .elements.edges import element_edges, halved_where_coarse
 from .elements.propagators import element_propagators, gauss_method
 from .elements.settings import ARM_ELEMENT_SETTINGS
 from .local_waves import ArmSamples, arm_samples, mean_wave_number_and_w_scale
-from .value import determinant_along_chain
+from .value import determinant_from_propagators
 
 PropagatorsUpToW = tuple[float, Array]
 """(W, propagators that are valid for |w| <= W, (elements, terms, PADDED))."""
@@ -43,13 +43,13 @@ class ArmDeterminant:
     def value(self, w: complex) -> DeterminantValue:
         """D and D' = dD/dw at w, times exp(-S)."""
         W, polynomials = self.propagators_for(abs(w))
-        return determinant_along_chain(complex(w), W, polynomials)
+        return determinant_from_propagators(complex(w), W, polynomials)
 
     def value_on_finer_elements(self, w: complex, factor: float) -> DeterminantValue:
         """D and D' at w times exp(-S), from elements made for factor * |w|, factor >= 1. The differences
         between values for several factors show the rounding error of D."""
         W, polynomials = self.propagators_for(factor * abs(w), ARM_ELEMENT_SETTINGS.max_compared_reuse_ratio)
-        return determinant_along_chain(complex(w), W, polynomials)
+        return determinant_from_propagators(complex(w), W, polynomials)
 
     def wave_number(self, w: complex) -> float:
         """Bound of |q| of the exponentials exp(+-q u) at w, averaged along the arm, in 1/L."""
@@ -63,9 +63,9 @@ class ArmDeterminant:
     def gauss_samples(self) -> ArmSamples:
         """Samples of the arm at the Gauss points of each interval between breaks of the profile."""
         points, _, weights = gauss_method(ARM_ELEMENT_SETTINGS.stages)
-        lengths = np.diff(self.rod.build.breaks)[:, None]
+        lengths = np.diff(self.rod.material.breaks)[:, None]
         coefficients = self.rod.local_coefficients(
-            (self.rod.build.breaks[:-1, None] + lengths * points).ravel()
+            (self.rod.material.breaks[:-1, None] + lengths * points).ravel()
         )
         return arm_samples(float(self.rod.F), coefficients, (lengths * weights).ravel())
 
@@ -112,10 +112,10 @@ def coefficient_samples(rods: list[Rod]) -> CoefficientSamples:
 
 
 def elements_for(rods: list[Rod], samples: CoefficientSamples, W: float) -> PropagatorElements:
-    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same build. Raises
+    """The elements that resolve every arm of `rods` for |w| <= W; all arms have the same material. Raises
     FloatingPointError if `max_elements` elements do not resolve an arm."""
     tapers = np.array([rod.taper for rod in rods])
-    edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].build.breaks)
+    edges = element_edges(W, samples.squares, tapers, samples.points, rods[0].material.breaks)
     points, _, _ = gauss_method(ARM_ELEMENT_SETTINGS.stages)
     for _ in range(ARM_ELEMENT_SETTINGS.max_halvings):
         if not len(edges) <= ARM_ELEMENT_SETTINGS.max_elements:

@@ -21,8 +21,8 @@ from .arm_family import ArmFamily
 from .determinant import ArmDeterminant, arm_determinant
 from .family_values import determinant_of_family_arm, eigenvalue_of_family_arm, propagators_at
 from .newton import refine_eigenvalue_and_error
-from .rounding import rounding_error_by_chain
-from .value import determinant_along_chain
+from .rounding import rounding_error_from_propagators
+from .value import determinant_from_propagators
 
 CENTRAL_DIFFERENCE_STENCIL = ((1, 0.5), (-1, -0.5))
 FORWARD_DIFFERENCE_STENCIL = ((0, -1.5), (1, 2.0), (2, -0.5))
@@ -67,7 +67,7 @@ class _DoubleEigenvalueStep(NamedTuple):
     def is_converged(self, last: float) -> bool:
         """Whether Newton's method has converged: the step in p is of the size of rounding errors, and the
         step in x too, or more than half as long as `last`, the |change of x| in the previous step."""
-        converged = ROOT_NEWTON_SETTINGS.converged_step
+        converged = ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors
         return abs(self.in_p) <= converged * self.rounding_error_of_p and (
             abs(self.in_x) <= converged * self.rounding_error_of_x
             or abs(self.in_x) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
@@ -94,7 +94,7 @@ class ArmAlongPath:
         if family is not None and abs(guess) < family.largest_w / 2:
             w, slope, error = eigenvalue_of_family_arm(family, guess, p)
             # Near a double eigenvalue the interpolation errors of the family are magnified.
-            if error <= ROOT_SETTINGS.double_root_correction * abs(w):
+            if error <= ROOT_SETTINGS.double_root_correction_ratio * abs(w):
                 return w, slope, error
         determinant = self.determinant(p)
         w, error = refine_eigenvalue_and_error(guess, determinant)
@@ -145,9 +145,9 @@ class ArmAlongPath:
         """Derivatives of D and D_w at real w = x and p, by differences; expected_distance: see
         `double_eigenvalue`."""
         S = self._determinant_value(x, p).log_scale
-        h = DETERMINANT_SETTINGS.second_difference_step * abs(x)
+        h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(x)
         D_ww = (self._real_determinant(x + h, p, S)[1] - self._real_determinant(x - h, p, S)[1]) / (2 * h)
-        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step * expected_distance)
+        stencil, k = self._difference_stencil(p, ROOT_NEWTON_SETTINGS.jacobian_step_ratio * expected_distance)
         samples = [(weight, self._real_determinant(x, p + offset * k, S)) for offset, weight in stencil]
         D_p, D_wp = (sum(weight * value[i] for weight, value in samples) / k for i in range(2))
         return _DoubleEigenvalueJacobian(S, D_p, D_ww, D_wp)
@@ -161,7 +161,7 @@ class ArmAlongPath:
             W, polynomials = propagators_at(family, p)
         else:
             W, polynomials = self.determinant(p).propagators_for(abs(x))
-        value = determinant_along_chain(complex(x, 0.0), W, polynomials)
+        value = determinant_from_propagators(complex(x, 0.0), W, polynomials)
         S, D_p, D_ww, D_wp = jacobian
         scale = math.exp(value.log_scale - S)
         D = value.D.real * scale
@@ -169,9 +169,9 @@ class ArmAlongPath:
         cross = D_w * D_wp - D_p * D_ww
         if cross == 0 or not math.isfinite(cross):
             return _DoubleEigenvalueStep(math.nan, math.nan, math.nan, math.nan)
-        rounding = rounding_error_by_chain(complex(x, 0.0), W, polynomials, S)
+        rounding = rounding_error_from_propagators(complex(x, 0.0), W, polynomials, S)
         total_rounding = rounding + ROUND_OFF * abs(p * D_p)
-        rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.least_divisor)
+        rounding_of_slope = rounding / max(abs(x), EXPONENT_SETTINGS.min_divisor)
         x_step = (D_p * D_w - D_wp * D) / cross
         p_step = (D_ww * D - D_w * D_w) / cross
         e_x = (total_rounding * abs(D_wp) + rounding_of_slope * abs(D_p)) / abs(cross)
@@ -202,7 +202,7 @@ class ArmAlongPath:
         The step is shortened, at most `max_step_divisions` times, until both neighbouring arms are valid: not
         crushed, no negative compliance or drag. The stencil is one-sided at p = 0, unless p is the force.
         """
-        step = min(ROOT_NEWTON_SETTINGS.jacobian_step * max(abs(p), 1.0), max_step)
+        step = min(ROOT_NEWTON_SETTINGS.jacobian_step_ratio * max(abs(p), 1.0), max_step)
         if p == 0 and self.path.name != "F":
             return FORWARD_DIFFERENCE_STENCIL, step
         for _ in range(ARM_DOUBLE_EIGENVALUE_SETTINGS.max_step_divisions):

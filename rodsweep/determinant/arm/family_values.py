@@ -15,7 +15,7 @@ from ..value import DeterminantValue
 from .arm_family import LINEAR_SCALE, ArmFamily
 from .newton import ARM_ROOT_SETTINGS
 from .rounding import error_of_interpolated_chain
-from .value import determinant_along_chain, path_value_by_chain
+from .value import determinant_from_propagators, path_value_from_propagators
 
 
 @compiled
@@ -90,7 +90,7 @@ def determinant_of_family_arm(family: ArmFamily, w: complex, p: float) -> Determ
     polynomials = np.empty(shape)
     p_derivatives = np.empty(shape)
     write_propagators(family, p, polynomials, p_derivatives)
-    return determinant_along_chain(w, family.largest_w, polynomials)
+    return determinant_from_propagators(w, family.largest_w, polynomials)
 
 
 @compiled
@@ -104,7 +104,7 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
     w = guess
     previous_step = math.inf
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
-        value = determinant_along_chain(w, family.largest_w, polynomials)
+        value = determinant_from_propagators(w, family.largest_w, polynomials)
         step = value.D / value.D_w if value.D_w != 0 else 0j
         if w.imag == 0:
             step = complex(step.real, 0.0)
@@ -116,8 +116,8 @@ def eigenvalue_of_family_arm(family: ArmFamily, guess: complex, p: float) -> tup
         previous_step = abs(step)
         w -= step
     W = family.largest_w
-    D, D_w, D_p, S, _ = path_value_by_chain(w, W, polynomials, p_derivatives)
-    size = max(abs(D_w), EXPONENT_SETTINGS.least_divisor)
+    D, D_w, D_p, S, _ = path_value_from_propagators(w, W, polynomials, p_derivatives)
+    size = max(abs(D_w), EXPONENT_SETTINGS.min_divisor)
     slope = -D_p / D_w if D_w != 0 else 0j
     if w.imag == 0:
         slope = complex(slope.real, 0.0)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled, compiled_for_vectors
-from ...model.material.build import LocalCoefficients
+from ...model.material.rod_material import LocalCoefficients
 from ..exponents import EXPONENT_SETTINGS
 
 
@@ -44,7 +44,7 @@ def arm_samples(F: float | Array, coefficients: LocalCoefficients, weights: Arra
 def sqrt_in_upper_half_plane(real: float, imag: float) -> tuple[float, float]:
     """(real part, imaginary part) of the square root of real + i imag, imag >= 0."""
     larger = math.sqrt((math.sqrt(real * real + imag * imag) + abs(real)) / 2)
-    smaller = imag / (2 * max(larger, EXPONENT_SETTINGS.least_divisor))
+    smaller = imag / (2 * max(larger, EXPONENT_SETTINGS.min_divisor))
     return (larger, smaller) if real >= 0 else (smaller, larger)
 
 
@@ -73,7 +73,7 @@ def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float
         first_root = math.sqrt(modulus_of_parts(linear * a - constant + 2 * x, linear * b + 2 * y))
         second_root = math.sqrt(modulus_of_parts(linear * a - constant - 2 * x, linear * b - 2 * y))
         # Where both squares are close D depends on P^2, which has no branch point, and not on P.
-        inverse_scale = 1 / (max(P, EXPONENT_SETTINGS.least_divisor) * max(P, 1.0, first_root, second_root))
+        inverse_scale = 1 / (max(P, EXPONENT_SETTINGS.min_divisor) * max(P, 1.0, first_root, second_root))
         slope = square_linear + 2 * square_quadratic * a
         real_rate = inverse_scale * (slope * x + 2 * square_quadratic * b * y)
         imag_rate = inverse_scale * (2 * square_quadratic * b * x - slope * y)
@@ -83,7 +83,7 @@ def mean_wave_number_and_w_scale(w: complex, samples: ArmSamples) -> tuple[float
         )
         wave_number += samples.weights[i] * (first_root + second_root) / 2
         rate_sum += samples.weights[i] * max(rates[0], rates[1]) / 2
-    return wave_number, 1 / max(rate_sum, EXPONENT_SETTINGS.least_divisor)
+    return wave_number, 1 / max(rate_sum, EXPONENT_SETTINGS.min_divisor)
 
 
 @compiled

@@ -14,8 +14,8 @@ from ..roots.roots import roots_of_parabola
 from ..roots.settings import ROOT_NEWTON_SETTINGS, ROOT_SETTINGS
 from ..value import DETERMINANT_SETTINGS, DeterminantValue, second_difference
 from .determinant import ArmDeterminant, PropagatorsUpToW
-from .rounding import rounding_error_by_chain
-from .value import determinant_along_chain
+from .rounding import rounding_error_from_propagators
+from .value import determinant_from_propagators
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,9 +35,9 @@ ARM_ROOT_SETTINGS = ArmRootSettings()
 @compiled
 def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex:
     """D'' exp(-S) at w, by a central difference of D', from the propagators of `level`."""
-    h = DETERMINANT_SETTINGS.second_difference_step * abs(w)
-    value_after = determinant_along_chain(w + h, level[0], level[1])
-    value_before = determinant_along_chain(w - h, level[0], level[1])
+    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(w)
+    value_after = determinant_from_propagators(w + h, level[0], level[1])
+    value_before = determinant_from_propagators(w - h, level[0], level[1])
     D_ww = second_difference(value_after, value_before, S, h)
     return complex(D_ww.real, 0.0) if w.imag == 0 else D_ww
 
@@ -45,11 +45,11 @@ def _second_derivative(w: complex, S: float, level: PropagatorsUpToW) -> complex
 @compiled
 def _root_error_from_value(w: complex, value: DeterminantValue, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the value of D at w and the propagators of `level`."""
-    rounding = rounding_error_by_chain(w, level[0], level[1], value.log_scale)
+    rounding = rounding_error_from_propagators(w, level[0], level[1], value.log_scale)
     e = ARM_ROOT_SETTINGS.residual * abs(value.D) + rounding
     size = abs(value.D_w)
-    error = e / max(size, EXPONENT_SETTINGS.least_divisor)
-    if error > ROOT_SETTINGS.double_root_correction * abs(w):
+    error = e / max(size, EXPONENT_SETTINGS.min_divisor)
+    if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
         # Near a double root e/|D'| is unbounded, but a root of the second-order polynomial is near.
         D_ww = abs(_second_derivative(w, value.log_scale, level))
         if size**2 < ROOT_SETTINGS.min_squared_slope * e * D_ww:
@@ -61,7 +61,7 @@ def _root_error_from_value(w: complex, value: DeterminantValue, level: Propagato
 @compiled
 def _root_error_by_propagators(w: complex, level: PropagatorsUpToW) -> float:
     """`root_error` at w, from the propagators of `level`."""
-    return _root_error_from_value(w, determinant_along_chain(w, level[0], level[1]), level)
+    return _root_error_from_value(w, determinant_from_propagators(w, level[0], level[1]), level)
 
 
 @compiled
@@ -74,7 +74,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
     """
     w = guess
     for _ in range(ROOT_NEWTON_SETTINGS.max_refinements):
-        value = determinant_along_chain(w, level[0], level[1])
+        value = determinant_from_propagators(w, level[0], level[1])
         step = value.D / value.D_w if value.D_w != 0 else complex(math.inf, 0.0)
         if guess.imag == 0:
             step = complex(step.real, 0.0)
@@ -84,7 +84,7 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
         w -= step
         if abs(w.imag) <= ROOT_NEWTON_SETTINGS.real_tolerance * abs(w):
             w = complex(w.real, 0.0)
-        if not (1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w) <= level[0]:
+        if not (1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w) <= level[0]:
             return w, -1.0, last
     return w, _root_error_by_propagators(w, level), last
 
@@ -92,26 +92,26 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
 @compiled
 def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
     """`taylor_parabola_roots` about `middle`, with the propagators of `level`."""
-    D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
+    D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
     if middle.imag == 0:
         D = complex(D.real, 0.0)
         D_w = complex(D_w.real, 0.0)
     return roots_of_parabola(middle, D, D_w, _second_derivative(middle, S, level))
 
 
-def _propagators_at(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
+def _propagators_up_to(w: complex, determinant: ArmDeterminant) -> PropagatorsUpToW:
     """(W, propagators) that are valid for D and D'' at w."""
-    return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_difference_step) * abs(w))
+    return determinant.propagators_for((1 + DETERMINANT_SETTINGS.second_difference_step_ratio) * abs(w))
 
 
 def second_derivative(w: complex, S: float, determinant: ArmDeterminant) -> complex:
     """D'' exp(-S) of an arm at w, by a central difference of D'; real for real w."""
-    return _second_derivative(complex(w), S, _propagators_at(w, determinant))
+    return _second_derivative(complex(w), S, _propagators_up_to(w, determinant))
 
 
 def root_error(w: complex, determinant: ArmDeterminant) -> float:
     """Estimated distance from w to the nearest root of an arm's D, in 1/tau2; valid near double roots too."""
-    return _root_error_by_propagators(complex(w), _propagators_at(w, determinant))
+    return _root_error_by_propagators(complex(w), _propagators_up_to(w, determinant))
 
 
 def refine_eigenvalue_and_error(
@@ -123,11 +123,11 @@ def refine_eigenvalue_and_error(
     error = -1.0
     last = 2 * max_first_step
     while error < 0:
-        w, error, last = _newton_from_guess(complex(w), _propagators_at(w, determinant), last)
+        w, error, last = _newton_from_guess(complex(w), _propagators_up_to(w, determinant), last)
     return w, error
 
 
 def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:
     """The two roots of the quadratic Taylor polynomial of an arm's D about `middle`. For a real `middle` the
     roots are both real or complex conjugates."""
-    return _parabola_roots_by_propagators(middle, _propagators_at(middle, determinant))
+    return _parabola_roots_by_propagators(middle, _propagators_up_to(middle, determinant))

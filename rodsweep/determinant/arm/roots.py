@@ -51,14 +51,14 @@ def refine_mesh_eigenvalues(
     for k, i in enumerate(resolved):
         is_conjugate = k > 0 and starts[k] == starts[k - 1].conjugate()
         errors[i] = errors[resolved[k - 1]] if is_conjugate else root_error(starts[k], determinant)
-    near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction * scale[i]]
+    near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction_ratio * scale[i]]
     near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
     starts_of_near, gaps = _separate_close_roots([guesses[i] for i in near], near_errors, determinant)
     refined = [
         k
         for k, i in enumerate(near)
-        if gaps[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction * scale[i]
+        if gaps[k] < math.inf or near_errors[k] <= ROOT_SETTINGS.max_correction_ratio * scale[i]
     ]
     located = _refine_guesses([(starts_of_near[k], gaps[k]) for k in refined], determinant)
     located.sort(key=lambda root: (-root.w.real, -root.w.imag))
@@ -149,10 +149,10 @@ def _errors_of_located_roots(roots: list[_LocatedRoot], determinant: ArmDetermin
     for i, first_root in enumerate(roots):
         for j in range(i + 1, len(roots)):
             distance = abs(first_root.w - roots[j].w)
-            if distance <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
+            if distance <= ROOT_SETTINGS.same_root_distance_in_errors * (error[i] + error[j]):
                 value = determinant.value(first_root.w)
                 D_ww = abs(second_derivative(first_root.w, value.log_scale, determinant))
-                next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.least_divisor)
+                next_root = 2 * abs(value.D_w) / max(D_ww, EXPONENT_SETTINGS.min_divisor)
                 if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)
                     error[j] = max(error[j], next_root)

@@ -52,7 +52,7 @@ ARM_ROUNDING_SETTINGS = ArmRoundingSettings()
 
 
 @compiled
-def rounding_error_by_chain(w: complex, W: float, polynomials: Array, S: float) -> float:
+def rounding_error_from_propagators(w: complex, W: float, polynomials: Array, S: float) -> float:
     """Bound of the rounding error of D exp(-S) at w, to first order. polynomials: propagators valid for |w|
     <= W, (elements, terms, PADDED). S: logarithm of the scale of the result."""
     return error_of_interpolated_chain(w, W, polynomials, S, np.empty((0, 2, PADDED)))

@@ -84,8 +84,8 @@ def divide_by_norm(x: Array) -> float:
 def _multiply_along_chain(
     z: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> tuple[complex, complex, complex, float]:
-    """(D, dD/dw, dD/dp, S) of `path_value_by_chain` at w = z W; dD/dp is 0 if `p_derivatives` is empty.
-    polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED)."""
+    """(D, dD/dw, dD/dp, S) of `path_value_from_propagators` at w = z W; dD/dp is 0 if `p_derivatives` is
+    empty. polynomials, p_derivatives: propagators and their derivatives by p, (elements, terms, PADDED)."""
     elements, terms, _ = polynomials.shape
     has_p_derivative = len(p_derivatives) > 0
     powers = powers_and_derivatives(z, terms)
@@ -147,7 +147,7 @@ def _multiply_along_real_chain(
 
 
 @compiled
-def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
+def scaled_determinant_from_propagators(w: complex, W: float, polynomials: Array) -> tuple[complex, float]:
     """(D exp(-S), S) at w, alone. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
     powers = powers_and_derivatives(w / W, polynomials.shape[1])
     C = np.empty((2, PADDED))
@@ -164,21 +164,21 @@ def chain_value(w: complex, W: float, polynomials: Array) -> tuple[complex, floa
 
 
 @compiled
-def log_modulus_by_chain(w: complex, W: float, polynomials: Array) -> float:
+def log_modulus_from_propagators(w: complex, W: float, polynomials: Array) -> float:
     """log |D| at w; -inf if D = 0. polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
-    D, S = chain_value(w, W, polynomials)
+    D, S = scaled_determinant_from_propagators(w, W, polynomials)
     return S + math.log(abs(D)) if D != 0 else -math.inf
 
 
 @compiled
-def path_value_by_chain(
+def path_value_from_propagators(
     w: complex, W: float, polynomials: Array, p_derivatives: Array
 ) -> PathDeterminantValue:
     """D, dD/dw and dD/dp at w, times exp(-S). At real w every value is real.
 
     polynomials, p_derivatives: propagators valid for |w| <= W and their derivatives by p, (elements, terms,
     PADDED). dD/dp is 0 if `p_derivatives` is empty. The rounding error is that of the products at the tip;
-    the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_by_chain`.
+    the bound of the whole error is `rodsweep.determinant.arm.rounding.rounding_error_from_propagators`.
     """
     if w.imag == 0:
         D, D_w, D_p, S = _multiply_along_real_chain(w.real / W, W, polynomials, p_derivatives)
@@ -188,7 +188,7 @@ def path_value_by_chain(
 
 
 @compiled
-def determinant_along_chain(w: complex, W: float, polynomials: Array) -> DeterminantValue:
+def determinant_from_propagators(w: complex, W: float, polynomials: Array) -> DeterminantValue:
     """D and dD/dw at w, times exp(-S). polynomials: propagators for |w| <= W, (elements, terms, PADDED)."""
-    D, D_w, _, S, rounding_error = path_value_by_chain(w, W, polynomials, polynomials[:0])
+    D, D_w, _, S, rounding_error = path_value_from_propagators(w, W, polynomials, polynomials[:0])
     return DeterminantValue(D, D_w, S, rounding_error)

@@ -30,9 +30,9 @@ from ..parameter_path import ParameterPath, coefficients_at, dispersion_coeffici
 class BoxSettings(KernelConstants):
     """Settings for the a-priori box of all eigenvalues."""
 
-    padding: float = 0.01
+    padding_fraction: float = 0.01
     """This fraction of the depth is added to both bounds of the box."""
-    least_padding: float = 1e-6
+    min_padding: float = 1e-6
     """Length added to both bounds of the box, in 1/tau2; far below |w| = 12 of a rod at rest."""
     bound_excess: float = 0.01
     """Relative excess of every bound, for the rounding errors of the bound itself."""
@@ -63,7 +63,7 @@ def box_from_sqrt_bound(a: float, depth: float) -> tuple[float, float]:
     """Bounds (max Re w, max |Im w|) of eigenvalues with Re w >= -depth; a: sqrt of `frequency_bound`."""
     n = (a + sqrt(a * a + 4 * depth)) / 2
     # Without the padding, F = 0 would make the box empty.
-    padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
+    padding = BOX_SETTINGS.padding_fraction * depth + BOX_SETTINGS.min_padding
     return (1 + BOX_SETTINGS.bound_excess) * a * a / 4 + padding, (
         1 + BOX_SETTINGS.bound_excess
     ) * a * n + padding

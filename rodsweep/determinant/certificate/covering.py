@@ -43,7 +43,7 @@ class BoxProofSettings(KernelConstants):
     """The next trial ratio is this number times the previous trial ratio t."""
     max_radius_ratios: int = 30
     """Maximum number of trial ratios t, of which the last is 2e-7."""
-    min_half_width: float = 1e-9
+    min_half_width_ratio: float = 1e-9
     """An undecided box is left open, undivided, if half-widths are below this number times eta and |p|."""
     max_boxes: int = 1_000_000
     """After this number of examined boxes, further undecided boxes are left open, not divided."""
@@ -180,7 +180,7 @@ def exponent_changes(centre: BidiscCentre, half: tuple[float, float]) -> tuple[f
     # The bounds on the bidisc also need a small change of the radicand of P.
     factor = abs(centre.derivatives.G_p) + abs(centre.derivatives.X_p) * size
     return max(w_change, half[0] / size), max(
-        p_change, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.least_divisor)
+        p_change, factor * half[1] / max(stiffness, EXPONENT_SETTINGS.min_divisor)
     )
 
 
@@ -217,7 +217,7 @@ def cover_with_boxes(
                 if not is_known:
                     zeros.append(zero)
                 continue
-        min_half_width = BOX_PROOF_SETTINGS.min_half_width
+        min_half_width = BOX_PROOF_SETTINGS.min_half_width_ratio
         if count > BOX_PROOF_SETTINGS.max_boxes or (
             half[0] < min_half_width * eta and half[1] < min_half_width * abs(p)
         ):

@@ -31,7 +31,7 @@ class DominanceSettings(KernelConstants):
     """(radius of the first trial disc) / (distance of its step's start to the next branch point of z+-)."""
     max_halvings: int = 2
     """The segment of proved dominance ends if a trial disc halved this many times is still not proved."""
-    overlap: float = 1e-3
+    overlap_fraction: float = 1e-3
     """The radius of a disc exceeds half the step that the disc covers by this fraction, so that rounding
     leaves no gap between discs."""
     end_rounding: float = 1e-15
@@ -169,7 +169,9 @@ def phase_over_dominated_segment(
         for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
             disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if is_dominated(w + direction * rho, (1 + DOMINANCE_SETTINGS.overlap) * rho, coefficients):
+            if is_dominated(
+                w + direction * rho, (1 + DOMINANCE_SETTINGS.overlap_fraction) * rho, coefficients
+            ):
                 proved = True
                 break
             rho /= 2

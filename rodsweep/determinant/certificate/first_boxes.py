@@ -24,14 +24,14 @@ class CoveringSettings:
     """Minimum number of intervals of p into which the path is divided."""
     max_eta_ratio: float = 4.0
     """Largest ratio of the upper to the lower end of a first box in eta."""
-    max_nu_decrease: float = 0.5
+    max_nu_decrease_fraction: float = 0.5
     """nu decreases over an interval of p by at most this fraction of nu at the start of the interval."""
-    min_interval: float = 1e-6
+    min_interval_ratio: float = 1e-6
     """Shortest interval divided by the longest interval. Near p = 0 intervals are short, because a drag or
     compliance p at most doubles over an interval."""
-    min_last_interval: float = 1e-3
+    min_last_interval_ratio: float = 1e-3
     """If the last interval of p is below this fraction of the previous interval, the two are merged."""
-    padding: float = 1e-6
+    padding_fraction: float = 1e-6
     """Length added to the upper bound of eta, in 1/tau2, because the bound is 0 at F = 0."""
 
 
@@ -49,11 +49,11 @@ def path_intervals(path: ParameterPath, start: float, stop: float) -> list[tuple
         nu = coefficients_at(p, path.origin, path.direction).nu
         slope = path.direction.nu
         if slope < 0:  # the rod is crushed at nu = 0
-            step = min(step, COVERING_SETTINGS.max_nu_decrease * nu / -slope)
+            step = min(step, COVERING_SETTINGS.max_nu_decrease_fraction * nu / -slope)
         if path.name != "F":  # drag and compliances vary over decades
-            step = min(step, max(p, COVERING_SETTINGS.min_interval * width))
+            step = min(step, max(p, COVERING_SETTINGS.min_interval_ratio * width))
         end = p + step
-        edges.append(stop if stop - end < COVERING_SETTINGS.min_last_interval * step else end)
+        edges.append(stop if stop - end < COVERING_SETTINGS.min_last_interval_ratio * step else end)
     return list(zip(edges[:-1], edges[1:], strict=True))
 
 
@@ -64,7 +64,7 @@ def first_boxes(path: ParameterPath, start: float, stop: float) -> Array | None:
     for a, b in path_intervals(path, start, stop):
         top = (1 + BOX_SETTINGS.bound_excess) * frequency_bound_on_path(
             path, a, b
-        ) + COVERING_SETTINGS.padding
+        ) + COVERING_SETTINGS.padding_fraction
         if not math.isfinite(top):
             return None
         min_eta = zero_free_radius(path, a, b, top)

@@ -34,23 +34,23 @@ class WindingSettings(KernelConstants):
     """Factor on the width of the box. Wider is cheaper: one exponential dominates D far from eigenvalues."""
     additional_width: float = 50.0
     """Length added to the width of the box, in 1/tau2, because a wider box is cheaper to walk around."""
-    min_height: float = 0.5
+    min_height_ratio: float = 0.5
     """Smallest height of the box divided by the distance of the line from the imaginary axis."""
     integer_tolerance: float = 1e-3
     """The count fails if the computed winding number differs from the nearest integer by more than this."""
-    walk_length: float = 0.25
+    walk_length_ratio: float = 0.25
     """After a failed proof of dominance at w, the phase is followed by nodes over this length times |w|
     before dominance is tried again. The length doubles after each failure."""
-    max_step: float = 1.9
+    max_step_ratio: float = 1.9
     """The first step tried from a node is this number times its zero-free radius. A step beyond the zero-free
     radius needs a next node whose zero-free radius covers the step."""
-    safe_step: float = 0.999
+    safe_step_ratio: float = 0.999
     """If the first step fails, the step is this times the zero-free radius: below 1, because of rounding."""
-    min_zero_free_radius: float = 1e-13
+    min_zero_free_radius_ratio: float = 1e-13
     """The count fails if the zero-free radius of a node is below this times |w|: a zero is too close."""
     max_edge_nodes: int = 20_000
     """Maximum number of nodes on one edge of the box; the paper's rods need about 30 nodes on all edges."""
-    field_ranges: ClassVar = {"safe_step": (0.0, 1.0)}
+    field_ranges: ClassVar = {"safe_step_ratio": (0.0, 1.0)}
 
 
 WINDING_SETTINGS = WindingSettings()
@@ -83,14 +83,16 @@ def phase_change(start: complex, end: complex, coefficients: Coefficients) -> tu
     t = 0.0
     total = 0.0
     node_count = 0
-    node_walk_length = WINDING_SETTINGS.walk_length
+    node_walk_length = WINDING_SETTINGS.walk_length_ratio
     while t < length:
         w = start + direction * t
         dominated_length, change, discs = phase_over_dominated_segment(w, direction, length - t, coefficients)
         total += change
         node_count += discs
         # Dominance that fails is tried again only after a longer walk: each failure costs three discs.
-        node_walk_length = WINDING_SETTINGS.walk_length if dominated_length > 0 else 2 * node_walk_length
+        node_walk_length = (
+            WINDING_SETTINGS.walk_length_ratio if dominated_length > 0 else 2 * node_walk_length
+        )
         t = length if dominated_length == length - t else t + dominated_length
         if t < length:
             w = start + direction * t
@@ -118,12 +120,12 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
     node = zero_free_disc_at(start, coefficients)
     while t < length:
         if (
-            not node.zero_free_radius > WINDING_SETTINGS.min_zero_free_radius * abs(node.w)
+            not node.zero_free_radius > WINDING_SETTINGS.min_zero_free_radius_ratio * abs(node.w)
             or node_count > WINDING_SETTINGS.max_edge_nodes
         ):
             return 0.0, -node_count
         # The next node may lie outside the zero-free disc of this node if its own disc covers the step.
-        distance = min(WINDING_SETTINGS.max_step * node.zero_free_radius, length - t)
+        distance = min(WINDING_SETTINGS.max_step_ratio * node.zero_free_radius, length - t)
         while True:
             is_in_disc = distance < node.zero_free_radius
             next_node = zero_free_disc_at(
@@ -134,7 +136,7 @@ def phase_change_by_nodes(start: complex, end: complex, coefficients: Coefficien
                 node.zero_free_radius, next_node.zero_free_radius
             ):
                 break
-            distance = WINDING_SETTINGS.safe_step * node.zero_free_radius
+            distance = WINDING_SETTINGS.safe_step_ratio * node.zero_free_radius
         # The linear part of the change may exceed 2 pi; the values of D give the rest, less than pi/2.
         linear_change = (
             (node.L if node.zero_free_radius >= next_node.zero_free_radius else next_node.L)
@@ -205,5 +207,5 @@ def upper_contour_corner(line: float, box: tuple[float, float]) -> complex:
     real, imag = box
     return complex(
         WINDING_SETTINGS.width_factor * real + WINDING_SETTINGS.additional_width,
-        max(imag, WINDING_SETTINGS.min_height * abs(line)),
+        max(imag, WINDING_SETTINGS.min_height_ratio * abs(line)),
     )

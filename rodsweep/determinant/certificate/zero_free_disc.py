@@ -64,7 +64,7 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
     rho = abs(w) / NODE_DISC_SETTINGS.branch_distance
     if c2 * gamma3 > 0:
         rho = min(rho, stiffness / (NODE_DISC_SETTINGS.branch_distance * c2 * gamma3))
-    rho = min(rho, (S + 1) / max(abs(L), EXPONENT_SETTINGS.least_divisor))
+    rho = min(rho, (S + 1) / max(abs(L), EXPONENT_SETTINGS.min_divisor))
     # A recessive exponential contributes little to D (large slack), so it may change more over the disc.
     for sign, z in ((1.0, plus), (-1.0, minus)):
         slope = c2 + gamma3 + sign * 2 * P1
@@ -74,11 +74,11 @@ def trial_radius(w: complex, coefficients: Coefficients, L: complex, S: float) -
             rho,
             NODE_DISC_SETTINGS.factor_change
             * max(abs(z), 2.0)
-            / max(abs(slope), EXPONENT_SETTINGS.least_divisor),
+            / max(abs(slope), EXPONENT_SETTINGS.min_divisor),
         )
         if abs(z) > NODE_DISC_SETTINGS.min_root_modulus:
             rate = slope / (2 * root)
-            rho = min(rho, recessive_distance / max(abs(rate - L), EXPONENT_SETTINGS.least_divisor))
+            rho = min(rho, recessive_distance / max(abs(rate - L), EXPONENT_SETTINGS.min_divisor))
             rho = min(rho, math.sqrt(2 * recessive_distance * abs(root) / (abs(P2) + abs(rate) ** 2)))
     return rho
 

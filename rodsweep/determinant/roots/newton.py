@@ -64,11 +64,11 @@ def crossing_newton(
         eta += eta_step
         p += p_step
         if (
-            abs(eta_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_eta
-            and abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_p
+            abs(eta_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_eta
+            and abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_p
         ) or (
             step > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
-            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step * abs(p)
+            and step * scale[1] < ROOT_NEWTON_SETTINGS.stagnant_step_ratio * abs(p)
         ):
             return LocatedEigenvalue(eta, p, max(e_eta, abs(eta_step)), max(e_p, abs(p_step)))
         last = step
@@ -90,8 +90,8 @@ def double_eigenvalue_newton(
     last = math.inf
     for _ in range(2 * ROOT_NEWTON_SETTINGS.max_steps):
         D, D_w, D_p, S, rounding_error = _real_determinant(x, p, origin, direction)
-        h = ROOT_NEWTON_SETTINGS.jacobian_step * abs(x)
-        k = ROOT_NEWTON_SETTINGS.jacobian_step * expected_distance
+        h = ROOT_NEWTON_SETTINGS.jacobian_step_ratio * abs(x)
+        k = ROOT_NEWTON_SETTINGS.jacobian_step_ratio * expected_distance
         _, D_w_right, _, S_right, _ = _real_determinant(x + h, p, origin, direction)
         _, D_w_left, _, S_left, _ = _real_determinant(x - h, p, origin, direction)
         _, after, _, S_after, _ = _real_determinant(x, p + k, origin, direction)
@@ -106,15 +106,15 @@ def double_eigenvalue_newton(
         rounding = rounding_error + ROUND_OFF * abs(p * D_p)
         e_p = rounding * abs(D_ww) / abs(cross)
         e_x = (
-            rounding * abs(D_wp) + rounding_error / max(abs(x), EXPONENT_SETTINGS.least_divisor) * abs(D_p)
+            rounding * abs(D_wp) + rounding_error / max(abs(x), EXPONENT_SETTINGS.min_divisor) * abs(D_p)
         ) / abs(cross)
         x += x_step
         p += p_step
         # A double eigenvalue is never 0, since D(0) = 1: a change of sign means another root.
         if not abs(p - first) <= 2 * expected_distance or not x * start > 0:
             return FAILED_EIGENVALUE
-        if abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_p and (
-            abs(x_step) <= ROOT_NEWTON_SETTINGS.converged_step * e_x
+        if abs(p_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_p and (
+            abs(x_step) <= ROOT_NEWTON_SETTINGS.converged_step_in_rounding_errors * e_x
             or abs(x_step) > ROOT_NEWTON_SETTINGS.converging_step_ratio * last
         ):
             return LocatedEigenvalue(x, p, max(e_x, abs(x_step)), max(e_p, abs(p_step)))

@@ -58,7 +58,7 @@ def root_error_and_scales(w: complex, coefficients: Coefficients) -> tuple[float
     sqrt(2 e/|D''|) of the middle.
     """
     error, length, wave = newton_correction_and_scales(w, coefficients)
-    if error > ROOT_SETTINGS.double_root_correction * abs(w):
+    if error > ROOT_SETTINGS.double_root_correction_ratio * abs(w):
         D, D1, S, rounding_error = scaled_determinant(w, coefficients)
         e = max(abs(D), DETERMINANT_SETTINGS.typical_rounding_fraction * rounding_error)
         D_ww = abs(second_derivative(w, S, coefficients))
@@ -168,7 +168,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
         real, imag = box_from_sqrt_bound(sqrt_bound, max(-guess[i].real, 0.0))
         inside[i] = guess[i].real <= real and abs(guess[i].imag) <= imag
         is_near[i] = (
-            inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction * length[i]
+            inside[i] and wave[i] <= max_q and error[i] <= ROOT_SETTINGS.max_pair_correction_ratio * length[i]
         )
     indices = np.flatnonzero(is_near)
     guess = guess[indices]
@@ -176,7 +176,7 @@ def refined_roots(raw: Complex, coefficients: Coefficients, sqrt_bound: float, m
     length = length[indices]
     wave = wave[indices]
     w, is_refined = _refine_candidates(
-        guess, error, wave, error <= ROOT_SETTINGS.max_correction * length, coefficients
+        guess, error, wave, error <= ROOT_SETTINGS.max_correction_ratio * length, coefficients
     )
     order = np.flatnonzero(is_refined)
     order = order[_descending_order(w[order])]
@@ -227,7 +227,7 @@ def _raise_errors_of_equal_roots(w: Complex, error: Array, coefficients: Coeffic
     for i in range(len(w)):
         for j in range(i + 1, len(w)):
             distance = abs(w[i] - w[j])
-            if distance <= ROOT_SETTINGS.same_root_distance * (error[i] + error[j]):
+            if distance <= ROOT_SETTINGS.same_root_distance_in_errors * (error[i] + error[j]):
                 next_root = distance_to_next_root(w[i], coefficients)
                 if distance < ROOT_SETTINGS.same_root_fraction * next_root:
                     error[i] = max(error[i], next_root)

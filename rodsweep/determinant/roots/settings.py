@@ -9,10 +9,10 @@ from ...model.compiled.kernel_constants import KernelConstants
 class RootSettings(KernelConstants):
     """Settings for the refinement of eigenvalues of a mesh to roots of D."""
 
-    max_correction: float = 1e-2
+    max_correction_ratio: float = 1e-2
     """An eigenvalue of the mesh approximates a root of D if |D/D'| <= this number times the length over which
     D changes; otherwise, unless it belongs to a close pair, it is an artefact of the mesh."""
-    max_pair_correction: float = 0.1
+    max_pair_correction_ratio: float = 0.1
     """Two close eigenvalues of the mesh approximate two roots of D if |D/D'| of each eigenvalue is at most
     this number times the length over which D changes."""
     pair_distance: float = 4.0
@@ -25,16 +25,16 @@ class RootSettings(KernelConstants):
     """An eigenvalue is taken to be imaginary if |Re w| <= this number times |w|."""
     axis_tolerance_in_errors: float = 4.0
     """An eigenvalue is also taken to be imaginary if |Re w| <= this number times the error of w."""
-    double_root_correction: float = 1e-11
+    double_root_correction_ratio: float = 1e-11
     """An eigenvalue w is checked for a double root if |D/D'| > this number times |w|."""
     min_squared_slope: float = 16.0
     """The Newton correction e/|D'| is a valid error estimate if |D'|^2 >= this number times e |D''|, with the
     error e of D: the next root, at 2 |D'/D''|, is then at least 32 corrections away."""
-    same_root_distance: float = 4.0
+    same_root_distance_in_errors: float = 4.0
     """Distance of two computed roots, over the sum of their errors, up to which they may be the same."""
     same_root_fraction: float = 0.25
-    """Two roots that may be the same by `same_root_distance` are the same root of D if their distance is
-    below this fraction of the estimated distance 2 |D'/D''| of the next root."""
+    """Two roots that may be the same by `same_root_distance_in_errors` are the same root of D if their
+    distance is below this fraction of the estimated distance 2 |D'/D''| of the next root."""
 
 
 ROOT_SETTINGS = RootSettings()
@@ -50,15 +50,15 @@ class RootNewtonSettings(KernelConstants):
     """Maximum number of Newton steps to an eigenvalue."""
     max_relative_step: float = 20.0
     """Newton's method for a crossing fails after a step of more than this times the expected eta and p."""
-    converged_step: float = 4.0
+    converged_step_in_rounding_errors: float = 4.0
     """Newton's method has converged if |step| <= this number times the rounding error of the zero."""
-    jacobian_step: float = 1e-5
+    jacobian_step_ratio: float = 1e-5
     """Steps of the differences in the Jacobian of a double eigenvalue, divided by |x| for x and by the
     expected distance for p. The Jacobian need not be accurate."""
     converging_step_ratio: float = 0.5
     """A Newton step of at least this number times the previous step is rounding error: the method has
     converged as far as rounding allows."""
-    stagnant_step: float = 1e-9
+    stagnant_step_ratio: float = 1e-9
     """Newton's method for a crossing has also converged if |step| is below this number times |p| and above
     `converging_step_ratio` times the previous |step|."""
     real_tolerance: float = 1e-14

@@ -18,7 +18,7 @@ class ElementSettings:
     """Settings of elements: points close to the ends of elements, and maximum sizes of caches."""
 
     end_distance: float = 1e-15
-    """Distance of the first and last `Elements.points_inside_elements` from the ends of an element, in L: a
+    """Distance of the first and last `Elements.one_sided_nodes` from the ends of an element, in L: a
     few rounding errors of u. With 1e-9, the largest y of cycles near the Hopf point of a cone had an error of
     1e-8 on every mesh."""
     min_reduced_order: int = 2
@@ -89,7 +89,7 @@ class Elements:
         return np.concatenate([np.arange(nodes.start, nodes.stop) for nodes in self.node_ranges])
 
     @cached_property
-    def points_inside_elements(self) -> Array:
+    def one_sided_nodes(self) -> Array:
         """Coordinates u of the nodes of every element, (nodes + elements,), with the end nodes moved just
         inside: at a jump, each element evaluates a coefficient on its own side."""
         distance = ELEMENT_SETTINGS.end_distance
@@ -112,7 +112,7 @@ class Elements:
             matrix[indices, self.node_ranges[e]] = lagrange_interpolation_matrix(nodes, coordinates)
         return matrix
 
-    def element_evaluation_matrix(self, points: Array) -> Array:
+    def one_sided_evaluation_matrix(self, points: Array) -> Array:
         """Matrix (n, nodes + elements) from values at the nodes of every element to values at `points`, (n,),
         in [0, 1]. A node between two elements has one value for each of the two elements."""
         matrix = np.zeros((len(points), self.element_nodes.size))
@@ -133,17 +133,17 @@ class Elements:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def element_orders(elements: int, order: int, ratios: tuple[float, ...]) -> tuple[int, ...]:
-    """Orders of `elements` elements: `order` times each of `ratios`, rounded up, between
+def element_orders(element_count: int, order: int, ratios: tuple[float, ...]) -> tuple[int, ...]:
+    """Orders of `element_count` elements: `order` times each of `ratios`, rounded up, between
     `ELEMENT_SETTINGS.min_reduced_order` and `order`; `order` for all elements if `ratios` is empty."""
     min_order = min(ELEMENT_SETTINGS.min_reduced_order, order)
-    return tuple(max(min_order, ceil(ratio * order)) for ratio in ratios) or (order,) * elements
+    return tuple(max(min_order, ceil(ratio * order)) for ratio in ratios) or (order,) * element_count
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def equal_edges(elements: int) -> tuple[float, ...]:
-    """Edges of `elements` elements of equal length on [0, 1]."""
-    return tuple(k / elements for k in range(elements + 1))
+def equal_edges(element_count: int) -> tuple[float, ...]:
+    """Edges of `element_count` elements of equal length on [0, 1]."""
+    return tuple(k / element_count for k in range(element_count + 1))
 
 
 def halve_elements(edges: tuple[float, ...]) -> tuple[float, ...]:

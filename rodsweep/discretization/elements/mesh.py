@@ -56,9 +56,9 @@ class Mesh(Elements):
         return self.matrices.weights
 
 
-def uniform_mesh(elements: int, order: int) -> Mesh:
-    """The mesh of `elements` elements of equal length and of order `order`."""
-    return mesh_with_edges(equal_edges(elements), order)
+def uniform_mesh(element_count: int, order: int) -> Mesh:
+    """The mesh of `element_count` elements of equal length and of order `order`."""
+    return mesh_with_edges(equal_edges(element_count), order)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)

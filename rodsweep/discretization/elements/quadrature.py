@@ -48,9 +48,9 @@ def gauss_lobatto_rule(p: int) -> tuple[Array, Array]:
     return x, 2 / (p * (p + 1) * _two_highest_legendre_values(p, x)[0] ** 2)
 
 
-def lobatto_points(nodes: int) -> Array:
-    """Gauss-Lobatto points on [0, 1], (nodes,). nodes: number of points."""
-    return (gauss_lobatto_rule(nodes - 1)[0] + 1) / 2
+def lobatto_points(node_count: int) -> Array:
+    """Gauss-Lobatto points on [0, 1], (nodes,). node_count: number of points."""
+    return (gauss_lobatto_rule(node_count - 1)[0] + 1) / 2
 
 
 def _two_highest_legendre_values(p: int, x: Array) -> tuple[Array, Array]:

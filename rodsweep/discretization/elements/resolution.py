@@ -58,16 +58,16 @@ class Resolution:
         return 3 * self.element_count * self.order
 
 
-def expected_wave_number(modes: int, amplified_wave_number: float) -> float:
+def expected_wave_number(mode_count: int, amplified_wave_number: float) -> float:
     """Upper estimate of the largest wave number |q| of the leading modes, in 1/L.
 
-    modes: number of leading modes. amplified_wave_number: |q| of the most amplified wave. Without load the
-    n-th mode has |q| near (n - 1/2) pi; under load the leading modes approach the most amplified wave. For
-    the random rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
+    mode_count: number of leading modes. amplified_wave_number: |q| of the most amplified wave. Without load
+    the n-th mode has |q| near (n - 1/2) pi; under load the leading modes approach the most amplified wave.
+    For the random rods of the module docstring the estimate is 0.95 to 1.37 times the true maximum.
     """
     return hypot(
         RESOLUTION_SETTINGS.wave_factor * amplified_wave_number,
-        (modes - RESOLUTION_SETTINGS.mode_offset) * pi,
+        (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi,
     )
 
 

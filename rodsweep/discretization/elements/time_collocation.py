@@ -48,19 +48,19 @@ class CollocationMethod(NamedTuple):
 
 
 @cache
-def radau_method(stages: int) -> CollocationMethod:
-    """The Radau IIA method with s = `stages` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
+def radau_method(stage_count: int) -> CollocationMethod:
+    """The Radau IIA method with s = `stage_count` stages; its nodes are the zeros of P_(s-1) - P_s, mapped to
     [0, 1]. P_s: Legendre polynomial."""
-    series = np.zeros(stages + 1)
+    series = np.zeros(stage_count + 1)
     series[-2:] = 1.0, -1.0
     x = np.sort(legendre.legroots(series).real)
     for _ in range(RADAU_SETTINGS.newton_steps):
         x = x - legendre.legval(x, series) / legendre.legval(x, legendre.legder(series))
     x[-1] = 1.0
-    moments = np.zeros(stages)
+    moments = np.zeros(stage_count)
     moments[0] = 1.0
     # The weights integrate Legendre polynomials exactly; only the integral of P_0 is nonzero.
-    weights = np.linalg.solve(legendre.legvander(x, stages - 1).T, moments)
+    weights = np.linalg.solve(legendre.legvander(x, stage_count - 1).T, moments)
     D = 2 * differentiation_matrix(np.append(-1.0, x))
     # The equations hold at the stages, not at the start, so the first row of D is not used.
     return CollocationMethod((x + 1) / 2, weights, np.ascontiguousarray(D[1:]))

@@ -66,7 +66,7 @@ class ArmPencil:
         gauss_points: Array = edges[:-1, None] + h[:, None] * (xg + 1) / 2
         # Gauss points of the elements, then their nodes, (elements, 2 order + 1).
         self._sample_points = np.concatenate(
-            [gauss_points, mesh.points_inside_elements.reshape(mesh.element_count, -1)], axis=1
+            [gauss_points, mesh.one_sided_nodes.reshape(mesh.element_count, -1)], axis=1
         )
         slopes = slope.T * wg
         self._y_indices: NDArray[np.int64] = (

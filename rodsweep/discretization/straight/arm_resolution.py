@@ -34,11 +34,12 @@ class ArmMesh(Elements):
         return 3 * self.node_count
 
 
-def arm_mesh(rod: Rod, modes: int, accuracy: float) -> ArmMesh:
-    """The mesh expected to give `modes` leading eigenvalues of the arm `rod` to the relative `accuracy`."""
+def arm_mesh(rod: Rod, mode_count: int, accuracy: float) -> ArmMesh:
+    """The mesh expected to give `mode_count` leading eigenvalues of the arm `rod` to the relative
+    `accuracy`."""
     weights = sampled_arm(rod).weights
     _, amplified_q = most_amplified_local_waves(rod)
-    unloaded_q = (modes - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
+    unloaded_q = (mode_count - RESOLUTION_SETTINGS.mode_offset) * pi * _relative_wave_number(rod)
     waves = np.hypot(RESOLUTION_SETTINGS.wave_factor * amplified_q, unloaded_q)
     elements = _elements_for_wave(rod, waves * weights, accuracy, RESOLUTION_SETTINGS.max_order)
     return ArmMesh(elements.edges, elements.order)
@@ -64,7 +65,7 @@ def _relative_wave_number(rod: Rod) -> Array:
 def _elements_for_wave(rod: Rod, phases: Array, accuracy: float, largest_order: int) -> Elements:
     """Elements that resolve a wave along an arm to a relative accuracy. phases: phase of the wave over each
     sample interval, |q| times length, (n,). largest_order: maximum order of an element."""
-    breaks = rod.build.breaks
+    breaks = rod.material.breaks
     fractions = phases.reshape(len(breaks) - 1, -1).sum(axis=1)
     edges = [0.0]
     max_fraction = 0.0

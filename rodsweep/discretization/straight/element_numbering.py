@@ -33,20 +33,20 @@ class ElementNumbering:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def element_numbering(elements: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
-    """Numbering of `elements` equal elements of the order `order`. components: indices of the components of
-    stresses and velocities that are unknowns."""
-    last_node = elements * order
-    nodes = np.arange(elements)[:, None] * order + np.arange(order + 1)
+def element_numbering(element_count: int, order: int, components: tuple[int, ...]) -> ElementNumbering:
+    """Numbering of `element_count` equal elements of the order `order`. components: indices of the components
+    of stresses and velocities that are unknowns."""
+    last_node = element_count * order
+    nodes = np.arange(element_count)[:, None] * order + np.arange(order + 1)
     unknown_count = PLANE_COMPONENT_COUNT * (2 * last_node + 1)
     stresses = [np.where(nodes == last_node, unknown_count, c * last_node + nodes) for c in components]
     velocities = [PLANE_COMPONENT_COUNT * last_node + c * (last_node + 1) + nodes for c in components]
     width = 2 * len(components)
     node = np.tile(np.arange(order + 1), width)
-    interior_nodes = np.flatnonzero((node > 0) & (node < order)) if elements > 1 else np.array([], int)
+    interior_nodes = np.flatnonzero((node > 0) & (node < order)) if element_count > 1 else np.array([], int)
     ends = np.setdiff1d(np.arange(len(node)), interior_nodes)
     ends = ends[np.argsort(node[ends], kind="stable")]
-    interface_indices = np.arange(elements)[:, None] * width + np.arange(len(ends))
+    interface_indices = np.arange(element_count)[:, None] * width + np.arange(len(ends))
     unknowns = np.concatenate([*stresses, *velocities], axis=1)
     exists = np.ones(interface_indices[-1, -1] + 1, bool)
     exists[interface_indices[-1]] = unknowns[-1, ends] < unknown_count

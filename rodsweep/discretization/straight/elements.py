@@ -58,17 +58,17 @@ class StraightElements:
         """Contribution of one element to the matrix A of the mixed form, (local, local)."""
         identity = np.eye(PLANE_COMPONENT_COUNT)
         block = np.ix_(self.components, self.components)
-        material = self.form.rod.material
-        E = material.rest_strain[:, None]
-        Sigma = material.tip_stress[:, None]
+        coefficients = self.form.rod.balance_coefficients
+        E = coefficients.rest_strain[:, None]
+        Sigma = coefficients.tip_stress[:, None]
         WD, W = self._element_matrices
         # Local unknowns: stresses at all nodes, then velocities; `half` components of each.
         half = len(self.components)
         nodes = np.arange(len(W))
         local_block = np.zeros((2 * half, 2 * half))
         local_block[:half, half:] = ad(E, identity)[block]
-        local_block[half:, :half] = (coad(E, identity) + coad(np.diag(material.compliance), Sigma))[block]
-        local_block[half:, half:] = -np.diag(material.drag)[block]
+        local_block[half:, :half] = (coad(E, identity) + coad(np.diag(coefficients.compliance), Sigma))[block]
+        local_block[half:, half:] = -np.diag(coefficients.drag)[block]
         A = np.zeros((2 * half, len(W), 2 * half, len(W)))
         A[:, nodes, :, nodes] = W[:, None, None] * local_block
         for stress in range(half):
@@ -80,7 +80,7 @@ class StraightElements:
     def M(self) -> Array:
         """Contribution of one element to the diagonal of the matrix M of the mixed form, (local,)."""
         stresses = np.outer(
-            self.form.rod.material.compliance[list(self.components)], self._element_matrices[1]
+            self.form.rod.balance_coefficients.compliance[list(self.components)], self._element_matrices[1]
         )
         return np.concatenate([stresses, 0 * stresses]).ravel()
 

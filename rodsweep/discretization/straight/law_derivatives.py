@@ -63,7 +63,7 @@ class LawDerivativesAtRest:
 
 def law_derivatives_at_rest(rod: Rod, nodal: NodalRod) -> LawDerivativesAtRest:
     """The derivatives of a rod's constitutive law at rest, at the nodes of a mesh. nodal: the rod there."""
-    law: Law = rod.build.constitutive_law
+    law: Law = rod.material.constitutive_law
     nu = nodal.rest_strain[0]
     c1, _, c3 = nodal.compliance
     stiffness = law.stiffness(nu)

@@ -49,32 +49,32 @@ class LongitudinalModeSettings:
 LONGITUDINAL_MODE_SETTINGS = LongitudinalModeSettings()
 
 
-def longitudinal_modes(rod: Rod, modes: int) -> tuple[Array, Array]:
+def longitudinal_modes(rod: Rod, mode_count: int) -> tuple[Array, Array]:
     """Returns (w, relative errors) of the leading longitudinal eigenvalues w, in 1/tau2, (modes,) each.
     Raises ValueError for an inextensible rod."""
     settings = LONGITUDINAL_MODE_SETTINGS
     if not rod.c1 > 0:
         raise ValueError("an inextensible rod (k1 = inf) has no longitudinal modes")
-    mesh = arm_elements(rod, np.pi * modes, settings.first_mesh_accuracy)
-    order = max(mesh.order, -(-(modes + 1) // mesh.element_count))
-    eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
+    mesh = arm_elements(rod, np.pi * mode_count, settings.first_mesh_accuracy)
+    order = max(mesh.order, -(-(mode_count + 1) // mesh.element_count))
+    eigenvalues = _leading_eigenvalues(rod, mesh, order, mode_count)
     while True:
         order += settings.order_increase
         # No a-priori bound of the error holds for every profile, so the error is estimated from a second
         # order.
-        finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, modes)
+        finer_eigenvalues = _leading_eigenvalues(rod, mesh, order, mode_count)
         error = np.abs(finer_eigenvalues / eigenvalues - 1)
         if error.max() <= settings.converged_difference or order >= settings.max_order:
             return finer_eigenvalues, error + settings.rounding
         eigenvalues = finer_eigenvalues
 
 
-def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, modes: int) -> Array:
+def _leading_eigenvalues(rod: Rod, mesh: Elements, order: int, mode_count: int) -> Array:
     """The leading eigenvalues w, (modes,), from elements with `order` strains each."""
     singular_values = np.linalg.svd(
         _displacement_matrix(rod, np.asarray(mesh.edges), order), compute_uv=False
     )
-    rates: Array = -1 / singular_values[:modes] ** 2
+    rates: Array = -1 / singular_values[:mode_count] ** 2
     return rates
 
 
@@ -88,7 +88,9 @@ def _displacement_matrix(rod: Rod, edges: Array, order: int) -> Array:
     sections_at_strains, sections_at_points = (
         rod.sections((midpoints + halves * x).ravel()) for x in (strain_points, points)
     )
-    tangent = rod.build.constitutive_law.stiffness(sections_at_strains.nu) / sections_at_strains.compliance[0]
+    tangent = (
+        rod.material.constitutive_law.stiffness(sections_at_strains.nu) / sections_at_strains.compliance[0]
+    )
     scale = np.sqrt(tangent * (halves * strain_weights).ravel())
     root = np.sqrt(sections_at_points.drag[0] * (halves * weights).ravel())
     count = len(halves)

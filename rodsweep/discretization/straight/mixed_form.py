@@ -27,8 +27,8 @@ import numpy as np
 from ...arrays import Array
 from ...model.balance import Values, ad, coad
 from ...model.rod import Rod
+from ..coefficients_on_mesh import balance_coefficients_at_nodes, jumps_on_mesh
 from ..elements.mesh import Mesh, shape_integration_matrices
-from ..material_on_mesh import jumps_on_mesh, material_at_nodes
 from ..nodal_rod import NodalRod, nodal_rod
 from ..rod_on_mesh import broadcast_to_field
 from ..state_layout import PLANE_COMPONENT_COUNT, StateLayout, plane_layout
@@ -70,7 +70,9 @@ class MixedForm:
         """The rod at all nodes of the mesh, with all components of V as unknowns."""
         unknown_velocities = tuple(range(PLANE_COMPONENT_COUNT))
         jumps = jumps_on_mesh(self.rod, self.mesh)
-        return nodal_rod(material_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps)
+        return nodal_rod(
+            balance_coefficients_at_nodes(self.rod, self.mesh), self.mesh, unknown_velocities, jumps=jumps
+        )
 
     @cached_property
     def law_derivatives(self) -> LawDerivativesAtRest:

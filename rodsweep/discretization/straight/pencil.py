@@ -115,10 +115,10 @@ class Pencil(Elements):
         return np.stack([inverse_root, inverse_root / angle_weight(rod.rotational_drag)])
 
 
-def finite_eigenvalue_count(rod: Rod, nodes: int) -> int:
-    """Number of finite eigenvalues of a rod on a mesh with `nodes` nodes, without the clamp. Every node
+def finite_eigenvalue_count(rod: Rod, node_count: int) -> int:
+    """Number of finite eigenvalues of a rod on a mesh with `node_count` nodes, without the clamp. Every node
     contributes one eigenvalue for y, and one for theta if the rod has shear and rotational drag."""
-    return nodes if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * nodes
+    return node_count if rod.c2 == 0 or rod.rotational_drag == 0 else 2 * node_count
 
 
 def fields_of_vectors(vectors: Complex, scale: Array) -> tuple[NDArray, NDArray]:
@@ -168,17 +168,17 @@ def field_derivatives_at(mesh: Elements, values: Complex, points: Array) -> Comp
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
-def assemble_pencil(elements: int, order: int) -> Pencil:
-    """The pencil on `elements` equal elements of order `order`."""
-    n = elements * order
-    h = 1 / elements
+def assemble_pencil(element_count: int, order: int) -> Pencil:
+    """The pencil on `element_count` equal elements of order `order`."""
+    n = element_count * order
+    h = 1 / element_count
     x, w = gauss_lobatto_rule(order)
     xg, wg = gauss_legendre_rule(order)
     value = lagrange_interpolation_matrix(x, xg)
     slope = value @ differentiation_matrix(x)
     mass = np.zeros(n + 1)
     entries: list[tuple[int, NDArray[np.integer], NDArray[np.integer], NDArray[np.floating]]] = []
-    for e in range(elements):
+    for e in range(element_count):
         nodes = np.arange(e * order, (e + 1) * order + 1)
         mass[nodes] += w * h / 2
         is_unclamped = nodes > 0
@@ -200,16 +200,16 @@ def assemble_pencil(elements: int, order: int) -> Pencil:
     # The follower force at the tip, -F a(1) theta(1).
     entries.append((2, np.array([n - 1]), np.array([2 * n - 1]), np.array([[-1.0]])))
     masses = np.concatenate(
-        [mass[1:], mass[1:], np.tile(wg * h / 2, elements) * PENCIL_NORM_SETTINGS.shear_weight**2]
+        [mass[1:], mass[1:], np.tile(wg * h / 2, element_count) * PENCIL_NORM_SETTINGS.shear_weight**2]
     )
-    return _assemble_blocks(elements, order, entries, mass[1:], 1 / np.sqrt(masses))
+    return _assemble_blocks(element_count, order, entries, mass[1:], 1 / np.sqrt(masses))
 
 
-def _assemble_blocks(elements: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
+def _assemble_blocks(element_count: int, order: int, entries: list, mass: Array, scale: Array) -> Pencil:
     """The `Pencil` in which the blocks `entries` of all elements are summed into one sparsity pattern.
-    elements, order: number and order of the elements. entries: (index of the constant matrix, rows, columns,
-    block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,)."""
-    size = 3 * elements * order
+    element_count, order: number and order of the elements. entries: (index of the constant matrix, rows,
+    columns, block) of each block. mass: lumped mass, (nodes,). scale: scale of the unknowns, (unknowns,)."""
+    size = 3 * element_count * order
     diagonal = np.arange(size)
     keys = [diagonal * size + diagonal]
     keys += [np.add.outer(rows * size, columns).ravel() for _, rows, columns, _ in entries]
@@ -221,4 +221,6 @@ def _assemble_blocks(elements: int, order: int, entries: list, mass: Array, scal
         np.add.at(terms[term], positions[position : position + block.size], block.ravel())
         position += block.size
     terms *= scale[rows] * scale[columns]
-    return Pencil(equal_edges(elements), order, rows.astype(np.int32), columns.astype(np.int32), terms, mass)
+    return Pencil(
+        equal_edges(element_count), order, rows.astype(np.int32), columns.astype(np.int32), terms, mass
+    )

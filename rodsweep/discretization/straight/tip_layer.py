@@ -22,7 +22,7 @@ from ..elements.quadrature import gauss_legendre_rule, gauss_lobatto_rule
 class TipLayerSettings:
     """Settings for the elements that resolve the tip layer."""
 
-    max_length: float = 4.0
+    max_length_ratio: float = 4.0
     """Maximum length of the element at the tip, divided by the layer's thickness. Others may be longer."""
     max_equal_elements: int = 64
     """Maximum number of equal elements. For a thinner layer the elements near the tip are halved."""
@@ -33,8 +33,8 @@ class TipLayerSettings:
 TIP_LAYER_SETTINGS = TipLayerSettings()
 TIP_LAYER_ORDER = 16
 """Order of the elements of the tip layer. This order resolves exp(kappa u) over a length of
-`TIP_LAYER_SETTINGS.max_length`/kappa to rounding, because T is returned without an error estimate. Order 8
-would cause an error of 4e-11 in a numerical abscissa."""
+`TIP_LAYER_SETTINGS.max_length_ratio`/kappa to rounding, because T is returned without an error estimate.
+Order 8 would cause an error of 4e-11 in a numerical abscissa."""
 
 
 def tip_layer_ratio(rod: Rod) -> float:
@@ -78,15 +78,17 @@ def _ratio_at_right_end(K: Array, left_ratio: float) -> float:
 def _element_edges(rod: Rod) -> Array:
     """Increasing edges of elements: breaks of the arm, edges of equal elements and, for a thin layer, edges
     of shorter elements towards the tip."""
-    breaks = rod.build.breaks
+    breaks = rod.material.breaks
     intervals = zip(breaks, breaks[1:], strict=False)
     midpoints = np.concatenate(
         [np.linspace(a, b, TIP_LAYER_SETTINGS.samples_per_piece + 2)[1:-1] for a, b in intervals]
     )
     coefficients = rod.local_coefficients(midpoints)
     waves = sqrt(float(np.abs(coefficients.g * coefficients.nu / coefficients.c2 * coefficients.c3).max()))
-    count = min(max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length)), TIP_LAYER_SETTINGS.max_equal_elements)
+    count = min(
+        max(1, ceil(waves / TIP_LAYER_SETTINGS.max_length_ratio)), TIP_LAYER_SETTINGS.max_equal_elements
+    )
     equal_edges = np.linspace(0.0, 1.0, count + 1)
-    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER_SETTINGS.max_length / count, 1.0))))
+    halvings = max(0, ceil(np.log2(max(waves / TIP_LAYER_SETTINGS.max_length_ratio / count, 1.0))))
     towards_tip = 1 - 0.5 ** np.arange(1, halvings + 1) / count
     return np.unique(np.concatenate([breaks, equal_edges, towards_tip]))

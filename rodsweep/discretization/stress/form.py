@@ -10,8 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...model.rod import Rod
+from ..coefficients_on_mesh import balance_coefficient_derivatives_at_nodes, jump_derivatives
 from ..elements.mesh import Mesh, interpolation_matrix
-from ..material_on_mesh import jump_derivatives, material_derivative_at_nodes
 from ..nodal_rod import NodalRod, NodalRodDerivative, nodal_rod_derivative
 from ..rod_on_mesh import RodOnMesh
 from ..state_layout import PLANE_COMPONENT_COUNT, plane_layout
@@ -100,7 +100,7 @@ class StressForm(RodOnMesh):
     def parameter_derivative(self, name: str) -> NodalRodDerivative:
         """Derivative of `nodal_rod` with respect to the coordinate of the parameter `name`: 1/k for a
         stiffness k, else the parameter itself."""
-        change = material_derivative_at_nodes(self.rod, name, self.mesh)
+        change = balance_coefficient_derivatives_at_nodes(self.rod, name, self.mesh)
         return nodal_rod_derivative(change, self.mesh, jump_derivatives(self.rod, name, self.mesh))
 
     @cached_property

@@ -29,7 +29,7 @@ ROW_LABELS_BY_KIND = {
     },
 }  # fmt: skip
 """Rows of the table for each kind of request: label of each variable."""
-HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "Cycle", "thresholds": "Thresholds"}
+HEADINGS_BY_KIND = {"spectrum": "Leading mode", "cycle": "CycleOutcome", "thresholds": "Thresholds"}
 """Heading above the rows of each kind of request."""
 TABLE_DIGITS = 8
 """Number of significant digits in the table."""

@@ -92,15 +92,15 @@ def has_uniform_linear_rods(state: PageState) -> bool:
     return state.law == "linear" and state.second != "taper" and "taper" not in state.parameters()
 
 
-def second_parameter_values(state: PageState, rows: int = ROW_COUNT) -> np.ndarray:
+def second_parameter_values(state: PageState, row_count: int = ROW_COUNT) -> np.ndarray:
     """Values of the second parameter, (rows,): logarithmically spaced around the current value, or linearly
     over TAPER_RANGE for the taper. Raises InputError unless the current value is finite and positive."""
     if state.second == "taper":
-        return np.linspace(*TAPER_RANGE, rows)
+        return np.linspace(*TAPER_RANGE, row_count)
     value = float_or_text(state.rod[state.second])
     if not (0 < value < np.inf):
         raise InputError(f"{state.second} = {value:g} has no diagram; a diagram needs a finite value above 0")
-    return np.geomspace(value / PARAMETER_SPAN_RATIO, value * PARAMETER_SPAN_RATIO, rows)
+    return np.geomspace(value / PARAMETER_SPAN_RATIO, value * PARAMETER_SPAN_RATIO, row_count)
 
 
 def _fixed_parameters(state: PageState) -> dict[str, Any]:

@@ -20,8 +20,10 @@ def region_bounds(data: Dataset, row_parameter: str) -> dict[str, Any]:
     positions, unstable_counts = (
         data[name].transpose(row_parameter, "crossing").values for name in ("crossing_at", "unstable_after")
     )
-    build = config_from_resolved(json.loads(data.attrs["config_resolved"])).build
-    crushing_forces = build.relative_crushing_forces(data["taper"].values if "taper" in data else np.ones(()))
+    material = config_from_resolved(json.loads(data.attrs["config_resolved"])).rod_material
+    crushing_forces = material.relative_crushing_forces(
+        data["taper"].values if "taper" in data else np.ones(())
+    )
     crushing = np.broadcast_to(data["k1"].values * crushing_forces, y.shape)
     return {"crushing_load": crushing, **_points_between_crossings(y, positions, unstable_counts)}
 

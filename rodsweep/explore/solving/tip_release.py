@@ -22,7 +22,7 @@ TipPosition = tuple[float, float]
 def dragged_equilibrium(state: PageState, tip: TipPosition | None) -> dict[str, Any]:
     """Equilibrium shape of the arm with its tip held at `tip`: coordinates `x` and `y`, (nodes,), in L. tip:
     None for the straight arm."""
-    x, y = bent_shape(_motion_job(state), tip)
+    x, y = bent_shape(_limit_cycle_job(state), tip)
     return {"x": x, "y": y}
 
 
@@ -34,7 +34,7 @@ def released_motion_answer(state: PageState, tip: TipPosition) -> dict[str, Any]
     reaches; NaN if the arm reaches no cycle. shape_x, shape_y: shapes over this period, (shapes, nodes), with
     shapes = 0 if there is no cycle. Raises InputError if the motion cannot be integrated.
     """
-    motion = released_motion(_motion_job(state, shapes=48), tip)
+    motion = released_motion(_limit_cycle_job(state, shapes=48), tip)
     if motion is None:
         raise InputError("the motion after the release could not be integrated")
     page_values = {"tip": tip, "frames": FRAMES_PER_RETURN, "period": float(motion.cycle["period"])}
@@ -68,7 +68,7 @@ def _film_shapes(motion: ReleasedMotion) -> dict[str, Any]:
     return {"shape_x": x if has_cycle else no_shapes, "shape_y": y if has_cycle else no_shapes}
 
 
-def _motion_job(state: PageState, **options: int) -> Job:
+def _limit_cycle_job(state: PageState, **options: int) -> Job:
     rod = dict(rod_of(state.subject()))
     request = PortraitRequest(rod=DescribedRod(parameters=rod, material=MATERIAL_CHOICES[state.law]))
     return request.job_of_task("limit_cycle", options, rod["F"])

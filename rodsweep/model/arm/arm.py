@@ -1,8 +1,8 @@
 """An arm in SI units as the rod of the paper: dimensionless stiffness, drag and force.
 
 Stiffness follows Sec. III of the paper, the force Sec. IV, scales and dimensionless parameters Sec. VI.
-Stiffnesses and drags are values at the base; `build` and `taper` give the variation along the arm. Quantities
-are given as text with a unit, or as numbers in SI. The module uses no mesh and no solver.
+Stiffnesses and drags are values at the base; `material` and `taper` give the variation along the arm.
+Quantities are given as text with a unit, or as numbers in SI. The module uses no mesh and no solver.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from math import isnan
 from types import SimpleNamespace
 
 from ...errors import InputError
-from ..material.build import DEFAULT_BUILD, Build
+from ..material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ..parameters import PARAMETERS
 from ..units import GivenQuantity, load_over_flutter
 from .drag import DRAG_NAMES, Drag
@@ -49,8 +49,8 @@ class SlenderArm:
     pressure: GivenQuantity | None = None
     force: GivenQuantity | None = None
     poisson: float = 0.5
-    law: str = DEFAULT_BUILD.law
-    section: str = DEFAULT_BUILD.section
+    law: str = DEFAULT_MATERIAL.law
+    section: str = DEFAULT_MATERIAL.section
     fluid_density: GivenQuantity = "1000 kg/m^3"
     density_difference: GivenQuantity | None = None
     drag: str = DRAG_NAMES[0]
@@ -113,24 +113,24 @@ class SlenderArm:
         """Tip radius over base radius of a cone; 1 for other arms."""
         return self.shape.taper
 
-    def build_with_drag(self, drag: Drag) -> Build:
+    def material_with_drag(self, drag: Drag) -> RodMaterial:
         """Constitutive law and profile of the arm as a rod, for the drag estimate `drag`, one of `drags`."""
-        return Build(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
+        return RodMaterial(self.law, self.section, self.shape.profile(self.poisson, self.drags.index(drag)))
 
     @cached_property
-    def build(self) -> Build:
+    def material(self) -> RodMaterial:
         """Constitutive law and profile of the arm as a rod, for the drag estimate `chosen_drag`."""
-        return self.build_with_drag(self.chosen_drag)
+        return self.material_with_drag(self.chosen_drag)
 
     @property
     def is_uniform_and_linear(self) -> bool:
         """Whether the arm is uniform and of linear material."""
-        return self.build.is_uniform_and_linear and self.taper == 1
+        return self.material.is_uniform_and_linear and self.taper == 1
 
     @property
     def crushing_force(self) -> float:
         """Follower force that crushes the weakest section, in k3/L^2; inf if no force crushes the arm."""
-        return self.build.relative_crushing_force(self.taper) * self.k1
+        return self.material.relative_crushing_force(self.taper) * self.k1
 
     @property
     def load(self) -> str | None:

@@ -5,8 +5,8 @@ The dimensionless parameters F, k1, k2, gamma1 and gamma3 of an arm are properti
 
 from typing import Any
 
-from ..material.build import DEFAULT_BUILD
 from ..material.profile import FACTOR_NAMES
+from ..material.rod_material import DEFAULT_MATERIAL
 from ..parameters import NONLINEAR_PARAMETERS
 from .arm import SlenderArm
 
@@ -22,15 +22,15 @@ def rod_parameters_of(arm: SlenderArm) -> dict[str, float]:
 def material_config_of(arm: SlenderArm) -> dict[str, Any]:
     """Keys and values of the config section `material` for `arm`; keys with default values are left out.
     Possible keys are law, section and profile."""
-    build = arm.build
+    rod_material = arm.material
     values_and_defaults = {
-        "law": (build.law, DEFAULT_BUILD.law),
-        "section": (build.section, DEFAULT_BUILD.section),
+        "law": (rod_material.law, DEFAULT_MATERIAL.law),
+        "section": (rod_material.section, DEFAULT_MATERIAL.section),
     }
     material: dict[str, Any] = {
         name: value for name, (value, default) in values_and_defaults.items() if value != default
     }
-    if build.profile is not None:
-        columns = (build.profile.u, *zip(*build.profile.rows, strict=True))
+    if rod_material.profile is not None:
+        columns = (rod_material.profile.u, *zip(*rod_material.profile.rows, strict=True))
         material["profile"] = dict(zip(("u", *FACTOR_NAMES), map(list, columns), strict=True))
     return material

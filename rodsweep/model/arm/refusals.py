@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import InputError
 from ..material.laws import law_of
 from ..material.profile import MIN_ROW_DISTANCE
-from ..parameters import LARGEST_TAPER, SMALLEST_TAPER
+from ..parameters import MAX_TAPER, MIN_TAPER
 from ..units import unit_of, value_in_unit
 from .drag import DRAG_NAMES, DRAG_RANGE_NAME, MIN_FORMULA_SLENDERNESS
 from .quantities import QUANTITIES, SECTION_SIZE_NAMES, UNITS
@@ -110,10 +110,10 @@ def _refuse_sections(arm: "SlenderArm") -> None:
             f"{arm.text_of('tip_radius')} and {arm.text_of('inner_radius')} are both given, but a cone is "
             "solid; give one of them, or segments"
         )
-    if not SMALLEST_TAPER <= arm.si.tip_radius / arm.si.radius <= LARGEST_TAPER:
+    if not MIN_TAPER <= arm.si.tip_radius / arm.si.radius <= MAX_TAPER:
         raise InputError(
             f"{arm.text_of('tip_radius')} is {arm.si.tip_radius / arm.si.radius:.3g} of the radius; the "
-            f"ratio must be from {SMALLEST_TAPER:g} to {LARGEST_TAPER:g}"
+            f"ratio must be from {MIN_TAPER:g} to {MAX_TAPER:g}"
         )
 
 
@@ -162,7 +162,7 @@ def refuse_out_of_range(arm: "SlenderArm") -> None:
         is_representable = all(0 < number < inf for number in (arm.k1, arm.k2, arm.force_scale))
         # The drags of too short an arm mean nothing, and are not always numbers.
         if slenderness >= MIN_FORMULA_SLENDERNESS:
-            is_representable = is_representable and bool(arm.build)
+            is_representable = is_representable and bool(arm.material)
     except (ArithmeticError, ValueError):
         is_representable = False
     if not is_representable:

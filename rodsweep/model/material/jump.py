@@ -23,7 +23,7 @@ from .stress_strain import (
     LINEAR_LAW,
     LocalSection,
     Stress,
-    Tangent,
+    TangentMatrix,
     stress_beyond_rest,
     stress_parameter_derivative,
     stress_tangent,
@@ -57,7 +57,7 @@ def _section_of_side(side: Array) -> LocalSection:
 
 
 @compiled
-def _solve_tangent_system(T: Tangent, N: float, M: float) -> LawUnknowns:
+def _solve_tangent_system(T: TangentMatrix, N: float, M: float) -> LawUnknowns:
     """Solution x of the linear system T x = (N, M), with the 2 x 2 matrix T = ((N1, N3), (M1, M3))."""
     determinant = T.N1 * T.M3 - T.N3 * T.M1
     return LawUnknowns((T.M3 * N - T.N3 * M) / determinant, (T.N1 * M - T.M1 * N) / determinant)
@@ -101,7 +101,9 @@ def unknowns_before_jump(law: int, sides: Array, q: LawUnknowns) -> LawUnknowns:
         S = stress_tangent(law, base_side, a.q1, a.q3)
         T = stress_tangent(law, tip_side, b.q1, b.q3)
         # J is the derivative of (stress on the base side - stress on the tip side) with respect to a.
-        J = Tangent(S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3)
+        J = TangentMatrix(
+            S.N1 + T.N1 * ratio1, S.N3 + T.N3 * ratio3, S.M1 + T.M1 * ratio1, S.M3 + T.M3 * ratio3
+        )
         step = _solve_tangent_system(J, t.N - s.N, t.M - s.M)
         # No side may be crushed by a step, since the neo-Hookean stress is infinite at h1 = 0.
         fraction = min(
@@ -130,7 +132,7 @@ def stress_at_jump(law: int, sides: Array, q1: float, q3: float) -> Stress:
 
 
 @compiled
-def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> Tangent:
+def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) -> TangentMatrix:
     """Derivatives of the mean unknowns q by the stresses: (dq1/dN, dq1/dM, dq3/dN, dq3/dM). law: number of
     the constitutive law. a, b: unknowns on the base side and on the tip side. sides: both sides, (2, 7)."""
     S = stress_tangent(law, _section_of_side(sides[0]), a.q1, a.q3)
@@ -141,7 +143,7 @@ def _compliance_at_jump(law: int, sides: Array, a: LawUnknowns, b: LawUnknowns) 
     s3 = sides[0, 4] / s
     t1 = sides[1, 3] / t
     t3 = sides[1, 4] / t
-    return Tangent(
+    return TangentMatrix(
         s1 * S.M3 + t1 * T.M3, -s1 * S.N3 - t1 * T.N3, -s3 * S.M1 - t3 * T.M1, s3 * S.N1 + t3 * T.N1
     )
 
@@ -164,14 +166,14 @@ def side_increments_at_jump(
 
 
 @compiled
-def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> Tangent:
+def tangent_at_jump(law: int, sides: Array, q1: float, q3: float) -> TangentMatrix:
     """Derivatives of the stresses N and M at a jump with respect to the mean unknowns q1, q3. law: number of
     the constitutive law. sides: both sides, (2, 7)."""
     q = LawUnknowns(q1, q3)
     a = unknowns_before_jump(law, sides, q)
     Z = _compliance_at_jump(law, sides, a, unknowns_behind_jump(sides, q, a))
     determinant = Z.N1 * Z.M3 - Z.N3 * Z.M1
-    return Tangent(Z.M3 / determinant, -Z.N3 / determinant, -Z.M1 / determinant, Z.N1 / determinant)
+    return TangentMatrix(Z.M3 / determinant, -Z.N3 / determinant, -Z.M1 / determinant, Z.N1 / determinant)
 
 
 @compiled

@@ -34,7 +34,7 @@ class Stress(NamedTuple):
     M: float
 
 
-class Tangent(NamedTuple):
+class TangentMatrix(NamedTuple):
     """Derivatives of axial force N and moment M: N1 = dN/dq1, N3 = dN/dq3, M1 = dM/dq1, M3 = dM/dq3."""
 
     N1: float
@@ -72,15 +72,15 @@ def stress_beyond_rest(law: int, material: LocalSection, q1: float, q3: float) -
 
 
 @compiled
-def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> Tangent:
+def stress_tangent(law: int, material: LocalSection, q1: float, q3: float) -> TangentMatrix:
     """Derivatives of the stresses N and M at one point by the unknowns q1 and q3. law: number of the law."""
     if law == LINEAR_LAW:
-        return Tangent(1.0, 0.0, 0.0, 1.0)
+        return TangentMatrix(1.0, 0.0, 0.0, 1.0)
     h = material.nu + material.c1 * q1
     B, B1, B2 = _bending_factor(law, h)
     stiffness = (1 + 2 / h**3) / 3  # W''(h)
     coupling = B1 * q3
-    return Tangent(
+    return TangentMatrix(
         stiffness + material.c1 * B2 * material.c3 * q3 * q3 / 2,
         coupling * material.c3,
         coupling * material.c1,

@@ -82,7 +82,7 @@ def draw_branch(request: FigureRequest) -> str:
     common_text, rod_texts = shared_and_own_of_points(view, [rod.index + 1 for rod in drawn_rods])
     pairs = zip(BRANCH_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.legend_below(figure, [*handles, *marker_handles.values()], columns=3)
+    style.legend_below(figure, [*handles, *marker_handles.values()], column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"{counted(len(curves), 'branch')} of cycles over {parameter}"
     return request.write(figure, caption + _omissions_clause(rods, len(rods_with_cycles), len(drawn_rods)))
@@ -167,7 +167,7 @@ def _mark_special_points(
 
 
 def _compare_prediction(
-    axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter: str
+    axes: Axes, curves: list[StoredBranch], colours: Sequence[str], parameter_name: str
 ) -> Line2D:
     """Draws the amplitudes near Hopf points and the amplitudes predicted by the normal form, divided by the
     amplitude coefficient |a|; returns the legend entry of the prediction. Each branch is drawn up to its
@@ -182,7 +182,7 @@ def _compare_prediction(
     ends = np.array([min(nearest), max(distances)])
     (law,) = axes.plot(ends, ends**0.5, ls=PREDICTION_LINE, color="0.4", lw=1.4, zorder=0)
     law.set_label(PREDICTION_WORD)
-    symbol = style.SYMBOLS[parameter]
+    symbol = style.SYMBOLS[parameter_name]
     axes.set(xscale="log", yscale="log", ylabel="largest $y/|a|$")
     symbol = f"({symbol})" if "/" in symbol else symbol
     ratio = rf"{symbol}/{symbol}^\mathrm{{H}}"

@@ -88,7 +88,7 @@ def _curves_figure(view: ResultView, name: str) -> Figure:
         style.scale_axis(axes, "x", np.sort(x[is_finite]))
     upper.set_ylabel("amplitude coefficient $a/L$")
     lower.set(ylabel=r"$\mathrm{Re}\,c$ in $1/(\tau_2 L^2)$", xlabel=style.LABELS[name])
-    style.legend_below(figure, handles, columns=3)
+    style.legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, name))
     return figure
 
@@ -123,7 +123,7 @@ def _maps_figure(view: ResultView, points: PointMap, is_narrow: bool) -> Figure:
     label_maps(panels, points)
     drawn = (look for i, look in enumerate(CRITICALITY_CLASSES) if (classes == i).any())
     entries = [Patch(facecolor=colour, label=word) for word, colour in drawn]
-    style.legend_below(figure, entries, columns=3)
+    style.legend_below(figure, entries, column_count=3)
     set_heading(figure, view, style.parameter_text(points.common_parameters))
     return figure
 
@@ -165,7 +165,7 @@ def draw_predictions(view: ResultView) -> tuple[Figure, str]:
     handles.append(Line2D([], [], color="0.3", marker="o", ms=4, ls="", label="Hopf point"))
     pairs = zip(style.LINE_COLOURS, rod_texts, strict=False)
     handles += [Line2D([], [], color=colour, lw=2, label=text) for colour, text in pairs if text]
-    style.legend_below(figure, handles, columns=3)
+    style.legend_below(figure, handles, column_count=3)
     figure.suptitle(style.heading_text(view, common_text))
     caption = f"the cycles that normal forms predict within {MAX_DRAWN_DISTANCE:.0%} of every Hopf point"
     if len(drawn_rods) < rods_with_prediction.size:

@@ -46,7 +46,7 @@ def draw_modes(request: FigureRequest) -> str:
         panel.set_xlabel("material coordinate $u/L$")
     texts = _point_texts(view, int(drawn_points[0])) if count == 1 else ()
     set_heading(figure, view, *texts)
-    legend_below(figure, _part_entries(view, drawn_points), columns=2)
+    legend_below(figure, _part_entries(view, drawn_points), column_count=2)
     omission_clause = ""
     if points.size > count:
         first_words = f"first {count}" if count > 1 else "first"

@@ -85,7 +85,7 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     axes.set(xlim=(x[0], x[-1]), ylim=(y[0], y[-1]), xlabel=style.LABELS[line], ylabel=style.LABELS[row])
     curves = _draw_stored_curves(axes, view, palette, line, row)
     handles = [*palette.legend_entries(pixels), *curves, *boundaries]
-    style.legend_below(figure, handles, columns=2 if "bautin_curve" in view.variables else 3)
+    style.legend_below(figure, handles, column_count=2 if "bautin_curve" in view.variables else 3)
     set_heading(figure, view, _constant_parameters_text(view, line, row), stored_crossings_text(view))
     lacks_curves = lacks_sweep_wide_variables(view.attributes)
     missing = "; curves are missing, the file is not finished" if lacks_curves else ""
@@ -93,23 +93,29 @@ def draw_phase_diagram(request: FigureRequest) -> str:
     return request.write(figure, f"behaviour of the rod over {line} and {row}{missing}{infinite}", MAP_ASPECT)
 
 
-def _draw_stored_curves(axes: Axes, view: ResultView, palette: Palette, line: str, row: str) -> list[Any]:
+def _draw_stored_curves(
+    axes: Axes, view: ResultView, palette: Palette, line_parameter: str, row_parameter: str
+) -> list[Any]:
     """Draws the boundary curves, curves of cycles and special points of rows that a file contains; returns
-    their legend entries. line, row: parameters along a row, and constant on a row."""
+    their legend entries. line_parameter, row_parameter: parameters along a row, and constant on a row."""
     handles: list = []
     if "curve_number" in view.variables:
-        handles += draw_boundary_curves(axes, view, line, row, palette is STATE_PALETTE)
+        handles += draw_boundary_curves(axes, view, line_parameter, row_parameter, palette is STATE_PALETTE)
     if "cycle_curve_number" in view.variables:
-        handles += draw_cycle_curves(axes, view, line, row)
+        handles += draw_cycle_curves(axes, view, line_parameter, row_parameter)
     if "cycle_special_kind" in view.variables:
-        handles += mark_cycles_on_rows(axes, view, line, row)
+        handles += mark_cycles_on_rows(axes, view, line_parameter, row_parameter)
     return handles
 
 
-def _constant_parameters_text(view: ResultView, line: str, row: str) -> str:
+def _constant_parameters_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
     """Text of the constant parameters. gamma1 is included only if the figure shows cycles or their
-    criticality. line, row: parameters on the axes."""
-    fixed = {name: values[0] for name, values in view.parameter_values.items() if name not in (line, row)}
+    criticality. line_parameter, row_parameter: parameters on the axes."""
+    fixed = {
+        name: values[0]
+        for name, values in view.parameter_values.items()
+        if name not in (line_parameter, row_parameter)
+    }
     if "curve_gamma1" in view.variables:
         fixed["gamma1"] = float(view.variables["curve_gamma1"])
     elif "gamma1" in view.attributes or ("stable_states" in view.variables and not view.quantities):
@@ -126,33 +132,39 @@ def _draw_crushing(axes: Axes, ratio: Array, x: Array, y: Array) -> list[Line2D]
     return [Line2D([], [], color="0.4", lw=1.2, label="crushing force")]
 
 
-def _draw_rows(view: ResultView, palette: Palette, line: str, row: str) -> Figure:
+def _draw_rows(view: ResultView, palette: Palette, line_parameter: str, row_parameter: str) -> Figure:
     """Figure with a bar for each row of a diagram, used if fewer than two rows have a finite value of the row
-    parameter. line, row: parameters along a row, and constant on a row."""
-    x = view.variables[line]
-    y = view.parameter_values[row]
+    parameter. line_parameter, row_parameter: parameters along a row, and constant on a row."""
+    x = view.variables[line_parameter]
+    y = view.parameter_values[row_parameter]
     figure = Figure(figsize=(5.8, 1.6 + 0.5 * len(y)), layout="constrained")
     axes = figure.subplots()
     edges = DrawnPlane.positions(x, np.linspace(0, 1, PIXEL_COUNT + 1))
-    rows = [pixel_classes_of_row(view, palette.variable, line, row, n, edges) for n in range(len(y))]
+    rows = [
+        pixel_classes_of_row(view, palette.variable, line_parameter, row_parameter, n, edges)
+        for n in range(len(y))
+    ]
     table: Array = np.array(rows)
     keywords: dict[str, Any] = {"rasterized": True} | palette.colour_keywords
     axes.pcolormesh(edges, np.arange(len(y) + 1) - 0.5, table, **keywords)
     for separator in np.arange(len(y) - 1) + 0.5:
         axes.axhline(separator, color="white", lw=4)
     style.scale_axis(axes, "x", x)
-    texts = [f"${style.SYMBOLS[row]} = {style.number_in_tex(value)}$" for value in y]
+    texts = [f"${style.SYMBOLS[row_parameter]} = {style.number_in_tex(value)}$" for value in y]
     axes.set_yticks(np.arange(len(y)), texts)
     axes.tick_params("y", length=0)
-    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line])
-    style.legend_below(figure, palette.legend_entries(table), columns=3)
-    set_heading(figure, view, _constant_parameters_text(view, line, row))
+    axes.set(xlim=(x[0], x[-1]), xlabel=style.LABELS[line_parameter])
+    style.legend_below(figure, palette.legend_entries(table), column_count=3)
+    set_heading(figure, view, _constant_parameters_text(view, line_parameter, row_parameter))
     return figure
 
 
-def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, map_: ClassMap) -> Array:
+def _class_of_pixels(
+    view: ResultView, palette: Palette, line_parameter: str, row_parameter: str, map_: ClassMap
+) -> Array:
     """Class of every pixel of the plane, (pixels, pixels). The regions of equal class are bounded by the
-    curves of the file and by the crushing force. line, row: parameters along a row, and constant on a row."""
+    curves of the file and by the crushing force. line_parameter, row_parameter: parameters along a row, and
+    constant on a row."""
     plane = map_.plane
     crushed_class = flag_number("crushed", palette.words)
     columns, rows = np.meshgrid(plane.x, plane.y)
@@ -161,7 +173,7 @@ def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, ma
     computed = ClassifiedPoints(places, map_.classes[is_known])
     row_points = ClassifiedPoints(np.zeros((0, 2)), np.zeros(0, int))
     if palette is CLASS_PALETTE:
-        x, row_values, row_classes = classes_between_crossings(view, line, row)
+        x, row_values, row_classes = classes_between_crossings(view, line_parameter, row_parameter)
         row_points = ClassifiedPoints(plane.fractions_of_axes(x, row_values), row_classes)
     curves = []
     v = view.variables
@@ -170,7 +182,11 @@ def _class_of_pixels(view: ResultView, palette: Palette, line: str, row: str, ma
         if kind == "curve" and palette is not CLASS_PALETTE:  # double eigenvalues bound no stable state
             number = np.where(v["curve_kind"] == 1, number, 0)
         for mask in (number == curve for curve in np.unique(number[number > 0])):
-            curves.append(plane.fractions_of_axes(v[f"{kind}_{line}"][mask], v[f"{kind}_{row}"][mask]))
+            curves.append(
+                plane.fractions_of_axes(
+                    v[f"{kind}_{line_parameter}"][mask], v[f"{kind}_{row_parameter}"][mask]
+                )
+            )
     undecided = flag_number("undecided", palette.words)
     pixels = pixel_classes(computed, row_points, curves, map_.crushing_ratio > CURVES_END_AT_RATIO, undecided)
     return np.where(map_.crushing_ratio < 1, pixels, crushed_class)

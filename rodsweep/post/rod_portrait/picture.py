@@ -74,7 +74,7 @@ def portrait_figure(results: RodResults, with_words: bool = True) -> Figure:
             _draw_mode(figure.add_subplot(grid[3, column]), results, kind)
         panels = [figure.add_subplot(grid[3, len(modes) + number]) for number in range(CYCLE_COUNT)]
         _draw_cycles(panels, results)
-        style.legend_below(figure, handles, columns=4)
+        style.legend_below(figure, handles, column_count=4)
         if with_words:
             text = textwrap.fill(paragraph(results), PARAGRAPH_WIDTH)
             figure.suptitle(style.escape_dollar_signs(text), x=0.01, ha="left", fontsize=8)

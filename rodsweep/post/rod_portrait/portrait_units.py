@@ -98,23 +98,25 @@ ROD_UNITS = PortraitUnits(
 """Units of the portrait of a rod; forces are in k3/L^2."""
 
 
-def portrait_units(view: ResultView, load: str, largest: float) -> PortraitUnits:
+def portrait_units(view: ResultView, load_kind: str, largest: float) -> PortraitUnits:
     """Units of the portrait of a rod or an arm. largest: largest F, for which the prefix of the load is
     chosen."""
     if not view.quantities:
         return ROD_UNITS
-    force, length, tau2 = (float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load], "length", "tau2"))
+    force, length, tau2 = (
+        float(view.quantities[n].ravel()[0]) for n in (SCALE_NAME[load_kind], "length", "tau2")
+    )
 
     def unit(si: str, scale: float, largest: float) -> Unit:
         factor, name = printing_unit(view, si, largest)
         return Unit(name=name, factor=scale * factor)
 
     return PortraitUnits(
-        force=unit("N" if load == "force" else "Pa", force, force * largest),
+        force=unit("N" if load_kind == "force" else "Pa", force, force * largest),
         length=unit("m", length, length),
         time=unit("s", tau2, tau2),
         frequency=Unit(name="Hz", factor=1 / (tau * tau2)),
-        load=load,
+        load=load_kind,
     )
 
 

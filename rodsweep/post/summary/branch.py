@@ -98,19 +98,19 @@ def _one_rod_lines(rod: RodBranches) -> Iterator[str]:
             yield f"{TWO_CYCLES_WORDS} at {parameter} = {ranges_text(pairs, rod.parameter_errors)}"
 
 
-def _extent_text(curve: StoredBranch, errors: Array, parameter: str) -> str:
-    """Number of cycles on a branch, range of the parameter `parameter`, and range of the largest tip y, as
-    text. errors: relative errors of y, (cycles,)."""
+def _extent_text(curve: StoredBranch, errors: Array, parameter_name: str) -> str:
+    """Number of cycles on a branch, range of the parameter `parameter_name`, and range of the largest tip y,
+    as text. errors: relative errors of y, (cycles,)."""
     cycles = curve.cycles
     if not cycles.any():
         return "no cycle is stored"
     sizes = curve.y[cycles]
     y_text = f"largest tip y {span_text(sizes, errors * sizes)} L"
-    text = f"{parameter} = {span_text(curve.parameter[cycles])}, {y_text}"
+    text = f"{parameter_name} = {span_text(curve.parameter[cycles])}, {y_text}"
     return f"{counted(int(cycles.sum()), 'cycle')}, {text}"
 
 
-def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterator[str]:
+def _special_points_between_ends(curve: StoredBranch, parameter_name: str) -> Iterator[str]:
     """Yields one line for each special point between the ends of a branch."""
     for special in curve.special:
         if special.kind in ("hopf", "end"):
@@ -122,28 +122,30 @@ def _special_points_between_ends(curve: StoredBranch, parameter: str) -> Iterato
         kind += f", where branch {special.meets} meets it," * (special.meets > 0)
         period = number_with_error(special.period, special.period * special.period_error)
         y = number_with_error(special.tip_y_max, special.tip_y_max * special.tip_y_max_error)
-        yield f"  {kind} at {parameter} = {position}, period {period} tau2, largest tip y {y} L"
+        yield f"  {kind} at {parameter_name} = {position}, period {period} tau2, largest tip y {y} L"
 
 
-def _ends_phrase(curve: StoredBranch, parameter: str) -> str:
+def _ends_phrase(curve: StoredBranch, parameter_name: str) -> str:
     """Phrase for the start and the end of a branch: "from ... to ..."."""
     first = curve.special[0]
     last = curve.special[-1]
-    position = f"{parameter} = {number_with_error(first.at, first.error)}"
+    position = f"{parameter_name} = {number_with_error(first.at, first.error)}"
     start = f"from the Hopf point at {position}"
     if first.kind == "symmetry_breaking":
         start = f"without mirror symmetry, from branch {first.meets} at {position}"
     if curve.enters_range:
-        position = f"{parameter} = {rounded_text(first.at, first.error)}"
+        position = f"{parameter_name} = {rounded_text(first.at, first.error)}"
         start = f"from beyond {BRANCH_END_WORDS[first.reason]}, {position},"
-    end = f"{parameter} = {number_with_error(last.at, last.error)}"
+    end = f"{parameter_name} = {number_with_error(last.at, last.error)}"
     if last.kind == "hopf":
         return f"{start} to that at {end}"
     if last.kind == "symmetry_breaking":
         return f"{start} to branch {last.meets} at {end}"
     if last.kind == "left_the_model":
         return f"{start} to {BRANCH_END_WORDS[last.kind]}, {end}"
-    return f"{start} to {BRANCH_END_WORDS[last.reason]}, {parameter} = {rounded_text(last.at, last.error)}"
+    return (
+        f"{start} to {BRANCH_END_WORDS[last.reason]}, {parameter_name} = {rounded_text(last.at, last.error)}"
+    )
 
 
 def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
@@ -156,7 +158,7 @@ def _sizes_text(view: ResultView, computed: np.ndarray) -> str:
     return f": period {period} tau2, largest tip y {y} L"
 
 
-def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
+def _special_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator[str]:
     """Yields lines on the number and range of special points of each kind, and of branch ends, over all rods;
     then a line for each branch that stopped because no further cycle was found."""
     points: dict[str, list[tuple[float, float]]] = {w: [] for w in (*SPECIAL_POINT_WORDS, *BRANCH_END_WORDS)}
@@ -171,7 +173,7 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
     for kind, located in points.items():
         if not located:
             continue
-        span = f"{parameter} = {span_text(*np.array(located).T)}"
+        span = f"{parameter_name} = {span_text(*np.array(located).T)}"
         if kind in SPECIAL_POINT_WORDS:
             yield f"{counted(len(located), SPECIAL_POINT_WORDS[kind])}: {span}"
         else:
@@ -180,16 +182,16 @@ def _special_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]
     if entries:
         span = span_text(*np.array([(entry.at, entry.error) for entry in entries]).T)
         verb = "enters" if len(entries) == 1 else "enter"
-        yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter} = {span}"
+        yield f"{counted(len(entries), 'branch')} {verb} the range from beyond: {parameter_name} = {span}"
     stopped = []
     for rod, number, curve in curves:
         if (end := curve.special[-1]).reason == "no_cycle_found":
-            position = f"{parameter} = {rounded_text(end.at, end.error)}"
+            position = f"{parameter_name} = {rounded_text(end.at, end.error)}"
             stopped.append(f"{point_text(rod.view, rod.index)}: branch {number}, at {position}")
     yield from first_lines(stopped, "branch")
 
 
-def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[str]:
+def _coexistence_lines(rods: Sequence[RodBranches], parameter_name: str) -> Iterator[str]:
     """Yields lines on the number of rods with two stable states, and on the ranges of the first such rods."""
     complete = [rod for rod in rods if not rod.hidden_count]
     if len(complete) < len(rods):
@@ -197,23 +199,24 @@ def _coexistence_lines(rods: Sequence[RodBranches], parameter: str) -> Iterator[
         yield f"whether two states are stable is not known for {unknown}: {LIST_IS_FULL_REASON}"
     if complete:
         coexistence = [rod.coexistence_ranges for rod in complete]
-        yield from _lines_on_rods_with(complete, parameter, COEXISTENCE_WORDS, coexistence)
+        yield from _lines_on_rods_with(complete, parameter_name, COEXISTENCE_WORDS, coexistence)
     two_cycles = [rod.two_cycle_ranges for rod in complete]
     if any(two_cycles):
-        yield from _lines_on_rods_with(complete, parameter, TWO_CYCLES_WORDS, two_cycles)
+        yield from _lines_on_rods_with(complete, parameter_name, TWO_CYCLES_WORDS, two_cycles)
 
 
 def _lines_on_rods_with(
-    rods: Sequence[RodBranches], parameter: str, phrase: str, ranges: Sequence[list[ParameterRange]]
+    rods: Sequence[RodBranches], parameter_name: str, phrase: str, ranges: Sequence[list[ParameterRange]]
 ) -> Iterator[str]:
     """Yields a line with the number of rods that have ranges with the property `phrase`, and a line for each
-    of the first such rods. ranges: for each rod, ranges of the parameter `parameter` with the property."""
+    of the first such rods. ranges: for each rod, ranges of the parameter `parameter_name` with the
+    property."""
     unknown = 0
     texts = []
     for rod, rod_ranges in zip(rods, ranges, strict=True):
         unknown += not (rod_ranges or rod.coexistence_is_decided)
         if rod_ranges:
-            text = f"{parameter} = {ranges_text(rod_ranges, rod.parameter_errors)}"
+            text = f"{parameter_name} = {ranges_text(rod_ranges, rod.parameter_errors)}"
             texts.append(": ".join(filter(None, (point_text(rod.view, rod.index), text))))
     yield f"{phrase} at {count_of_total(len(texts), len(rods), 'rod')}{unknown_clause(unknown)}"
     yield from first_lines(texts, "rod")

@@ -4,9 +4,9 @@ from ...results.file.view import ResultView
 from .number_texts import number_with_error
 
 
-def curve_extremum_lines(view: ResultView, line: str, row: str) -> list[str]:
+def curve_extremum_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about the points of curves of folds of cycles at which the row parameter is extremal. line:
-    parameter that varies along a row. row: parameter that is constant on a row."""
+    parameter that varies along a row. row_parameter: parameter that is constant on a row."""
     v = view.variables
     if "cycle_extremum_curve" not in v:
         return []
@@ -15,10 +15,11 @@ def curve_extremum_lines(view: ResultView, line: str, row: str) -> list[str]:
         place = ", ".join(
             f"{name} = "
             + number_with_error(v[f"cycle_extremum_{name}"][i], v[f"cycle_extremum_{name}_error"][i])
-            for name in (row, line)
+            for name in (row_parameter, line_parameter)
         )
         lines.append(
-            f"extremum of {row} along curve {v['cycle_extremum_curve'][i]} of folds of cycles: {place}; a "
+            f"extremum of {row_parameter} along curve {v['cycle_extremum_curve'][i]} of folds of cycles: "
+            f"{place}; a "
             "closed branch of cycles shrinks to one cycle there, or two branches exchange their parts"
         )
     return lines

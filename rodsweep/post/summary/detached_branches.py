@@ -16,16 +16,17 @@ MAX_ROW_DISTANCE = 0.01
 the row, divided by the length of the row."""
 
 
-def detached_branch_lines(view: ResultView, row: str) -> list[str]:
+def detached_branch_lines(view: ResultView, row_parameter: str) -> list[str]:
     """Lines about the rows with cycles on detached branches, and about curves lost beyond the range."""
     lost = lost_beyond_lines(view)
     if DETACHED_ROW not in view.variables:
         return lost
     numbers = view.variables[DETACHED_ROW] - 1
     rows = count_of_total(len(numbers), view.variables["status"].size, "row")
-    values = axis_values_text(view.point_columns[row][numbers])
+    values = axis_values_text(view.point_columns[row_parameter][numbers])
     return [
-        f"branches that no Hopf point of their row leads to: on {rows}, {row} = {values}; they were followed "
+        f"branches that no Hopf point of their row leads to: on {rows}, {row_parameter} = {values}; they "
+        "were followed "
         "from the crossings of curves of folds or torus points with the rows, and the stable states include "
         "their cycles",
         *lost,
@@ -44,7 +45,7 @@ def lost_beyond_lines(view: ResultView) -> list[str]:
 
 
 def rows_without_cycles_of_curve(
-    view: ResultView, line: str, row: str, indices: NDArray[np.intp]
+    view: ResultView, line_parameter: str, row_parameter: str, indices: NDArray[np.intp]
 ) -> list[str]:
     """Lines about completed rows that a curve of folds or torus points crosses although no branch of the row
     has this special point. indices: indices of the points of the curve, (points,)."""
@@ -52,12 +53,14 @@ def rows_without_cycles_of_curve(
     if len(indices) < 2:
         return []
     kind = int(v["cycle_curve_kind"][indices[0]])
-    kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line}"))
-    tolerance = MAX_ROW_DISTANCE * float(np.ptp(v[line]))
-    points = zip(v[f"cycle_curve_{row}"][indices], v[f"cycle_curve_{line}"][indices], strict=True)
+    kinds, specials = map(view.by_point, ("cycle_special_kind", f"cycle_special_{line_parameter}"))
+    tolerance = MAX_ROW_DISTANCE * float(np.ptp(v[line_parameter]))
+    points = zip(
+        v[f"cycle_curve_{row_parameter}"][indices], v[f"cycle_curve_{line_parameter}"][indices], strict=True
+    )
     lines = []
     for number, ((x, y), (next_x, next_y)) in enumerate(pairwise(points)):
-        for index, value in enumerate(view.point_columns[row]):
+        for index, value in enumerate(view.point_columns[row_parameter]):
             if view.status_names[index] != "ok":
                 continue
             # A row through a point of the curve belongs to the piece before this point.
@@ -67,7 +70,8 @@ def rows_without_cycles_of_curve(
             on_row = specials[index][kinds[index] == kind]
             if not ((on_row >= low - tolerance) & (on_row <= high + tolerance)).any():
                 lines.append(
-                    f"this curve crosses the row {row} = {value:g} between {line} = {low:.6g} and "
+                    f"this curve crosses the row {row_parameter} = {value:g} between {line_parameter} = "
+                    f"{low:.6g} and "
                     f"{high:.6g}, but no branch of this row was found there: the stable states of the row do "
                     "not include the cycles there"
                 )

@@ -44,21 +44,21 @@ END_SUFFIXES = ("start", "end")
 """Suffixes of the variables with the reasons for which a curve ends, at its first and at its last point."""
 
 
-def curve_lines(view: ResultView, line: str, row: str) -> list[str]:
+def curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds, generalised Hopf points and their curves, and curves of folds and torus points of
     cycles."""
     v = view.variables
-    lines = fold_lines(view, line, row)
+    lines = fold_lines(view, line_parameter, row_parameter)
     if "curve_criticality" in v:
-        lines += bautin_lines(view, line, row)
+        lines += bautin_lines(view, line_parameter, row_parameter)
     if "bautin_along_curve" in v:
         lines += bautin_curve_lines(view)
     if "cycle_curve_number" in v:
-        lines += cycle_curve_lines(view, line, row)
+        lines += cycle_curve_lines(view, line_parameter, row_parameter)
     return lines
 
 
-def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
+def cycle_curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about the curves of folds and torus points of cycles, with the reasons for their ends."""
     v = view.variables
     lines = []
@@ -66,26 +66,31 @@ def cycle_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
         indices = np.flatnonzero(v["cycle_curve_number"] == number)
         noun = CYCLE_CHANGE_WORDS[SPECIAL_KINDS[int(v["cycle_curve_kind"][indices[0]])]]
         ends = " to ".join(
-            f"{row} = {v[f'cycle_curve_{row}'][i]:.9g}, {line} = "
-            f"{number_with_error(v[f'cycle_curve_{line}'][i], v['cycle_curve_error'][i])} "
+            f"{row_parameter} = {v[f'cycle_curve_{row_parameter}'][i]:.9g}, {line_parameter} = "
+            f"{number_with_error(v[f'cycle_curve_{line_parameter}'][i], v['cycle_curve_error'][i])} "
             f"({CURVE_END_WORDS[tuple(CYCLE_CURVE_ENDS)[int(v[f'cycle_curve_{suffix}'][i])]]})"
             for suffix, i in zip(END_SUFFIXES, indices[[0, -1]], strict=True)
         )
         error = error_text(float(v["cycle_curve_error"][indices].max()))
         points = counted(len(indices), "point")
-        lines.append(f"curve of {noun}: from {ends}; {points}, largest error of {line} {error}")
-        lines += rows_without_cycles_of_curve(view, line, row, indices)
-    return lines + curve_extremum_lines(view, line, row) + detached_branch_lines(view, row)
+        lines.append(f"curve of {noun}: from {ends}; {points}, largest error of {line_parameter} {error}")
+        lines += rows_without_cycles_of_curve(view, line_parameter, row_parameter, indices)
+    return (
+        lines
+        + curve_extremum_lines(view, line_parameter, row_parameter)
+        + detached_branch_lines(view, row_parameter)
+    )
 
 
-def curve_count_lines(view: ResultView, line: str) -> list[str]:
+def curve_count_lines(view: ResultView, line_parameter: str) -> list[str]:
     """Sentences on the numbers of curves by kind, their largest distance from the points located on rows,
-    along the parameter `line` and as a fraction of its range, and the number of points on no curve."""
+    along the parameter `line_parameter` and as a fraction of its range, and the number of points on no
+    curve."""
     v = view.variables
     hopf_count = len(np.unique(v["curve_number"][v["curve_kind"] == 1]))
     double_count = len(np.unique(v["curve_number"])) - hopf_count
     error = error_text(float(v["curve_agreement"]))
-    agreement = f"crossings located on rows lie on them within {error} of the range of {line}; "
+    agreement = f"crossings located on rows lie on them within {error} of the range of {line_parameter}; "
     agreement *= hopf_count + double_count > 0
     lines = []
     if hopf_count or double_count or v["curves_untraced"]:
@@ -96,14 +101,14 @@ def curve_count_lines(view: ResultView, line: str) -> list[str]:
     if "cycle_curve_number" in v and (len(v["cycle_curve_number"]) or v["cycle_curves_untraced"]):
         curves = len(np.unique(v["cycle_curve_number"]))
         error = error_text(float(v["cycle_curve_agreement"]))
-        agreement = f"points located on rows lie on them within {error} of the range of {line}; "
+        agreement = f"points located on rows lie on them within {error} of the range of {line_parameter}; "
         agreement *= curves > 0
         untraced = _on_no_curve_clause(int(v["cycle_curves_untraced"]), "fold or torus point")
         lines.append(f"curves of folds and torus points of cycles: {curves}; {agreement}{untraced}")
     return lines
 
 
-def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
+def incomplete_curve_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about incomplete boundary curves: curves that could not be followed further, or for which the
     list was full."""
     v = view.variables
@@ -112,7 +117,9 @@ def incomplete_curve_lines(view: ResultView, line: str, row: str) -> list[str]:
         reason = list(CURVE_ENDS).index(end)
         for i in np.flatnonzero((v["curve_start"] == reason) | (v["curve_end"] == reason)):
             noun = "Hopf points" if v["curve_kind"][i] else "double eigenvalues"
-            position = ", ".join(f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row, line))
+            position = ", ".join(
+                f"{name} = {v[f'curve_{name}'][i]:.6g}" for name in (row_parameter, line_parameter)
+            )
             curve = f"curve {int(v['curve_number'][i])}, of {noun}"
             lines.append(f"{curve}, is incomplete: it stops at {position}: {CURVE_ENDS[end]}")
     return lines
@@ -124,14 +131,17 @@ def _on_no_curve_clause(count: int, noun: str) -> str:
     return f"{counted(count, noun)} {is_or_are(count)} on no curve" if count else none
 
 
-def fold_lines(view: ResultView, line: str, row: str) -> list[str]:
+def fold_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about folds of curves, and about the fold in the partial beam limit of the paper's Sec. VIII."""
     v = view.variables
     lines = []
     for i, (kind, name) in enumerate(zip(v["fold_kind"], v["fold_of"], strict=True)):
         noun = "Hopf points" if kind else "double eigenvalues"
-        position = _position_text(view, "fold", i, (row, line))
-        lines.append(f"fold of the curve of {noun}, where {(line, row)[int(name)]} is extremal: {position}")
+        position = _position_text(view, "fold", i, (row_parameter, line_parameter))
+        lines.append(
+            f"fold of the curve of {noun}, where {(line_parameter, row_parameter)[int(name)]} is extremal: "
+            f"{position}"
+        )
     if "partial_beam_k1" in v:
         lines.append(
             f"partial beam limit: the Hopf curve folds at k1 = 4 Fc = {float(v['partial_beam_k1']):.13g}, "
@@ -162,13 +172,13 @@ def criticality_lines(view: ResultView) -> list[str]:
     return [f"criticality, gamma1 = {float(v['curve_gamma1']):g}: {curves}"]
 
 
-def bautin_lines(view: ResultView, line: str, row: str) -> list[str]:
+def bautin_lines(view: ResultView, line_parameter: str, row_parameter: str) -> list[str]:
     """Lines about generalised Hopf points, and on the number of changes of criticality that were not
     located."""
     v = view.variables
     lines = [
         f"generalised Hopf point (Re c = 0) on curve {int(v['bautin_curve'][i])}: "
-        + _position_text(view, "bautin", i, (row, line))
+        + _position_text(view, "bautin", i, (row_parameter, line_parameter))
         for i in range(len(v["bautin_curve"]))
     ]
     if unlocated := int(v["bautin_unlocated"]):

@@ -17,15 +17,17 @@ MISSED_CYCLES_TEXT = (
 """Clause on the cycles within the range that are not found."""
 
 
-def followed_range_text(view: ResultView, computed: np.ndarray, parameter: str, prefix: str) -> str:
+def followed_range_text(view: ResultView, computed: np.ndarray, parameter_name: str, prefix: str) -> str:
     """Clauses on how far beyond the range of the file branches are followed that may enter the range, and on
-    the cycles that are missed. computed: mask of the computed points, (...,). parameter: parameter along
+    the cycles that are missed. computed: mask of the computed points, (...,). parameter_name: parameter along
     which branches are followed. prefix: the variables are named `prefix` + "from" and `prefix` + "to"."""
     limits = [view.variables[f"{prefix}{end}"][computed] for end in ("from", "to")]
     if not all(np.isfinite(values).any() for values in limits):
         return MISSED_CYCLES_TEXT
     low, high = map(span_text, limits)
-    followed = f"branches that may enter the range are followed down to {parameter} = {low} and up to {high}"
+    followed = (
+        f"branches that may enter the range are followed down to {parameter_name} = {low} and up to {high}"
+    )
     return f"{followed}; {MISSED_CYCLES_TEXT}"
 
 

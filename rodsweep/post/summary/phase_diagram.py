@@ -70,7 +70,7 @@ def count_lines(classes: np.ndarray) -> list[str]:
     return [f"of {counted(classes.size, 'grid point')} on the rows: {texts}"]
 
 
-def cost_saving_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
+def cost_saving_lines(view: ResultView, computed: np.ndarray, line_parameter: str) -> list[str]:
     """List with a line that compares the cost of the rows with the cost of a uniform grid; empty if the cost
     is not stored.
 
@@ -82,10 +82,10 @@ def cost_saving_lines(view: ResultView, computed: np.ndarray, line: str) -> list
     rows = int(computed.sum())
     count = int(v["solves"][computed].sum())
     boxes = int(v["boxes"][computed].sum())
-    uniform = float(np.ptp(v[line])) / GRID_RESOLUTION * rows
+    uniform = float(np.ptp(v[line_parameter])) / GRID_RESOLUTION * rows
     return [
         f"in all {counted(count, 'eigenproblem')} and {counted(boxes, 'evaluation')} of D; a uniform grid "
-        f"that resolves {line} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
+        f"that resolves {line_parameter} to {GRID_RESOLUTION:g} on these rows has {uniform:.2g} points, "
         f"{float(f'{uniform / max(count + boxes, 1):.1g}'):g} times as many"
     ]
 
@@ -98,7 +98,7 @@ def class_fraction_lines(classes: np.ndarray) -> list[str]:
     return [f"behaviour of the straight rod, in % of the grid points: {texts}"]
 
 
-def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[str]:
+def row_start_lines(view: ResultView, computed: np.ndarray, line_parameter: str) -> list[str]:
     """List with a line on the classes at the starts of the rows; empty if all these classes are monotone.
     computed: mask of the computed rows, (...,)."""
     start = view.variables["class"][computed][:, 0]
@@ -106,15 +106,20 @@ def row_start_lines(view: ResultView, computed: np.ndarray, line: str) -> list[s
     if texts == [f"monotone on {len(start)}"]:
         return []
     rows = f"of {counted(len(start), 'row')}"
-    return [f"at {line} = {view.variables[line][0]:.6g}, where the rows begin, {rows}: {', '.join(texts)}"]
+    return [
+        f"at {line_parameter} = {view.variables[line_parameter][0]:.6g}, where the rows begin, {rows}: "
+        f"{', '.join(texts)}"
+    ]
 
 
-def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str) -> list[str]:
+def lines_about_rows(
+    view: ResultView, computed: np.ndarray, line_parameter: str, row_parameter: str
+) -> list[str]:
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
     undecided ranges, rows with and without flutter."""
     v = view.variables
-    row_values = view.point_columns[row].reshape(computed.shape)
-    lines = row_start_lines(view, computed, line)
+    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    lines = row_start_lines(view, computed, line_parameter)
     stored = (v["crossing_kind"] > 0).sum(axis=-1)
     unknown = computed & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
     for number, word in enumerate(CROSSING_KINDS):
@@ -126,20 +131,24 @@ def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str
             first_text, later_text = (span_text(v["crossing_at"][m], v["crossing_error"][m]) for m in masks)
             bound = "at least " * bool((unknown & ~has_kind).any())
             on_rows = f"on {bound}{count_of_total(has_kind.sum(), computed.sum(), 'row')}"
-            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line} = {first_text}"
-            text += f", {row} = {axis_values_text(row_values[has_kind])}"
+            text = f"{word}{CROSSING_REMARKS.get(word, '')}: {on_rows}, {line_parameter} = {first_text}"
+            text += f", {row_parameter} = {axis_values_text(row_values[has_kind])}"
             if is_later.any():
                 bound = "at least " * bool(unknown.any())
                 rows = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
-                text += f"; again further along the row on {rows}, at {line} = {later_text}"
+                text += f"; again further along the row on {rows}, at {line_parameter} = {later_text}"
             lines.append(text)
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():
         rows = undecided.any(axis=-1)
-        values = np.broadcast_to(v[line], undecided.shape)[undecided]
-        on_rows = f"on {count_of_total(rows.sum(), computed.sum(), 'row')}, {line} = {span_text(values)}"
-        lines.append(f"behaviour undecided: {on_rows}, {row} = {axis_values_text(row_values[rows])}")
+        values = np.broadcast_to(v[line_parameter], undecided.shape)[undecided]
+        on_rows = (
+            f"on {count_of_total(rows.sum(), computed.sum(), 'row')}, {line_parameter} = {span_text(values)}"
+        )
+        lines.append(
+            f"behaviour undecided: {on_rows}, {row_parameter} = {axis_values_text(row_values[rows])}"
+        )
     # A window of flutter may lie between two grid points: the located crossings show it.
     flutters = (v["class"] == flutter).any(axis=-1) | (v["unstable_after"] > 0).any(axis=-1)
     never_flutters = ~flutters & ~unknown & (v["class"] != unknown_class).all(axis=-1)
@@ -149,7 +158,10 @@ def lines_about_rows(view: ResultView, computed: np.ndarray, line: str, row: str
         with_flutter, without = (axis_values_text(row_values[mask]) for mask in (flutters, never_flutters))
         count = count_of_total(flutters.sum(), computed.sum(), "row")
         none = int(never_flutters.sum())
-        lines.append(f"flutter: on {count}, {row} = {with_flutter}; none on {none}, {row} = {without}")
+        lines.append(
+            f"flutter: on {count}, {row_parameter} = {with_flutter}; none on {none}, {row_parameter} = "
+            f"{without}"
+        )
     return lines
 
 

@@ -57,14 +57,14 @@ def stability_lines(
     return texts, arm_sentences
 
 
-def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter: str) -> str:
+def _positions_text(by_line: Mapping[int, list[Threshold]], names: list[str], parameter_name: str) -> str:
     """Positions of thresholds as text: one by one for a few lines of points, else as a range. by_line:
     thresholds by index of the line."""
     points = [point for line in by_line.values() for point in line]
     located = [point for point in points if isinstance(point, LocatedThreshold)]
     errors = [stated_error(point.position, point.error)[1] for point in located]
     error = f" (+- {error_text(max(errors))})" if errors else ""
-    lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter}"
+    lines_text = f", on {count_of_total(len(by_line), len(names), 'line')} of points along {parameter_name}"
     lines_text *= len(by_line) < len(names)
     if len(located) == len(points) and all(point.equals_within_errors(located[0]) for point in located):
         frequency = located[0].frequency

@@ -128,9 +128,9 @@ def _is_of_points(view: ResultView, variable: Variable) -> bool:
     return variable.extra[0] not in ("point", *view.parameters)
 
 
-def _axis_indices(view: ResultView, parameter: str) -> NDArray[np.int64]:
-    """Index of each point along the axis of `parameter`, (points,)."""
-    return np.searchsorted(view.parameter_values[parameter], view.point_columns[parameter])
+def _axis_indices(view: ResultView, parameter_name: str) -> NDArray[np.int64]:
+    """Index of each point along the axis of `parameter_name`, (points,)."""
+    return np.searchsorted(view.parameter_values[parameter_name], view.point_columns[parameter_name])
 
 
 def quantities_at_points(view: ResultView) -> dict[str, NDArray]:

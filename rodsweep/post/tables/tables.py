@@ -132,7 +132,7 @@ def merged_columns(
     special_columns: list[Column],
     cycle_rows: NDArray,
     special_rows: NDArray,
-    parameter: str,
+    parameter_name: str,
 ) -> list[Column]:
     """Columns of the table `branches`: the columns of cycles, with values at special points in the rows of
     special points, and the kind of special point.
@@ -143,7 +143,7 @@ def merged_columns(
     result = []
     for column in cycles:
         values = column.rows(cycle_rows)
-        counterpart = by_name.get(_special_point_variable(column.name, parameter))
+        counterpart = by_name.get(_special_point_variable(column.name, parameter_name))
         if counterpart is not None:
             special_values = counterpart.rows(special_rows)
             joined_values = np.where(values.absent, special_values.values, values.values)
@@ -152,10 +152,10 @@ def merged_columns(
     return [*result, by_name["special_kind"].rows(special_rows)]
 
 
-def _special_point_variable(cycle_variable: str, parameter: str) -> str:
+def _special_point_variable(cycle_variable: str, parameter_name: str) -> str:
     """Name of the variable of special points that corresponds to the variable `cycle_variable` of cycles."""
-    if cycle_variable == f"branch_{parameter}":
+    if cycle_variable == f"branch_{parameter_name}":
         return "special_at"
-    if parameter == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
+    if parameter_name == "F" and cycle_variable in {f"branch_{load}" for load in LOADS}:
         return "special_at_si"
     return f"special_{cycle_variable}"

@@ -48,17 +48,17 @@ ERROR_VARIABLES = (
 """(name of a variable with an error estimate of a cycle, its meaning); errors at a fixed parameter value."""
 
 
-def followed_variables(parameter: str) -> tuple[Variable, ...]:
+def followed_variables(parameter_name: str) -> tuple[Variable, ...]:
     """Variables of the cycles on all branches, branch by branch."""
-    unit = PARAMETERS[parameter].unit
+    unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         CYCLE_DIMENSION,
         integer("branch", "number of the branch, from 1"),
-        real(f"branch_{parameter}", unit, f"{parameter} of the cycle"),
+        real(f"branch_{parameter_name}", unit, f"{parameter_name} of the cycle"),
         real(
-            f"branch_{parameter}_error",
+            f"branch_{parameter_name}_error",
             "1",
-            f"estimate of the relative error of branch_{parameter}, for a fixed deflection at t = 0",
+            f"estimate of the relative error of branch_{parameter_name}, for a fixed deflection at t = 0",
         ),
         real("period", "tau2", "period of the cycle"),
         real("tip_y_max", "L", "largest y of the tip"),
@@ -73,28 +73,31 @@ def followed_variables(parameter: str) -> tuple[Variable, ...]:
             "number of nontrivial Floquet multipliers outside the unit circle; 0: stable; -1: undecided "
             "within error",
         ),
-        *(real(name, "1", f"estimate of {error}, at branch_{parameter}") for name, error in ERROR_VARIABLES),
+        *(
+            real(name, "1", f"estimate of {error}, at branch_{parameter_name}")
+            for name, error in ERROR_VARIABLES
+        ),
     )
 
 
-def followed_range_variables(parameter: str, prefix: str = "") -> tuple[Variable, Variable]:
+def followed_range_variables(parameter_name: str, prefix: str = "") -> tuple[Variable, Variable]:
     """Variables of the range of the parameter in which branches are followed, whose names begin with
     `prefix`."""
-    unit = PARAMETERS[parameter].unit
-    words = f"{parameter} up to which branches are followed beyond the range, if they may enter it again"
+    unit = PARAMETERS[parameter_name].unit
+    words = f"{parameter_name} up to which branches are followed beyond the range, if they may enter it again"
     return (
         real(f"{prefix}followed_from", unit, f"smallest {words}"),
         real(f"{prefix}followed_to", unit, f"largest {words}"),
     )
 
 
-def special_variables(parameter: str) -> tuple[Variable, ...]:
+def special_variables(parameter_name: str) -> tuple[Variable, ...]:
     """Variables of the special points on all branches; parameter: the continuation parameter's name."""
-    unit = PARAMETERS[parameter].unit
+    unit = PARAMETERS[parameter_name].unit
     return along_dimension(
         SPECIAL_DIMENSION,
         word("special_kind", "kind of the special point", SPECIAL_KINDS),
-        real("special_at", unit, f"{parameter} at the special point"),
+        real("special_at", unit, f"{parameter_name} at the special point"),
         real("special_error", unit, "estimate of the absolute error of special_at"),
         real("special_period", "tau2", "period of the cycle at the special point"),
         real("special_tip_y_max", "L", "largest y of the tip at the special point; 0 at a Hopf point"),
@@ -102,7 +105,8 @@ def special_variables(parameter: str) -> tuple[Variable, ...]:
             "special_amplitude_coefficient",
             "L",
             "coefficient a of a Hopf point: the largest y of its cycles is |a| sqrt("
-            f"|{parameter}/special_at - 1|) to leading order; a < 0: the cycles are at smaller {parameter}",
+            f"|{parameter_name}/special_at - 1|) to leading order; a < 0: the cycles are at smaller "
+            f"{parameter_name}",
         ),
         *(
             real(f"special_{name}_error", "1", f"estimate of the relative error of special_{name}")

@@ -109,21 +109,25 @@ def layout(config: dict[str, Any]) -> Layout:
     return Layout(variables, extents, parameter_names_except(line), (), options["curves"], changed)
 
 
-def cycle_variables(line: str) -> tuple[Variable, ...]:
+def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
     """Variables of a row for `phase_diagram.cycles`: stable states, and special points of branches of
     cycles."""
-    unit = PARAMETERS[line].unit
+    unit = PARAMETERS[line_parameter].unit
     place_clause = "at the special point"
     error = "estimate of the relative error of cycle_special_"
     return (
-        word("stable_states", "stable states of the rod", STABLE_STATES, line),
+        word("stable_states", "stable states of the rod", STABLE_STATES, line_parameter),
         integer("cycle_special_count", "number of special points of the branches of the row, stored or not"),
-        *followed_range_variables(line, "cycle_"),
+        *followed_range_variables(line_parameter, "cycle_"),
         *along_dimension(
             CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
-            real(f"cycle_special_{line}", unit, f"{line} {place_clause}"),
-            real("cycle_special_error", unit, f"estimate of the absolute error of cycle_special_{line}"),
+            real(f"cycle_special_{line_parameter}", unit, f"{line_parameter} {place_clause}"),
+            real(
+                "cycle_special_error",
+                unit,
+                f"estimate of the absolute error of cycle_special_{line_parameter}",
+            ),
             real("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
             real("cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"),
             real("cycle_special_period_error", "1", f"{error}period"),
@@ -132,24 +136,25 @@ def cycle_variables(line: str) -> tuple[Variable, ...]:
     )
 
 
-def cycle_curve_variables(line: str, row: str) -> dict[str, Variable]:
+def cycle_curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the curves of folds of cycles and torus points, for `phase_diagram.cycles`.
-    line, row: parameters."""
+    line_parameter, row_parameter: parameters."""
     dimension = "cycle_curve_point"
-    force = PARAMETERS[line].unit
+    force = PARAMETERS[line_parameter].unit
     kind = "kind of the special points on the curve, fold or torus"
-    error = f"estimate of the absolute error of cycle_curve_{line} on the curve"
+    error = f"estimate of the absolute error of cycle_curve_{line_parameter} on the curve"
     variables = (
         integer("cycle_curve_number", "number of the curve of special points of cycles, from 1", dimension),
         word("cycle_curve_kind", kind, SPECIAL_KINDS, dimension),
-        real(f"cycle_curve_{line}", force, f"{line} on the curve", dimension),
-        real(f"cycle_curve_{row}", PARAMETERS[row].unit, f"{row} on the curve", dimension),
+        real(f"cycle_curve_{line_parameter}", force, f"{line_parameter} on the curve", dimension),
+        real(f"cycle_curve_{row_parameter}", PARAMETERS[row_parameter].unit, f"{row_parameter} on the curve",
+             dimension),
         real("cycle_curve_error", force, error, dimension),
         real("cycle_curve_period", "tau2", "period of the cycle on the curve", dimension),
         real("cycle_curve_tip_y_max", "L", "largest y of the tip; 0 where the amplitude vanishes", dimension),
         *end_variables("cycle_curve", CYCLE_CURVE_ENDS, dimension),
         real("cycle_curve_agreement", "1", "largest distance of a fold or torus point of a row from its "
-             f"curve along {line}, as a fraction of the range of {line}"),
+             f"curve along {line_parameter}, as a fraction of the range of {line_parameter}"),
         integer("cycle_curves_untraced", "number of folds and torus points of rows without a curve"),
     )  # fmt: skip
     return {variable.name: variable for variable in variables}
@@ -165,11 +170,11 @@ def end_variables(curve: str, reasons: Iterable[str], dimension: str) -> tuple[V
     )
 
 
-def curve_variables(line: str, row: str) -> dict[str, Variable]:
+def curve_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the boundary curves of a phase diagram, their folds, their agreement with the
-    rows, and reference values of filament and partial beam. line, row: parameters."""
+    rows, and reference values of filament and partial beam. line_parameter, row_parameter: parameters."""
     kind = "kind of the points on the curve, double real eigenvalues or Hopf points"
-    units = {name: PARAMETERS[name].unit for name in (line, row)}
+    units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     force = PARAMETERS["F"].unit
     error = "estimate of the error of fold_"
     variables = (
@@ -186,8 +191,8 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
         *(real(f"fold_{name}_error", units[name], f"{error}{name}", "fold") for name in units),
         real("fold_frequency", ANGULAR_UNIT, "angular frequency of the modes at the fold", "fold"),
         real("fold_growth_rate", "1/tau2", "growth rate of the modes at the fold", "fold"),
-        real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line}, as a "
-             f"fraction of the range of {line}"),
+        real("curve_agreement", "1", f"largest distance of a crossing from its curve along {line_parameter}, "
+             f"as a fraction of the range of {line_parameter}"),
         integer("curves_untraced", "number of crossings on rows without a curve"),
         real("filament_F_hopf", force, "Fc: F at which the filament (k1, k2 = inf, gamma3 = 0) flutters"),
         real("partial_beam_k1", force, "4 Fc: k1 at the fold of the partial beam (k2 = inf, gamma3 = 0)"),
@@ -196,10 +201,10 @@ def curve_variables(line: str, row: str) -> dict[str, Variable]:
     return {variable.name: variable for variable in variables}
 
 
-def criticality_variables(line: str, row: str) -> dict[str, Variable]:
+def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the sign of Re c along Hopf curves, and of its zeros, for
-    `phase_diagram.criticality`. line, row: parameters."""
-    units = {name: PARAMETERS[name].unit for name in (line, row)}
+    `phase_diagram.criticality`. line_parameter, row_parameter: parameters."""
+    units = {name: PARAMETERS[name].unit for name in (line_parameter, row_parameter)}
     error = "estimate of the error of bautin_"
     variables = (
         *along_dimension("curve_point", criticality_variable("curve_criticality", "Re c")),
@@ -228,13 +233,13 @@ def criticality_variables(line: str, row: str) -> dict[str, Variable]:
     return {variable.name: variable for variable in variables}
 
 
-def bautin_curve_variables(line: str, row: str, third: str) -> dict[str, Variable]:
+def bautin_curve_variables(line_parameter: str, row_parameter: str, third: str) -> dict[str, Variable]:
     """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`.
 
-    line, row: names of the diagram's two parameters. third: name of the third parameter, which varies along
-    the curves.
+    line_parameter, row_parameter: names of the diagram's two parameters. third: name of the third parameter,
+    which varies along the curves.
     """
-    names = (line, row, third)
+    names = (line_parameter, row_parameter, third)
     step = "bautin_step"
     unit = {name: PARAMETERS[name].unit for name in names}
     error = "estimate of the error of bautin_along_"

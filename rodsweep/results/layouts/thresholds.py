@@ -51,12 +51,12 @@ HOPF_CROSSING_CODES = tuple(map(CROSSING_KINDS.index, ("hopf", "hopf_reverse", "
 may change."""
 
 
-def crossing_variables(line: str, position_name: str) -> tuple[Variable, ...]:
-    """Variables of the crossings along the parameter `line`. position_name: name of the variable with the
-    value of this parameter at a crossing."""
-    units = PARAMETERS[line].unit
+def crossing_variables(line_parameter: str, position_name: str) -> tuple[Variable, ...]:
+    """Variables of the crossings along the parameter `line_parameter`. position_name: name of the variable
+    with the value of this parameter at a crossing."""
+    units = PARAMETERS[line_parameter].unit
     return (
-        real(position_name, units, f"{line} at the crossing", "crossing"),
+        real(position_name, units, f"{line_parameter} at the crossing", "crossing"),
         word("crossing_kind", "kind of the crossing", CROSSING_KINDS, "crossing"),
         real("crossing_frequency", ANGULAR_UNIT, "angular frequency of the modes that cross", "crossing"),
         real("crossing_growth_rate", "1/tau2", "growth rate of the modes that cross", "crossing"),
@@ -67,14 +67,16 @@ def crossing_variables(line: str, position_name: str) -> tuple[Variable, ...]:
     )
 
 
-def search_variables(line: str, position_name: str) -> tuple[Variable, ...]:
-    """Variables of a search for crossings along the parameter `line`; position_name: name of the variable
-    with the value of this parameter at a crossing."""
-    units = PARAMETERS[line].unit
-    undecided = f"of a range of {line} that may contain a window of flutter too narrow to be resolved"
+def search_variables(line_parameter: str, position_name: str) -> tuple[Variable, ...]:
+    """Variables of a search for crossings along the parameter `line_parameter`; position_name: name of the
+    variable with the value of this parameter at a crossing."""
+    units = PARAMETERS[line_parameter].unit
+    undecided = (
+        f"of a range of {line_parameter} that may contain a window of flutter too narrow to be resolved"
+    )
     return (
         integer("crossing_count", "number of crossings found, stored or not"),
-        *crossing_variables(line, position_name),
+        *crossing_variables(line_parameter, position_name),
         real("open_from", units, f"start {undecided}"),
         real("open_to", units, f"end {undecided}"),
         boolean("certified", "whether the list of crossings is proved complete in the searched range"),

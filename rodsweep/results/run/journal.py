@@ -185,17 +185,17 @@ def _with_checksum(record: bytes) -> bytes:
 
 
 def read_journals(
-    directory: Path, layout: Layout, fingerprint: str, points: int = 2**62
+    directory: Path, layout: Layout, fingerprint: str, point_count: int = 2**62
 ) -> Iterator[np.ndarray]:
     """Yields intact records, (records,), of points from all journals with this fingerprint in a directory.
 
-    points: number of points of the sweep; records with a larger index are left out.
+    point_count: number of points of the sweep; records with a larger index are left out.
     """
     for path in journals_with_fingerprint(directory, fingerprint):
         for rows in _record_rows(path, layout, fingerprint):
             valid_rows = rows[_has_valid_checksum(rows), :-CHECKSUM_BYTES]
             records = np.ascontiguousarray(valid_rows).view(layout.record_dtype).ravel()
-            yield records[(records["index"] >= 0) & (records["index"] < points)]
+            yield records[(records["index"] >= 0) & (records["index"] < point_count)]
 
 
 def read_reasons(directory: Path, layout: Layout, fingerprint: str) -> list[str]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...arrays import Array, Complex
 from ..continuation.curve import StepControl, StepResult, advance
-from ..cycle.accuracy.cycle_verdict import RefinedCycle
+from ..cycle.accuracy.refined_cycle import RefinedCycle
 from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,

@@ -220,5 +220,5 @@ def _step_has_unresolved_corner(start: BranchCycle, end: BranchCycle) -> bool:
     largest), and the step is too long for a figure, which locates a corner from two cycles before and two
     cycles after the corner."""
     time_difference = abs(end.cycle.path.time_of_largest_y - start.cycle.path.time_of_largest_y)
-    is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift
+    is_other_peak = min(time_difference, 1 - time_difference) > BRANCH_END_SETTINGS.max_peak_shift_fraction
     return is_other_peak and arc_length_between(start, end) > BRANCH_END_SETTINGS.max_step_with_corner

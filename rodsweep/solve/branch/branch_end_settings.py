@@ -13,10 +13,10 @@ class BranchEndSettings:
     max_last_amplitude: float = 0.06
     """The Hopf point at the end of a branch is extrapolated only from a cycle whose largest tip y, in L, is
     at most this number; otherwise the step is shortened."""
-    max_last_asymmetry: float = 0.2
+    max_last_asymmetry_ratio: float = 0.2
     """The symmetric cycle at the end of a branch is extrapolated only from a cycle whose asymmetry, divided
     by its largest bending moment, is at most this number; otherwise the step is shortened."""
-    min_asymmetry: float = 0.02
+    min_asymmetry_ratio: float = 0.02
     """If the asymmetry, divided by the largest bending moment, is at most this number, the step is not
     shortened: the extrapolation to the symmetric cycle would not improve."""
     lost_asymmetry_ratio: float = 0.1
@@ -39,7 +39,7 @@ class BranchEndSettings:
     method then solves the cycle exactly at this end."""
     range_end_error: float = 1e-15
     """Relative error of the parameter at an end of the range."""
-    max_peak_shift: float = 0.05
+    max_peak_shift_fraction: float = 0.05
     """If the times of the largest tip y of two successive cycles differ by more than this fraction of the
     period, the largest tip y is attained at different maxima of y(t)."""
     max_step_with_corner: float = 0.02

@@ -11,7 +11,7 @@ from ..cycle.accuracy.calibration import Calibration, calibration_of
 from ..cycle.accuracy.cycle_errors import MULTIPLIER_INDEX
 from ..cycle.accuracy.finer_meshes import FINER_MESH_SETTINGS, finer_meshes
 from ..cycle.cycles_along_parameter import interpolated_change
-from ..orbit.measures import CyclePath
+from ..orbit.measures import CycleMotion
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, multipliers_and_trivial_error
 from ..orbit.orbit import Orbit
 from ..orbit.orbit_mesh import mesh_of
@@ -36,7 +36,7 @@ def measured_branch_calibration(
     target_meshes, fraction = finer_meshes(mesh)
     border = _border_of_comparison(orbit, derivatives)
     condition = BorderCondition.at_arc_length(derivatives.scale, border, orbit)
-    rough = CyclePath(orbit)
+    rough = CycleMotion(orbit)
     multipliers = multipliers_and_trivial_error(solved)[0]
     parts = np.empty((2, MULTIPLIER_INDEX + 2))
     for part, target in zip(parts, target_meshes, strict=True):
@@ -66,7 +66,7 @@ def _border_of_comparison(orbit: Orbit, derivatives: BranchDerivatives) -> Array
 
 
 def _differences_between_meshes(
-    rough: CyclePath, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
+    rough: CycleMotion, multipliers: Complex, fine: ConvergedOrbit, derivatives: BranchDerivatives
 ) -> Array:
     """Differences, (6,), between a cycle on a rough mesh and the same cycle on a fine mesh. The first five,
     at the parameter value of the rough cycle, are `path_differences` and the difference of the multipliers.
@@ -92,10 +92,10 @@ def _differences_between_meshes(
     own_difference = apart / max(
         by_deflection, BRANCH_ERROR_SETTINGS.min_deflection_rate_ratio * by_parameter
     )
-    return np.array([*path_differences(rough, CyclePath(slid)), change, own_difference])
+    return np.array([*path_differences(rough, CycleMotion(slid)), change, own_difference])
 
 
-def relative_tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) -> float:
+def relative_tip_y_sensitivity(path: CycleMotion, derivatives: BranchDerivatives) -> float:
     """Sensitivity |(p/y) dy/dp| of the largest tip y to the parameter p along a branch at the cycle `path`.
     derivatives: derivatives of the branch at this cycle."""
     orbit: Orbit = path.orbit
@@ -103,9 +103,9 @@ def relative_tip_y_sensitivity(path: CyclePath, derivatives: BranchDerivatives) 
     step = BRANCH_ERROR_SETTINGS.sensitivity_step * derivatives.tangent
     if 0 <= orbit.form.rod.coordinate(name) < -step[-1]:  # no rod has a negative coordinate
         step = -step
-    moved_path = CyclePath(moved_orbit(orbit, name, step))
+    moved_path = CycleMotion(moved_orbit(orbit, name, step))
     y = path.extrema["tip_y_max"]
     other = moved_path.extrema["tip_y_max"]
     return abs((other - y) / (BRANCH_ERROR_SETTINGS.sensitivity_step * y)) / max(
-        abs(derivatives.parameter_rate), EXPONENT_SETTINGS.least_divisor
+        abs(derivatives.parameter_rate), EXPONENT_SETTINGS.min_divisor
     )

@@ -85,7 +85,7 @@ class BranchDerivatives:
             return change / self.parameter_rate
         direction = np.copysign(1.0, change * self.parameter_rate)
         # Near a fold: an upper bound of the root s of rate s + curvature s^2/2 = change.
-        curvature = max(abs(self.parameter_second_derivative), EXPONENT_SETTINGS.least_divisor)
+        curvature = max(abs(self.parameter_second_derivative), EXPONENT_SETTINGS.min_divisor)
         return float(direction * 2 * (abs(change) / curvature) ** 0.5)
 
 

@@ -14,7 +14,7 @@ from ..cycle.accuracy.refinement import (
 )
 from ..orbit.mesh_choice import finer_mesh, regraded
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
-from ..orbit.orbit_mesh import OrbitMesh, mesh_limit, mesh_of
+from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ..unsolvable import MeshLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
 from .bordered.condition import BorderCondition
@@ -146,7 +146,7 @@ def solve_on_sufficient_mesh(
             finest = True
             target = finer_mesh(calibration.mesh, target)
         if not target.is_allowed:
-            raise mesh_limit()
+            raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)
     raise MeshLimitReached(
         f"none of {BRANCH_MESH_SETTINGS.max_meshes} finer and finer meshes reaches the requested accuracy"

@@ -34,7 +34,7 @@ class BranchSettings:
     crushing_margin: float = 1e-4
     """A branch ends where the relative distance of F from the crushing force is this number, because the rod
     at rest is then almost crushed. Branches along F, k1 or taper have this margin."""
-    min_coordinate_unit: float = 0.01
+    min_coordinate_unit_ratio: float = 0.01
     """Smallest unit of the parameter coordinate in arc lengths, divided by the length of the range. With the
     coordinate itself as the unit, steps towards gamma3 = 0 become ever shorter and do not reach 0."""
     max_cycles_per_diagram_row: int = 500
@@ -96,7 +96,7 @@ def _solve_branches_or_raise(
     rod: Rod, request: BranchRequest, workspace: NewtonWorkspace, starts: Sequence[SpecialPoint]
 ) -> BranchesOfRod:
     low, high = uncrushed_interval(
-        rod.build,
+        rod.material,
         {"F": rod.F, "k1": rod.k1, "taper": rod.taper},
         (request.along, request.start, request.stop),
         BRANCH_SETTINGS.crushing_margin,
@@ -109,7 +109,7 @@ def _solve_branches_or_raise(
     ends = (path.coordinate(low), path.coordinate(high))
     # The smallest drag of the range is at one of its ends.
     keeps_omega = any(has_small_rotational_drag(path.rod_at(end)) for end in ends)
-    unit = BRANCH_SETTINGS.min_coordinate_unit * abs(ends[1] - ends[0])
+    unit = BRANCH_SETTINGS.min_coordinate_unit_ratio * abs(ends[1] - ends[0])
     hopfs, failures = _hopf_branch_starts(path, crossings, keeps_omega, unit)
     end_reasons = _end_reason(low > request.start), _end_reason(high < request.stop)
     if path.is_compliance_path:

@@ -38,7 +38,7 @@ class DetachedBranchSettings:
     first_distances: tuple[float, ...] = (0.02, 0.005, 0.001, 2e-4)
     """Arc lengths of the first cycle from the known special point, tried in this order: 0.02 is the first
     step length on all branches, and a small closed branch needs a shorter one."""
-    max_prediction_error: float = 0.5
+    max_prediction_error_ratio: float = 0.5
     """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
     cycle may lie beyond another fold."""
@@ -127,7 +127,7 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     )
     step = relative_change(tangent.orbit, distance * tangent.change[:-1])
     prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)
-    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error * step:
+    if prediction_error > DETACHED_BRANCH_SETTINGS.max_prediction_error_ratio * step:
         raise Unsolvable("the cycle found is far from the prediction")
     low, high = limits.coordinate_range
     if not low < solved_orbit.orbit.form.rod.coordinate(tangent.scale.parameter_name) < high:

@@ -29,7 +29,7 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
     bounds = path.parameter.allowed.schema_bounds
     low, high = max(bounds.get("minimum", low), low), min(bounds.get("maximum", high), high)
     rod = {"F": path.rod.F, "k1": path.rod.k1, "taper": path.rod.taper}
-    low, high = uncrushed_interval(path.rod.build, rod, (path.name, low, high), margin)
+    low, high = uncrushed_interval(path.rod.material, rod, (path.name, low, high), margin)
     far_end = (min, max)[index](path.coordinate(low), path.coordinate(high))
     # The unknowns of a branch cannot change within the branch.
     is_small = has_small_rotational_drag(path.rod_at(far_end))

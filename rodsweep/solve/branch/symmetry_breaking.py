@@ -93,7 +93,7 @@ def _relative_asymmetry(start: BranchCycle) -> float:
 
 
 def _is_nearly_symmetric(start: BranchCycle) -> bool:
-    return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry
+    return _relative_asymmetry(start) <= BRANCH_END_SETTINGS.max_last_asymmetry_ratio
 
 
 def symmetry_breaking_between(
@@ -103,7 +103,7 @@ def symmetry_breaking_between(
     `breakings` does not contain this symmetry breaking; None if `start` is too asymmetric, so that a shorter
     step is needed. Raises Unsolvable if no shorter step is allowed."""
     index = _symmetry_breaking_ahead(start, breakings, accuracy) if _is_nearly_symmetric(start) else -1
-    if index >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry:
+    if index >= 0 or _relative_asymmetry(start) <= BRANCH_END_SETTINGS.min_asymmetry_ratio:
         return index
     if arc_length_between(start, end) / 2 < ARC_STEP_CONTROL.min_length:
         raise Unsolvable(

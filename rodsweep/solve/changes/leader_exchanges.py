@@ -42,20 +42,21 @@ class LeadingEigenvalueSettings:
 
     accuracy: float = 1e-6
     """Relative accuracy of the eigenvalues at a sample, before the refinement by Newton's method on D."""
-    close_sample_distance: float = 2e-4
+    close_sample_fraction: float = 2e-4
     """Two samples are close if their distance, as a fraction of the path's length, is at most this number.
     Between close samples, `excludes_exchange` too may exclude an exchange."""
-    smallest_interval: float = 1e-8
+    min_interval_fraction: float = 1e-8
     """A sample is added between two samples only if their distance, as a fraction of the path's length,
     exceeds this number. Three real eigenvalues of cones meet within 4e-7 of the path."""
     max_samples: int = 1000
     """With more samples than this number, a sample is added only between samples farther apart than
-    `close_sample_distance`."""
-    distance_to_exchange: float = 1e-3
+    `close_sample_fraction`."""
+    distance_to_exchange_fraction: float = 1e-3
     """Where further exchanges may lie between two samples, samples are added on both sides of the exchange
     found, at this fraction of the interval."""
-    smallest_interval_with_two_exchanges: float = 1e-9
-    """Like `smallest_interval`, if the interpolation does not exclude two exchanges between the samples."""
+    min_interval_fraction_with_two_exchanges: float = 1e-9
+    """Like `min_interval_fraction`, if the interpolation does not exclude two exchanges between the
+    samples."""
     min_part_ratio: float = 0.05
     """An added sample divides its interval into parts that are at least this fraction of the interval: a
     minimum of the interpolant may coincide with a sample."""
@@ -65,7 +66,7 @@ class LeadingEigenvalueSettings:
     max_relative_distance: float = 1e-12
     """The eigenvalue w found by Newton's method is accepted if its distance from the start is below this
     multiple of |w|: some thousand rounding errors."""
-    smallest_step: float = 1e-12
+    min_step_ratio: float = 1e-12
     """The search fails at an interval whose length, divided by the larger modulus of its ends, is at most
     this (some thousand rounding errors), if its exchange is not found."""
 
@@ -134,11 +135,13 @@ class LeaderExchangeSearch:
             fraction, may_hold_two = next_sample_position(left_sample, right_sample)
             settings = LEADING_EIGENVALUE_SETTINGS
             smallest_interval = (
-                settings.smallest_interval_with_two_exchanges if may_hold_two else settings.smallest_interval
+                settings.min_interval_fraction_with_two_exchanges
+                if may_hold_two
+                else settings.min_interval_fraction
             )
             if len(self.samples) > settings.max_samples:
-                smallest_interval = settings.close_sample_distance
-            is_close = b - a <= settings.close_sample_distance * intervals.length
+                smallest_interval = settings.close_sample_fraction
+            is_close = b - a <= settings.close_sample_fraction * intervals.length
             if fraction == 0.0 or (is_close and excludes_exchange(left_sample, right_sample, may_hold_two)):
                 return []
             # Two exchanges may hide in an interval too short to divide: the list then is not proved.
@@ -149,7 +152,7 @@ class LeaderExchangeSearch:
             change = self._exchange_between(left_sample, right_sample)
             if change is not None:
                 return self._exchange_if_alone(change, left_sample, right_sample, intervals)
-            if b - a <= LEADING_EIGENVALUE_SETTINGS.smallest_step * max(abs(a), abs(b)):
+            if b - a <= LEADING_EIGENVALUE_SETTINGS.min_step_ratio * max(abs(a), abs(b)):
                 raise Unsolvable(
                     f"no point was found near {self.path.text_at(a)} at which the leading eigenvalue turns "
                     "from real to complex or back"
@@ -169,11 +172,11 @@ class LeaderExchangeSearch:
         if excludes_others(left, right):
             return [change]
         length = right.p - left.p
-        if length <= LEADING_EIGENVALUE_SETTINGS.smallest_interval_with_two_exchanges * intervals.length:
+        if length <= LEADING_EIGENVALUE_SETTINGS.min_interval_fraction_with_two_exchanges * intervals.length:
             self.leading_eigenvalues_proved = False
             return [change]
         p = self.path.coordinate(change.value)
-        distance = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange * length
+        distance = LEADING_EIGENVALUE_SETTINGS.distance_to_exchange_fraction * length
         sample_p = sorted({left.p, max(left.p, p - distance), min(right.p, p + distance), right.p})
         intervals.add_subintervals(*pairwise(sample_p))
         return []

@@ -26,10 +26,10 @@ from .unstable_modes import ModeCounter
 class ThresholdSettings:
     """Settings of the search for all thresholds along a path."""
 
-    sample_shift: float = 1e-4
+    sample_shift_fraction: float = 1e-4
     """Samples are added at this distance, as a fraction of the path, on both sides of a crossing whose pair
     must lead but does not lead in the list."""
-    merge_distance: float = 1e-5
+    merge_distance_ratio: float = 1e-5
     """Undecided boxes are merged if the gap between them is at most this number times the parameter."""
 
 
@@ -121,7 +121,9 @@ def find_thresholds(
         missed_p = _crossings_without_leading_pair(path, crossings, oscillates, count)
         if not missed_p:
             break
-        p_near = [p + s * THRESHOLD_SETTINGS.sample_shift * (high - low) for p in missed_p for s in (-1, 1)]
+        p_near = [
+            p + s * THRESHOLD_SETTINGS.sample_shift_fraction * (high - low) for p in missed_p for s in (-1, 1)
+        ]
         edges = sorted({*edges, *(p for p in p_near if low < p < high)})
     else:
         counts.doubts.append("a pair crosses the imaginary axis, but another eigenvalue grows faster")
@@ -231,7 +233,7 @@ def _undecided_intervals(path: ParameterPath, undecided: list[Box]) -> list[tupl
     """Disjoint intervals of the parameter covered by the boxes `undecided`."""
     gaps: list[tuple[float, float]] = []
     for a, b in sorted(sorted((path.coordinate(box.p_from), path.coordinate(box.p_to))) for box in undecided):
-        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.merge_distance):
+        if gaps and a <= gaps[-1][1] * (1 + THRESHOLD_SETTINGS.merge_distance_ratio):
             gaps[-1] = gaps[-1][0], max(b, gaps[-1][1])
         else:
             gaps.append((a, b))

@@ -23,12 +23,12 @@ from ...solve_progress import SolvePosition, report
 from ..motion.integrator import RunLimit, Trajectory, destroy_integrators, integrator, relax_fast_components
 from ..motion.leading_mode import leading_mode
 from ..motion.time_scheme import TimeScheme
-from ..orbit.measures import CyclePath, measures_of
+from ..orbit.measures import CycleMotion, measures_of
 from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
-from .cycle import Cycle, CycleRequest, with_measures
+from .cycle import CycleOutcome, CycleRequest, with_measures
 from .integration_settings import INTEGRATION_SETTINGS
 from .settled_motion import NoCycleFound, ReturnDistances, ReturnTimes, SettledMotion, max_settled_distance
 from .status import IntegrationStatus
@@ -47,12 +47,12 @@ from .transient.returns import (
 from .transient.transient_settings import TRANSIENT_SETTINGS
 
 
-def solve_by_integration(rod: Rod, request: CycleRequest) -> Cycle:
+def solve_by_integration(rod: Rod, request: CycleRequest) -> CycleOutcome:
     """Outcome of a rod's motion from its leading mode, by time integration; a failure becomes a status."""
 
-    def failed(cause: str) -> Cycle:
+    def failed(cause: str) -> CycleOutcome:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
-        return Cycle(status=IntegrationStatus.failed, message=cause)
+        return CycleOutcome(status=IntegrationStatus.failed, message=cause)
 
     return outcome_or_failure(lambda: _IntegrationUntilSettled(rod, request).cycle(), failed)
 
@@ -73,12 +73,12 @@ class _IntegrationUntilSettled:
         self.return_times = ReturnTimes(self.leading_mode.period)
         self.intervals_per_return = INTEGRATION_SETTINGS.measurement_intervals_per_return
 
-    def cycle(self) -> Cycle:
+    def cycle(self) -> CycleOutcome:
         """The outcome for the rod: the cycle with its errors, or the status of a motion without a cycle."""
         w = straight_rod_stability(
             self.limiting_rod
         ).w  # exact; an eigenvalue of the mesh has errors up to 1e-3
-        straight = Cycle(
+        straight = CycleOutcome(
             status=IntegrationStatus.straight, linear_growth_rate=w.real, linear_frequency=w.imag
         )
         try:
@@ -184,7 +184,7 @@ class _IntegrationUntilSettled:
             states[i] = z - delay * rates
         return times, states
 
-    def _measured_path(self, settled: SettledMotion) -> CyclePath:
+    def _measured_path(self, settled: SettledMotion) -> CycleMotion:
         """The cycle of a settled motion, from a further run of more than a period; raises NoCycleFound."""
         returns = settled.returns_per_period + 2
         limit = return_limit(tip_angle_row(self.system), settled.state, returns)
@@ -204,13 +204,13 @@ class _IntegrationUntilSettled:
             times[0] + period * node_times(self.intervals_per_return * settled.returns_per_period, stages)
         )
         form = StressForm(self.rod, self.system.mesh)
-        return CyclePath(
+        return CycleMotion(
             Orbit.from_states(
                 form, NO_SYMMETRY, period, collocation_states(self.system, form, states), stages
             )
         )
 
-    def _errors_in_limit(self, settled: SettledMotion, path: CyclePath, errors: CycleErrors) -> CycleErrors:
+    def _errors_in_limit(self, settled: SettledMotion, path: CycleMotion, errors: CycleErrors) -> CycleErrors:
         """`errors` plus the error of integrating a nearby rod instead of a limiting rod; raises
         NoCycleFound."""
         integrated_rod = path.orbit.form.rod
@@ -234,7 +234,7 @@ class _IntegrationUntilSettled:
             nan,
         )
 
-    def _with_measures(self, outcome: Cycle, path: CyclePath, errors: CycleErrors) -> Cycle:
+    def _with_measures(self, outcome: CycleOutcome, path: CycleMotion, errors: CycleErrors) -> CycleOutcome:
         """The outcome `outcome` with the status, measures and errors of the settled cycle of `path`."""
         is_accurate = errors.largest_weighted_error <= self.request.accuracy
         cycle = replace(

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array, Complex
-from ..orbit.measures import CycleMeasures, CyclePath
+from ..orbit.measures import CycleMeasures, CycleMotion
 from ..status import PointStatus
 from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
 from .neighbour import CycleStart
@@ -66,7 +66,7 @@ class CycleRequest:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cycle:
+class CycleOutcome:
     """Outcome of the task limit_cycle for one rod, with the quantities of the cycle; unknown quantities are
     NaN or None. message: for the user, or "". seconds: computing time. elements, order: number and order of
     the elements of the mesh, 0 if unknown.
@@ -120,8 +120,12 @@ class Cycle:
 
 
 def with_measures(
-    cycle: Cycle, request: CycleRequest, path: CyclePath, measures: CycleMeasures, errors: CycleErrors
-) -> Cycle:
+    cycle: CycleOutcome,
+    request: CycleRequest,
+    path: CycleMotion,
+    measures: CycleMeasures,
+    errors: CycleErrors,
+) -> CycleOutcome:
     """The outcome `cycle` with the mesh, measures, errors and requested time series of a solved cycle. path:
     motion of the solved cycle over its period."""
     mesh = path.orbit.form.mesh

@@ -163,7 +163,7 @@ def orbit_near_hopf(form: StressForm, w: complex, amplitude: float) -> Orbit:
         raise Unsolvable("the nearby Hopf point is subcritical")
     if not amplitude**2 <= HOPF_START_SETTINGS.max_direct_force_distance * rate / -normal.landau.real:
         raise Unsolvable(f"the amplitude {amplitude:g} of the start is too large for the normal form")
-    if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance * abs(w)).number != 2:
+    if transverse_problem(form.rod).count(-CANDIDATE_SETTINGS.last_line_distance_ratio * abs(w)).number != 2:
         raise Unsolvable(
             f"at F = {form.rod.F:g} a second pair of modes may be unstable, so the normal form does not apply"
         )

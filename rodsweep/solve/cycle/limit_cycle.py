@@ -22,9 +22,9 @@ from ..motion.integrator import destroy_integrators
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
-from .accuracy.cycle_verdict import RefinedCycle
+from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
-from .cycle import Cycle, CycleRequest, MotionShapes, padded_or_cut, with_measures
+from .cycle import CycleOutcome, CycleRequest, MotionShapes, padded_or_cut, with_measures
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import CycleStart, cycle_from_neighbour
 from .second_state import second_state
@@ -38,7 +38,7 @@ from .transient.torus import classify_quasiperiodic
 from .transient.transient_integration import TransientIntegration
 from .transient.transient_outcome import TransientOutcome
 
-__all__ = ["Cycle", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
+__all__ = ["CycleOutcome", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,24 +62,25 @@ def solve_cycle(
     rod: Rod,
     request: CycleRequest,
     start: CycleStart | None = None,
-    parameter: str | None = None,
+    parameter_name: str | None = None,
     workspace: NewtonWorkspace | None = None,
-) -> Cycle:
+) -> CycleOutcome:
     """Outcome of the search for the cycle of a rod from its leading mode, a neighbour's cycle or a Hopf
     point; a failure becomes a status, never an exception.
 
-    start: `Cycle.neighbour` of the previous rod of a chain, or None. parameter: name of the parameter
-    that varies along the chain. workspace: memory of Newton's matrices, shared by many rods; None: new.
+    start: `CycleOutcome.neighbour` of the previous rod of a chain, or None. parameter_name: name of the
+    parameter that varies along the chain. workspace: memory of Newton's matrices, shared by many rods; None:
+    new.
     """
     memory = workspace or NewtonWorkspace()
 
-    def failed(cause: str) -> Cycle:
+    def failed(cause: str) -> CycleOutcome:
         destroy_integrators()  # after an error inside PETSc its objects are unusable
-        return Cycle(status=CycleStatus.failed, message=cause)
+        return CycleOutcome(status=CycleStatus.failed, message=cause)
 
-    def solve() -> Cycle:
+    def solve() -> CycleOutcome:
         stability = straight_rod_stability(rod, start.eigenvalues if start else None)
-        cycle = _solve_cycle_or_raise(rod, request, stability, start, parameter, memory)
+        cycle = _solve_cycle_or_raise(rod, request, stability, start, parameter_name, memory)
         return _with_second_state(rod, _with_status_by_spectrum(cycle, stability), stability)
 
     return outcome_or_failure(solve, failed)
@@ -90,23 +91,25 @@ def _solve_cycle_or_raise(
     request: CycleRequest,
     stability: StraightRodStability,
     neighbour: CycleStart | None,
-    parameter: str | None,
+    parameter_name: str | None,
     workspace: NewtonWorkspace,
-) -> Cycle:
+) -> CycleOutcome:
     w = stability.w
-    straight = Cycle(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
+    straight = CycleOutcome(
+        status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag)
+    )
     if request.start == "hopf":
         return _cycle_from_hopf(_form_on_motion_mesh(rod), request, straight, stability, workspace)
     refined = None
-    if neighbour is not None and parameter is not None:
+    if neighbour is not None and parameter_name is not None:
         form = StressForm(rod, neighbour.predictor.orbit.form.mesh)
         with suppress(Unsolvable):
-            refined = cycle_from_neighbour(neighbour, form, parameter, request.accuracy, workspace)
+            refined = cycle_from_neighbour(neighbour, form, parameter_name, request.accuracy, workspace)
     elif neighbour is None and not request.is_recorded:
-        refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter, workspace)
+        refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter_name, workspace)
     if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
         cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
-        return _with_neighbour(cycle, refined, neighbour, parameter, request.accuracy, stability)
+        return _with_neighbour(cycle, refined, neighbour, parameter_name, request.accuracy, stability)
     is_from_mode = neighbour is None and request.tip is None
     decay_reason = reason_for_decay(rod, w, request.amplitude) if is_from_mode else ""
     if decay_reason and not request.is_recorded:
@@ -114,7 +117,7 @@ def _solve_cycle_or_raise(
     unstable_cycle = refined if refined is not None and refined.stable is False else None
     for form in (StressForm(rod, mesh) for mesh in motion_meshes(rod, request.transient > 0)):
         # On too coarse a mesh a motion may repeat where finer meshes have no cycle.
-        transient = TransientIntegration(form, stability, request, parameter, unstable_cycle, workspace)
+        transient = TransientIntegration(form, stability, request, parameter_name, unstable_cycle, workspace)
         end = _outcome_of_motion(transient, request, neighbour)
         if not transient.unsolved_message:
             break
@@ -125,7 +128,7 @@ def _solve_cycle_or_raise(
     if end.cycle is None:
         return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
     cycle = _with_cycle_quantities(cycle, end.cycle, request)
-    return _with_neighbour(cycle, end.cycle, None, parameter, request.accuracy, stability)
+    return _with_neighbour(cycle, end.cycle, None, parameter_name, request.accuracy, stability)
 
 
 def _form_on_motion_mesh(rod: Rod) -> StressForm:
@@ -134,8 +137,8 @@ def _form_on_motion_mesh(rod: Rod) -> StressForm:
 
 
 def _with_motion_data(
-    outcome: Cycle, transient: TransientIntegration, end: TransientOutcome, request: CycleRequest
-) -> Cycle:
+    outcome: CycleOutcome, transient: TransientIntegration, end: TransientOutcome, request: CycleRequest
+) -> CycleOutcome:
     """The outcome `outcome` with the mesh, the number of returns and the requested path or shapes of the
     integrated motion `transient`. end: outcome of this motion."""
     trace = transient.record
@@ -156,24 +159,26 @@ def _motion_shapes(transient: TransientIntegration, trace: ShapeTrace, request: 
 
 
 def _with_neighbour(
-    cycle: Cycle,
+    cycle: CycleOutcome,
     refined: RefinedCycle,
     previous: CycleStart | None,
-    parameter: str | None,
+    parameter_name: str | None,
     accuracy: float,
     stability: StraightRodStability,
-) -> Cycle:
+) -> CycleOutcome:
     """The outcome `cycle` with the data of the solved cycle `refined` from which the next rod of a chain
-    starts; unchanged outside a chain (`parameter` is None). previous: data of the previous rod, or None.
-    parameter: parameter that varies along the chain. accuracy: requested relative accuracy. stability:
+    starts; unchanged outside a chain (`parameter_name` is None). previous: data of the previous rod, or None.
+    parameter_name: parameter that varies along the chain. accuracy: requested relative accuracy. stability:
     leading eigenvalue of the straight rod."""
-    if parameter is None:
+    if parameter_name is None:
         return cycle
     followed = eigenvalues_to_follow(refined.orbit.form.rod, stability)
-    return replace(cycle, neighbour=CycleStart.from_cycle(refined, previous, parameter, accuracy, followed))
+    return replace(
+        cycle, neighbour=CycleStart.from_cycle(refined, previous, parameter_name, accuracy, followed)
+    )
 
 
-def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> Cycle:
+def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
     """The outcome `cycle`, with the status `not_settled` and a reason instead of the status `straight` unless
     the spectrum proves the straight rod stable."""
     if cycle.status != CycleStatus.straight or stability.stable:
@@ -181,7 +186,7 @@ def _with_status_by_spectrum(cycle: Cycle, stability: StraightRodStability) -> C
     return replace(cycle, status=CycleStatus.not_settled, message=stability.unproved_stability_text)
 
 
-def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRodStability) -> Cycle:
+def _with_second_state(rod: Rod, cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
     """The outcome `cycle` with the second stable state of the rod, as far as known, and a message about this
     state."""
     state, F, reason = second_state(rod, cycle.status, stability.stable)
@@ -192,10 +197,10 @@ def _with_second_state(rod: Rod, cycle: Cycle, stability: StraightRodStability) 
 def _cycle_from_hopf(
     form: StressForm,
     request: CycleRequest,
-    outcome: Cycle,
+    outcome: CycleOutcome,
     stability: StraightRodStability,
     workspace: NewtonWorkspace,
-) -> Cycle:
+) -> CycleOutcome:
     """The outcome of the search for the cycle on the branch from the Hopf point below the force of the rod.
 
     outcome: outcome to which the quantities of the cycle are added, or only a status and a message if no
@@ -229,14 +234,14 @@ def _outcome_of_motion(
     return classify_quasiperiodic(transient.follow(start), transient)
 
 
-def _with_cycle_quantities(cycle: Cycle, refined: RefinedCycle, request: CycleRequest) -> Cycle:
+def _with_cycle_quantities(cycle: CycleOutcome, refined: RefinedCycle, request: CycleRequest) -> CycleOutcome:
     """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
     `refined`."""
     cycle = with_measures(cycle, request, refined.path, refined.measures, refined.errors)
     return _with_multipliers(cycle, refined)
 
 
-def _with_multipliers(cycle: Cycle, refined: RefinedCycle) -> Cycle:
+def _with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome:
     """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
     list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
     mu = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)

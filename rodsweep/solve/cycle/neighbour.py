@@ -17,7 +17,7 @@ import numpy as np
 from ...arrays import Array, Complex
 from ...discretization.stress.form import StressForm
 from ..orbit.matrix.workspace import NewtonWorkspace
-from ..orbit.measures import CyclePath
+from ..orbit.measures import CycleMotion
 from ..orbit.mesh_choice import regraded
 from ..orbit.newton import ConvergedOrbit, newton, with_matrix_within_distance
 from ..orbit.orbit_mesh import OrbitMesh, mesh_of
@@ -25,8 +25,8 @@ from ..orbit.stored_orbit import orbit_arrays, orbit_from_arrays
 from ..unsolvable import Unsolvable
 from .accuracy.calibration import Calibration
 from .accuracy.cheapest_mesh import cheapest_mesh
-from .accuracy.cycle_verdict import RefinedCycle
 from .accuracy.error_indicators import error_indicators
+from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
@@ -97,7 +97,7 @@ class CycleStart:
 
     def arrays(self) -> CheckpointArrays:
         """All data as named arrays, for a checkpoint: orbit (N,), data (m, N + 1), offsets ("places") and
-        orders (m,), eigenvalues (n,), meshes, symmetry, rod with its build, and calibration; N, m: as in
+        orders (m,), eigenvalues (n,), meshes, symmetry, rod with its material, and calibration; N, m: as in
         `CyclePredictor`."""
         branch = self.predictor
         arrays: dict[str, Any] = {
@@ -161,14 +161,14 @@ def cycle_from_neighbour(
 
     form: the rod, on any mesh. accuracy: requested relative accuracy. workspace: memory of Newton's matrices.
     """
-    if form.rod.build != neighbour.predictor.orbit.form.rod.build:
+    if form.rod.material != neighbour.predictor.orbit.form.rod.material:
         raise Unsolvable("the neighbouring rod has another constitutive law or another profile along the rod")
     if form.unknown_velocities != neighbour.predictor.orbit.form.unknown_velocities:
         raise Unsolvable(
             "the rods have different unknowns: velocities are unknowns only at small axial or rotational drag"
         )
     solved = _cycle_on_next_mesh(neighbour, form, name, accuracy, workspace)
-    path = CyclePath(solved.orbit)
+    path = CycleMotion(solved.orbit)
     change = relative_parameter_difference(neighbour.predictor.orbit.form, form, name)
     calibration = neighbour.calibration.scaled_on_chain(solved.orbit, change, error_indicators(solved, path))
     if calibration.is_valid:

@@ -13,7 +13,7 @@ from ...model.rod import Rod
 from ..hopf.normal_form import normal_form_by_mesh_rule
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..unsolvable import Unsolvable
-from .accuracy.cycle_verdict import RefinedCycle
+from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
 from .cycle import CycleRequest
 from .hopf_start import orbit_near_hopf
@@ -35,17 +35,21 @@ MOTION_DECAY_SETTINGS = MotionDecaySettings()
 
 
 def stable_cycle_near_hopf(
-    form: StressForm, w: complex, request: CycleRequest, parameter: str | None, workspace: NewtonWorkspace
+    form: StressForm,
+    w: complex,
+    request: CycleRequest,
+    parameter_name: str | None,
+    workspace: NewtonWorkspace,
 ) -> RefinedCycle | None:
     """The stable small cycle near a Hopf point to which the motion from the requested start converges; None
     if no such cycle is found, or if the modulus of its largest nontrivial multiplier is close to 1.
 
-    form: the discretized rod. w: leading eigenvalue of the straight rod. parameter: parameter along
+    form: the discretized rod. w: leading eigenvalue of the straight rod. parameter_name: parameter along
     which the tangent of the cycle is computed, or None. workspace: memory of Newton's matrices.
     """
     try:
         cycle = refined_cycle(
-            orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, parameter
+            orbit_near_hopf(form, w, request.amplitude), request.accuracy, workspace, parameter_name
         )
     except Unsolvable:
         return None

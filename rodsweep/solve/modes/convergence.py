@@ -31,7 +31,7 @@ class ModeMeshSettings:
     """Maximum number of meshes after the first, each finer than its predecessor."""
     max_unknowns: int = 1500
     """Largest number of unknowns of a mesh; dense linear algebra on a larger mesh takes seconds."""
-    finest_accuracy: float = 1e-24
+    min_accuracy: float = 1e-24
     """The first mesh is chosen for a relative accuracy of eigenvalues not smaller than this."""
     condition_rounding_factor: float = 2.0
     """Relative rounding error of a condition number, divided by (rounding error of the eigenvalue)/(distance
@@ -43,7 +43,7 @@ MODE_MESH_SETTINGS = ModeMeshSettings()
 
 def mesh_accuracy_for_modes(accuracy: float) -> float:
     """Relative accuracy of eigenvalues for the first mesh if the modes need the accuracy `accuracy`."""
-    return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.finest_accuracy)
+    return max(mesh_accuracy(accuracy, True), MODE_MESH_SETTINGS.min_accuracy)
 
 
 def converged_modes(
@@ -97,7 +97,7 @@ def _with_errors_from_coarse(coarse: ModeVectors, fine: ModeVectors, separations
         MODE_MESH_SETTINGS.condition_rounding_factor
         * (1 - 1 / fine.condition**2)
         * fine.rounding
-        / np.maximum(separations, EXPONENT_SETTINGS.least_divisor)
+        / np.maximum(separations, EXPONENT_SETTINGS.min_divisor)
     )
     condition_change = np.abs(coarse.condition / fine.condition - 1)
     return replace(fine, mode_error=error, condition_error=condition_change + angles)

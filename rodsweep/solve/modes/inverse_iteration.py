@@ -83,16 +83,17 @@ def mode_vectors(rod: Rod, pencil: AnyPencil, eigenvalues: Complex, points: Arra
     )
 
 
-def nan_mode_vectors(resolution: Resolution, modes: int, points: int) -> ModeVectors:
-    """Placeholder for modes that were not computed: all entries NaN. modes, points: their numbers."""
-    shape = np.full((2, modes, points), COMPLEX_NAN)
-    numbers = np.full(modes, np.nan)
+def nan_mode_vectors(resolution: Resolution, mode_count: int, point_count: int) -> ModeVectors:
+    """Placeholder for modes that were not computed: all entries NaN. mode_count, point_count: their
+    numbers."""
+    shape = np.full((2, mode_count, point_count), COMPLEX_NAN)
+    numbers = np.full(mode_count, np.nan)
     return ModeVectors(
         resolution=resolution,
         right_modes=shape,
         mode_strains=shape,
         left_modes=shape,
-        pairing=np.full(modes, COMPLEX_NAN),
+        pairing=np.full(mode_count, COMPLEX_NAN),
         condition=numbers,
         rounding=numbers,
         mode_error=numbers,

@@ -30,9 +30,9 @@ class FixedTipSettings:
     start_angle: float = 0.8
     """Angle theta of the tip, in rad, at the start of the path of targets; not 0, because the tip of a
     straight rod cannot move towards the clamp."""
-    first_step: float = 0.1
+    first_step_fraction: float = 0.1
     """First step of the target, as a fraction of the path of targets."""
-    min_step: float = 1e-3
+    min_step_fraction: float = 1e-3
     """If a step of the target, as a fraction of the path, is smaller, the search ends at the last target."""
     max_iterations: int = 12
     """Maximum number of Newton iterations for one target."""
@@ -59,8 +59,8 @@ def bent_state_with_tip_at(system: ExplicitSystem, x: float, y: float) -> Array:
     end = np.array([min(hypot(x, y), FIXED_TIP_SETTINGS.max_tip_distance * bending.length), atan2(y, x)])
     force = np.zeros(2)
     solved_fraction = 0.0
-    step = FIXED_TIP_SETTINGS.first_step
-    while solved_fraction < 1 and step > FIXED_TIP_SETTINGS.min_step:
+    step = FIXED_TIP_SETTINGS.first_step_fraction
+    while solved_fraction < 1 and step > FIXED_TIP_SETTINGS.min_step_fraction:
         fraction = min(1.0, solved_fraction + step)
         radius, angle = start + fraction * (end - start)
         solution = bending.newton_to_target(Pi, force, radius * np.array([np.cos(angle), np.sin(angle)]))

@@ -27,7 +27,7 @@ class LeadingMode:
     def period(self) -> float:
         """Period 2 pi/Im w in tau2, or the time constant 1/|w| of a mode that does not oscillate."""
         settings = EXPONENT_SETTINGS
-        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), settings.least_divisor)
+        return 2 * np.pi / self.w.imag if self.w.imag else 1 / max(abs(self.w.real), settings.min_divisor)
 
 
 def leading_mode(system: ExplicitSystem) -> LeadingMode:

@@ -39,7 +39,7 @@ def element_order_ratios(orbit: Orbit, order: int, max_tail: float) -> tuple[flo
     if len(coefficients) == 1:
         return ()
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
-    scales = np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
+    scales = np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
     orders = np.array(
         [_needed_order((c / scales[:, None]).max(axis=0), max_tail, order) for c in coefficients]
     )

@@ -11,7 +11,7 @@ from ...discretization.element_strains import index_before_jump
 from ...discretization.elements.trigonometric import series_maxima, series_samples
 
 if TYPE_CHECKING:
-    from .measures import CyclePath
+    from .measures import CycleMotion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class LeastStretchSettings:
 LEAST_STRETCH_SETTINGS = LeastStretchSettings()
 
 
-def least_stretch_between_nodes(path: "CyclePath", nodal_minimum: float) -> float:
+def least_stretch_between_nodes(path: "CycleMotion", nodal_minimum: float) -> float:
     """Smallest h1 of a cycle over rod and period: the smallest nodal value `nodal_minimum` if it exceeds
     `safe_nodal_stretch`, else the smallest sampled value if it exceeds `safe_sampled_stretch`, else the
     minimum found by a search around the position of the smallest sampled value.
@@ -46,7 +46,7 @@ def least_stretch_between_nodes(path: "CyclePath", nodal_minimum: float) -> floa
     return min(nodal_minimum, least_stretch(path, LEAST_STRETCH_SETTINGS.safe_sampled_stretch))
 
 
-def least_stretch(path: "CyclePath", safe_stretch: float = inf) -> float:
+def least_stretch(path: "CycleMotion", safe_stretch: float = inf) -> float:
     """Smallest h1 of a cycle over the whole rod and the whole period. safe_stretch: a smallest sampled value
     above `safe_stretch` is returned without a search between the sampled positions."""
     from scipy.optimize import minimize_scalar  # slow import: 0.1 s, for few runs
@@ -62,7 +62,7 @@ def least_stretch(path: "CyclePath", safe_stretch: float = inf) -> float:
         )
 
     def least(u: Array) -> Array:
-        return least_of(c @ mesh.element_evaluation_matrix(u).T)
+        return least_of(c @ mesh.one_sided_evaluation_matrix(u).T)
 
     left_indices = [index_before_jump(int(node), mesh.element_nodes) for node in form.nodal_rod.jumps]
     jump_minimum = float(

@@ -58,7 +58,7 @@ class CycleMeasures:
     least_stretch: float = nan
 
 
-class CyclePath:
+class CycleMotion:
     """Motion of `orbit` over its whole period, as trigonometric polynomials. tip_samples: (x, y, theta) of
     the tip at equidistant times of the period, (m, 3). last_tip_coefficients: Fourier coefficients of (x, y,
     theta) in mesh time, (count, 3), whose size measures the error of the polynomials."""
@@ -159,19 +159,19 @@ class CyclePath:
         periods."""
         return time_of_rise_through_mean(self.tip_samples[:, 1])
 
-    def tip_from_mean_crossing(self, samples: int) -> Array:
-        """(x, y, theta) of the tip at `samples` equidistant times of a period from `mean_crossing_time`, (3,
-        samples)."""
-        return self._series_from_mean_crossing(self.tip_coefficients, samples).T
+    def tip_from_mean_crossing(self, sample_count: int) -> Array:
+        """(x, y, theta) of the tip at `sample_count` equidistant times of a period from `mean_crossing_time`,
+        (3, samples)."""
+        return self._series_from_mean_crossing(self.tip_coefficients, sample_count).T
 
-    def energy_and_powers(self, samples: int) -> Array:
-        """(elastic energy U, injected power, dissipated power) at `samples` equidistant times of a period
-        from `mean_crossing_time`, (3, samples)."""
+    def energy_and_powers(self, sample_count: int) -> Array:
+        """(elastic energy U, injected power, dissipated power) at `sample_count` equidistant times of a
+        period from `mean_crossing_time`, (3, samples)."""
         period = self.orbit.period
         # Factors of the time derivative of Fourier coefficients.
         times = 2j * np.pi / period * np.arange(len(self.tip_coefficients))
-        theta = self.tip_from_mean_crossing(samples)[2]
-        dx, dy, _ = self._series_from_mean_crossing(times[:, None] * self.tip_coefficients, samples).T
+        theta = self.tip_from_mean_crossing(sample_count)[2]
+        dx, dy, _ = self._series_from_mean_crossing(times[:, None] * self.tip_coefficients, sample_count).T
         # Power of the follower force: F along -e1 of the tip, times the tip's velocity.
         injection = -self.orbit.form.rod.F * (np.cos(theta) * dx + np.sin(theta) * dy)
         U = self.orbit.form.elastic_energy(self._equidistant_states)
@@ -183,18 +183,20 @@ class CyclePath:
             U = np.tile(U, 2)
             rates = np.tile(rates, 2)
         c = self._in_time(hermite_coefficients(U, rates))
-        U, change = self._series_from_mean_crossing(np.stack([c, times[: len(c)] * c], axis=1), samples).T
+        U, change = self._series_from_mean_crossing(
+            np.stack([c, times[: len(c)] * c], axis=1), sample_count
+        ).T
         # The energy balance holds to rounding error: dissipation is injection minus dU/dt.
         return np.stack([U, injection, injection - change])
 
-    def shapes_from_mean_crossing(self, count: int, nodes: int) -> Array:
+    def shapes_from_mean_crossing(self, count: int, node_count: int) -> Array:
         """(x, y, theta) of the rod at `count` equidistant times of a period from `mean_crossing_time` and at
-        `nodes` Lobatto nodes, (3, count, nodes)."""
+        `node_count` Lobatto nodes, (3, count, nodes)."""
         strains = self._series_from_mean_crossing(self.strain_coefficients, count).swapaxes(0, 1)
         mesh = self.orbit.form.mesh
         return shape_from_strains(
             mesh, np.ascontiguousarray(strains), np.zeros(3)
-        ) @ _matrix_to_lobatto_nodes(mesh, nodes)
+        ) @ _matrix_to_lobatto_nodes(mesh, node_count)
 
     def _series_from_mean_crossing(self, c: Complex, count: int) -> Array:
         """Re sum_k c_k exp(2 pi i k t) at `count` equidistant times t of a period from `mean_crossing_time`,
@@ -204,13 +206,13 @@ class CyclePath:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _matrix_to_lobatto_nodes(mesh: Mesh, nodes: int) -> Array:
+def _matrix_to_lobatto_nodes(mesh: Mesh, node_count: int) -> Array:
     """Matrix, (nodes of `mesh`, nodes): values at all nodes of the mesh `mesh` times this matrix are the
-    values at `nodes` Lobatto nodes of the rod."""
-    return mesh.evaluation_matrix(lobatto_points(nodes)).T
+    values at `node_count` Lobatto nodes of the rod."""
+    return mesh.evaluation_matrix(lobatto_points(node_count)).T
 
 
-def measures_of(path: CyclePath) -> CycleMeasures:
+def measures_of(path: CycleMotion) -> CycleMeasures:
     """Scalar measures and harmonics of the orbit of `path`."""
     orbit = path.orbit
     y = path.tip_coefficients[:, 1]
@@ -228,4 +230,4 @@ def measures_of(path: CyclePath) -> CycleMeasures:
 
 def least_stretch_of_orbit(orbit: Orbit) -> float:
     """Smallest h1 of an orbit over rod and period, also between the nodes where it is small."""
-    return least_stretch_between_nodes(CyclePath(orbit), orbit.form.least_stretch(orbit.all_states))
+    return least_stretch_between_nodes(CycleMotion(orbit), orbit.form.least_stretch(orbit.all_states))

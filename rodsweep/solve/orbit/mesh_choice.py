@@ -21,9 +21,9 @@ def cheapest_stage_count(accuracy: float) -> int:
     )
 
 
-def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
-    """The coarsest mesh with `stages` stages that is expected to reach the relative accuracy `accuracy`, from
-    the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
+def mesh_from_tails(orbit: Orbit, accuracy: float, stage_count: int) -> OrbitMesh:
+    """The coarsest mesh with `stage_count` stages that is expected to reach the relative accuracy `accuracy`,
+    from the tails of the nearby orbit `orbit`; by `ORBIT_MESH_SETTINGS` not coarser than `min_order` and
     `min_intervals`, and finer than the mesh of `orbit` at most by `max_order_increase` and
     `max_interval_ratio`."""
     current_mesh = mesh_of(orbit)
@@ -44,7 +44,7 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         order = ceil(ORBIT_MESH_SETTINGS.halving_order_ratio * order)
         edges = halve_elements(edges)
         ratios = ratios_of_halves(ratios)
-    grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stages)
+    grading, interval_ratio = grading_and_interval_ratio(orbit, max_time_tail, stage_count)
     intervals = ceil(current_mesh.interval_count * interval_ratio)
     order = min(
         max(order, ORBIT_MESH_SETTINGS.min_order), current_mesh.order + ORBIT_MESH_SETTINGS.max_order_increase
@@ -53,23 +53,23 @@ def mesh_from_tails(orbit: Orbit, accuracy: float, stages: int) -> OrbitMesh:
         max(intervals, ORBIT_MESH_SETTINGS.min_intervals),
         ORBIT_MESH_SETTINGS.max_interval_ratio * current_mesh.interval_count,
     )
-    return OrbitMesh(edges, order, intervals, stages, ratios, grading)
+    return OrbitMesh(edges, order, intervals, stage_count, ratios, grading)
 
 
-def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stages: int) -> tuple[TimeGrading, float]:
+def grading_and_interval_ratio(orbit: Orbit, max_tail: float, stage_count: int) -> tuple[TimeGrading, float]:
     """Returns (grading, ratio): the grading of the time intervals that needs the fewest intervals, and the
     ratio of this number to the present number of `orbit`. max_tail: largest allowed tail in time. stages:
     number of stages of an interval."""
     # For a different number of stages the tail in an interval is about a power of the known tail.
     tails = np.maximum(tails_of_intervals(orbit), ORBIT_MESH_SETTINGS.min_tail) ** (
-        stages / orbit.stage_count
+        stage_count / orbit.stage_count
     )
     edges = np.append(0.0, np.cumsum(interval_lengths(*orbit.time_mesh[::2])))
-    fitted = fitted_grading(tails, edges, stages, 2 // orbit.symmetry.period_parts)
+    fitted = fitted_grading(tails, edges, stage_count, 2 // orbit.symmetry.period_parts)
     middles = (edges[1:] + edges[:-1]) / 2
     full_lengths = np.diff(edges) * (orbit.interval_count - 1)
     # A tail is proportional to (length of the interval)**stages.
-    ratios = (tails / max_tail) ** (1 / stages) / full_lengths
+    ratios = (tails / max_tail) ** (1 / stage_count) / full_lengths
     candidates = {
         grading: float((ratios * grading.rates(grading.mesh_times(middles))).max())
         for grading in (orbit.grading, UNIFORM_TIME, fitted)

@@ -69,16 +69,16 @@ class ConvergedOrbit:
 
 
 def newton(
-    orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter: str | None = None
+    orbit: Orbit, tolerance: float, workspace: NewtonWorkspace, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The periodic orbit near the start `orbit`, by Newton's method; raises Unsolvable if the method does not
     converge.
 
-    tolerance: relative tolerance of states and period. workspace: memory of the matrices. parameter: name of
-    the parameter for the `tangent` of the matrix, or None. A matrix is used again as long as the Newton steps
-    decrease fast.
+    tolerance: relative tolerance of states and period. workspace: memory of the matrices. parameter_name:
+    name of the parameter for the `tangent` of the matrix, or None. A matrix is used again as long as the
+    Newton steps decrease fast.
     """
-    matrix = Linearisation(orbit, workspace, parameter)
+    matrix = Linearisation(orbit, workspace, parameter_name)
     distance = 0.0
     previous_change = np.inf
     step = matrix.step
@@ -108,7 +108,7 @@ def newton(
             return ConvergedOrbit(orbit, matrix, distance)
         # A correction with the old factors is far cheaper than a new elimination.
         if change > ORBIT_NEWTON_SETTINGS.new_matrix_ratio * min(previous_change, 1.0):
-            matrix = Linearisation(orbit, workspace, parameter)
+            matrix = Linearisation(orbit, workspace, parameter_name)
             distance = 0.0
             step = matrix.step
         else:
@@ -121,22 +121,22 @@ def newton(
 
 
 def with_matrix_within_distance(
-    solved: ConvergedOrbit, distance: float, parameter: str | None = None
+    solved: ConvergedOrbit, distance: float, parameter_name: str | None = None
 ) -> ConvergedOrbit:
     """The orbit `solved`, after one more Newton step if its matrix was assembled at a relative distance of
-    more than `distance` from the orbit. parameter: name of the parameter for
+    more than `distance` from the orbit. parameter_name: name of the parameter for
     the `tangent` of the matrix, or None."""
     if solved.matrix_distance <= distance:
         return solved
-    return newton_step(solved, parameter)
+    return newton_step(solved, parameter_name)
 
 
-def newton_step(solved: ConvergedOrbit, parameter: str | None = None) -> ConvergedOrbit:
+def newton_step(solved: ConvergedOrbit, parameter_name: str | None = None) -> ConvergedOrbit:
     """The orbit `solved` after one more Newton step, with the matrix at the orbit before this step.
-    parameter: name of the parameter for
+    parameter_name: name of the parameter for
     the `tangent` of the matrix, or None."""
     orbit = solved.orbit
-    matrix = Linearisation(orbit, solved.workspace, parameter)
+    matrix = Linearisation(orbit, solved.workspace, parameter_name)
     return ConvergedOrbit(orbit.plus_change(matrix.step), matrix, relative_change(orbit, matrix.step))
 
 

@@ -44,12 +44,12 @@ class Orbit:
 
     @classmethod
     def from_states(
-        cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stages: int
+        cls, form: StressForm, symmetry: Symmetry, period: float, states: Array, stage_count: int
     ) -> "Orbit":
         """The orbit with the period `period`, in tau2. states: states at t = 0 and at all stages, (1 + K s,
-        n). stages: number s of stages of an interval."""
+        n). stage_count: number s of stages of an interval."""
         values = np.append(states.ravel(), period)
-        return cls(form, symmetry, (len(states) - 1) // stages, stages, values)
+        return cls(form, symmetry, (len(states) - 1) // stage_count, stage_count, values)
 
     @property
     def period(self) -> float:
@@ -134,19 +134,19 @@ class Orbit:
         return states
 
     def on_mesh(
-        self, target: Mesh, intervals: int, stages: int, grading: TimeGrading | None = None
+        self, target: Mesh, interval_count: int, stage_count: int, grading: TimeGrading | None = None
     ) -> "Orbit":
-        """The orbit interpolated to the space mesh `target` and to `intervals` time intervals with `stages`
-        stages each and the grading `grading`, or the grading of this orbit."""
+        """The orbit interpolated to the space mesh `target` and to `interval_count` time intervals with
+        `stage_count` stages each and the grading `grading`, or the grading of this orbit."""
         grading = grading or self.grading
-        points = self._at_times_of(self.values, (intervals, stages, grading))
+        points = self._at_times_of(self.values, (interval_count, stage_count, grading))
         if target != self.form.mesh:
             points = self.form.states_on_mesh(target, points)
         return replace(
             self,
             form=replace(self.form, mesh=target),
-            interval_count=intervals,
-            stage_count=stages,
+            interval_count=interval_count,
+            stage_count=stage_count,
             values=np.append(points.ravel(), self.period),
             grading=grading,
         )
@@ -169,43 +169,43 @@ class Orbit:
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
 def _orbit_equations(
-    form: StressForm, symmetry: Symmetry, intervals: int, stages: int, grading: TimeGrading
+    form: StressForm, symmetry: Symmetry, interval_count: int, stage_count: int, grading: TimeGrading
 ) -> OrbitEquations:
     """Data of the discretised equations of an orbit with the given form, symmetry, and time intervals;
     cached."""
-    d = radau_method(stages).differentiation_matrix
-    lengths = interval_lengths(intervals, grading)
+    d = radau_method(stage_count).differentiation_matrix
+    lengths = interval_lengths(interval_count, grading)
     S = symmetry.matrix(form.layout)
     parts = float(symmetry.period_parts)
     return OrbitEquations(form.nodal_rod, form.mesh.matrices, form.mass_diagonal, d, lengths, S, parts)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)
-def interval_lengths(intervals: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+def interval_lengths(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
     """Lengths of the time intervals as fractions of the solved duration, (intervals,). In the mesh time of
     `grading` the last two intervals are half as long as the other intervals, which have equal lengths.
 
     Because modes decay within an interval, the error at the end of an interval depends mainly on the length
     of this interval. The largest y is taken at the end of the last interval, which is therefore short.
     """
-    lengths = np.append(np.ones(intervals - 2), (0.5, 0.5)) / (intervals - 1)
+    lengths = np.append(np.ones(interval_count - 2), (0.5, 0.5)) / (interval_count - 1)
     if grading.is_uniform:
         return lengths
     edges = np.append(np.append(0.0, np.cumsum(lengths[:-1])), 1.0)
     return np.diff(grading.times(edges))
 
 
-def interval_starts(intervals: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+def interval_starts(interval_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
     """Start times of the time intervals as fractions of the solved duration, (intervals,)."""
-    return np.append(0.0, np.cumsum(interval_lengths(intervals, grading)[:-1]))
+    return np.append(0.0, np.cumsum(interval_lengths(interval_count, grading)[:-1]))
 
 
-def node_times(intervals: int, stages: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
-    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K `intervals`
-    with s `stages` each and the grading `grading`."""
-    starts = interval_starts(intervals, grading)[:, None]
-    lengths = interval_lengths(intervals, grading)[:, None]
-    return np.append(0.0, starts + lengths * radau_method(stages).nodes)
+def node_times(interval_count: int, stage_count: int, grading: TimeGrading = UNIFORM_TIME) -> Array:
+    """Times of the start and of all stages as fractions of the solved duration, (1 + K s,), for K
+    `interval_count` with s `stage_count` each and the grading `grading`."""
+    starts = interval_starts(interval_count, grading)[:, None]
+    lengths = interval_lengths(interval_count, grading)[:, None]
+    return np.append(0.0, starts + lengths * radau_method(stage_count).nodes)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_mesh_pairs)

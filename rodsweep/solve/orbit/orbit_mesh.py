@@ -71,7 +71,7 @@ class OrbitMeshSettings:
 ORBIT_MESH_SETTINGS = OrbitMeshSettings()
 
 
-def mesh_limit() -> MeshLimitReached:
+def mesh_limit_error() -> MeshLimitReached:
     """The exception for a cycle that needs a mesh of more than the allowed size; names the limits."""
     return MeshLimitReached(
         f"no mesh of at most {ORBIT_MESH_SETTINGS.max_unknowns} unknowns and "

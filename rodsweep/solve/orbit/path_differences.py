@@ -5,14 +5,14 @@ import numpy as np
 from ...arrays import Array
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
-from .measures import CyclePath
+from .measures import CycleMotion
 from .orbit import Orbit
 
 PERIOD_INDEX, Y_INDEX, EXTREMUM_INDEX, PATH_INDEX = range(4)
 """Indices into the array that `path_differences` returns."""
 
 
-def path_differences(coarse: CyclePath, fine: CyclePath) -> Array:
+def path_differences(coarse: CycleMotion, fine: CycleMotion) -> Array:
     """Differences of two paths, (4,): difference of the period, of the largest y, of the extremum with the
     largest difference, and largest difference of the tip's x, y or theta over the period.
 

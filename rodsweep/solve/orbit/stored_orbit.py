@@ -7,7 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...discretization.stress.form import StressForm
-from ...model.material.build import Build
+from ...model.material.rod_material import RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from .orbit import Orbit
@@ -16,11 +16,12 @@ from .symmetry import NO_SYMMETRY, REFLECTION
 
 
 def orbit_arrays(orbit: Orbit) -> dict[str, Array]:
-    """The orbit as named arrays: values (N,), rod (parameters,) with its build (bytes,), mesh, symmetry."""
+    """The orbit as named arrays: values (N,), rod (parameters,) with its material (bytes,), mesh,
+    symmetry."""
     return {
         "rod": np.array(list(orbit.form.rod.values.values())),
         # Checkpoints hold arrays only, so a text is stored as its bytes.
-        "build": np.frombuffer(orbit.form.rod.build.json_text.encode(), np.uint8),
+        "build": np.frombuffer(orbit.form.rod.material.json_text.encode(), np.uint8),
         "symmetric": np.array(orbit.is_symmetric),
         "mesh": mesh_of(orbit).as_array,
         "orbit": orbit.values,
@@ -32,7 +33,7 @@ def orbit_from_arrays(arrays: Mapping[str, Array], keeps_omega: bool = False) ->
     in `StressForm`."""
     mesh = OrbitMesh.from_array(arrays["mesh"])
     parameters: dict[str, Any] = dict(zip(PARAMETERS, map(float, arrays["rod"]), strict=True))
-    rod = Rod(**parameters, build=Build.from_json_text(bytes(arrays["build"]).decode()))
+    rod = Rod(**parameters, material=RodMaterial.from_json_text(bytes(arrays["build"]).decode()))
     form = StressForm(rod, mesh.space_mesh, keeps_omega)
     symmetry = REFLECTION if arrays["symmetric"] else NO_SYMMETRY
     return Orbit(form, symmetry, mesh.interval_count, mesh.stage_count, arrays["orbit"], mesh.grading)

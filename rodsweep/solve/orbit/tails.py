@@ -31,7 +31,7 @@ class CoefficientTailSettings(KernelConstants):
     """Lower limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
     max_decay: float = 1.2
     """Upper limit of the measured decay of the coefficients in space, as the natural logarithm per order."""
-    rounding: float = 1e-16
+    min_tail_ratio: float = 1e-16
     """Coefficients smaller than this number times the largest coefficient are replaced by this limit in the
     measurement of the decay."""
     last_coefficients: int = 4
@@ -59,7 +59,7 @@ def tails_of(orbit: Orbit) -> CoefficientTails:
     scales = np.max([c.max(axis=1) for c in coefficients], axis=0)
     # Two coefficients, because the last coefficient may vanish by parity.
     ends = np.max([np.hypot(c[:, -1], c[:, -2]) for c in coefficients], axis=0)
-    last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.least_divisor)
+    last_coefficients = ends / np.maximum(scales, EXPONENT_SETTINGS.min_divisor)
     finest = np.max([c for c in coefficients if c.shape[1] == orbit.form.mesh.order + 1], axis=0)
     return CoefficientTails(
         float(last_coefficients.max()), float(tails_of_intervals(orbit).max()), _coefficient_decay(finest)
@@ -73,13 +73,13 @@ def _coefficient_decay(c: Array) -> float:
     `COEFFICIENT_TAIL_SETTINGS.max_decay`. c: moduli of the coefficients of orders 0 to p, (fields, p + 1)."""
     fields, size = c.shape
     middle = (size - 1) / 2 + (size // 2) / 2
-    envelope = COEFFICIENT_TAIL_SETTINGS.rounding
+    envelope = COEFFICIENT_TAIL_SETTINGS.min_tail_ratio
     slope_sum = 0.0
     squares = 0.0
     # From the last coefficient down: `highest` is an envelope, on which single zeros have no effect.
     for k in range(size - 1, size // 2 - 1, -1):
         for a in range(fields):
-            envelope = max(envelope, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.least_divisor))
+            envelope = max(envelope, c[a, k] / max(c[a].max(), EXPONENT_SETTINGS.min_divisor))
         slope_sum += (k - middle) * np.log(envelope)
         squares += (k - middle) ** 2
     # Slope of the least-squares line through the logarithms.
@@ -135,7 +135,7 @@ def smooth_tails(orbit: Orbit) -> Array:
         [largest_norms(values, _last_columns_of_analysis_matrix(values.shape[2] - 1)) for values in stresses],
         axis=0,
     )
-    space_tails = ends / np.maximum(max_stress, EXPONENT_SETTINGS.least_divisor)
+    space_tails = ends / np.maximum(max_stress, EXPONENT_SETTINGS.min_divisor)
     return np.array([float(space_tails.max()), float(tails_of_intervals(orbit).max())])
 
 
@@ -190,10 +190,10 @@ def tails_of_intervals(orbit: Orbit) -> Array:
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_pencils)
-def _last_coefficient_weights(stages: int) -> Array:
+def _last_coefficient_weights(stage_count: int) -> Array:
     """Weights, (s + 1,), with which the values at the start and the stages of an interval give its last
     Legendre coefficient."""
-    nodes: Array = np.append(0.0, radau_method(stages).nodes)
+    nodes: Array = np.append(0.0, radau_method(stage_count).nodes)
     row: Array = legendre_analysis_matrix(2 * nodes - 1)[-1]
     return row
 
@@ -209,7 +209,7 @@ def relative_tails_in_time(points: Array, row: Array, nodes: int) -> Array:
     s = len(row) - 1
     tails = np.zeros((len(points) - 1) // s)
     for a in range(PLANE_COMPONENT_COUNT):
-        max_value = EXPONENT_SETTINGS.least_divisor
+        max_value = EXPONENT_SETTINGS.min_divisor
         for m in range(len(points)):
             size = 0.0
             for i in range(nodes):

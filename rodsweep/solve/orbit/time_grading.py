@@ -97,15 +97,15 @@ UNIFORM_TIME = TimeGrading()
 """Intervals of equal length."""
 
 
-def fitted_grading(tails: Array, edges: Array, stages: int, harmonic: int) -> TimeGrading:
+def fitted_grading(tails: Array, edges: Array, stage_count: int, harmonic: int) -> TimeGrading:
     """The grading for which the tails of all intervals are as equal as possible. tails: last Legendre
     coefficients in the intervals of an orbit, (K,). edges: times of the ends of these intervals, as
-    fractions of the solved part of the period, (K + 1,). stages: number of stages of an interval. harmonic:
-    `TimeGrading.harmonic` of the result."""
+    fractions of the solved part of the period, (K + 1,). stage_count: number of stages of an interval.
+    harmonic: `TimeGrading.harmonic` of the result."""
     lengths = np.diff(edges)
     limited = np.maximum(tails, TIME_GRADING_SETTINGS.min_tail_ratio * tails.max())
     # A coefficient of degree s in an interval of length h, over h^(s + 1), is a measure of the error density.
-    increments = limited ** (1 / (stages + 1))
+    increments = limited ** (1 / (stage_count + 1))
     ends = np.cumsum(increments) / increments.sum()
     angles = 2 * np.pi * harmonic * (ends - increments / (2 * increments.sum()))
     # With equal tails tau grows by the increments; these are the Fourier coefficients of dt/dtau.
@@ -118,28 +118,28 @@ def fitted_grading(tails: Array, edges: Array, stages: int, harmonic: int) -> Ti
     return TimeGrading(step * round(factor * cosine / step), step * round(factor * sine / step), harmonic)
 
 
-def coefficients_in_time(c: Complex, grading: TimeGrading, parts: int) -> Complex:
+def coefficients_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Complex:
     """Fourier coefficients in time, (l, ...), of the function Re sum_k c_k exp(2 pi i k tau) of the mesh time
-    tau in periods. c: (k, ...). parts: number of solved parts in a period."""
+    tau in periods. c: (k, ...). part_count: number of solved parts in a period."""
     if grading.is_uniform:
         return c
-    return fourier_coefficients(samples_in_time(c, grading, parts))
+    return fourier_coefficients(samples_in_time(c, grading, part_count))
 
 
-def samples_in_time(c: Complex, grading: TimeGrading, parts: int) -> Array:
+def samples_in_time(c: Complex, grading: TimeGrading, part_count: int) -> Array:
     """Values at equidistant times of the period, (m, ...), of the function of `coefficients_in_time`."""
-    cosines, sines = _waves_at_equal_times(len(c), grading, parts)
+    cosines, sines = _waves_at_equal_times(len(c), grading, part_count)
     columns = c.reshape(len(c), -1)
     samples: Array = cosines @ columns.real - sines @ columns.imag
     return samples.reshape(len(samples), *c.shape[1:])
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _waves_at_equal_times(count: int, grading: TimeGrading, parts: int) -> tuple[Array, Array]:
+def _waves_at_equal_times(count: int, grading: TimeGrading, part_count: int) -> tuple[Array, Array]:
     """Cosines and sines of 2 pi k tau, (m, count) each, k = 0 ... count - 1, at the mesh times tau of m
     equidistant times of the period."""
     samples = TIME_GRADING_SETTINGS.oversampling * (count - 1)
-    part, times = np.divmod(parts * np.arange(samples), samples)
-    mesh_times = (part + grading.mesh_times(times / samples)) / parts
+    part, times = np.divmod(part_count * np.arange(samples), samples)
+    mesh_times = (part + grading.mesh_times(times / samples)) / part_count
     angles = 2 * np.pi * np.outer(mesh_times, np.arange(count))
     return np.cos(angles), np.sin(angles)

@@ -27,27 +27,27 @@ class CandidateSettings(KernelConstants):
 
     max_waves_per_node: float = 2.0
     """A mesh represents eigenvalues with wave number |q| <= `max_waves_per_node` * (elements * order)."""
-    wide_gap: float = 0.2
+    wide_gap_ratio: float = 0.2
     """Gaps between successive real parts, in which a line for a count may lie, are treated as equally wide if
     their width, divided by |Re w| of the left eigenvalue, exceeds this (stable rods)."""
     wide_gap_if_unstable: float = 0.05
-    """Like `wide_gap`, for an unstable rod; less than `wide_gap`, because eigenvalues far to the left
-    converge last and need a finer mesh."""
-    last_line_distance: float = 0.05
+    """Like `wide_gap_ratio`, for an unstable rod; less than `wide_gap_ratio`, because eigenvalues far to the
+    left converge last and need a finer mesh."""
+    last_line_distance_ratio: float = 0.05
     """Distance from the last eigenvalue w found to the last line, to the left of w, divided by |w|."""
-    leader_line_distance: float = 0.5
+    leader_line_distance_ratio: float = 0.5
     """Distance from a followed leading eigenvalue w to the first line for a count, to the left of w, divided
-    by |w|. A count at a distant line needs fewer nodes than at a near line. A line at `last_line_distance`
-    follows in case another eigenvalue lies between w and the first line."""
-    min_gap: float = 1e-6
+    by |w|. A count at a distant line needs fewer nodes than at a near line. A line at
+    `last_line_distance_ratio` follows in case another eigenvalue lies between w and the first line."""
+    min_gap_ratio: float = 1e-6
     """No line is drawn between two real parts if their distance, divided by the modulus of the left real
     part, is at most this."""
     max_count_lines: int = 3
     """Maximum number of lines tried for the count of one rod."""
     proof_line_distance_in_errors: float = 3.0
     """Distance from the last wanted eigenvalue w to the line of a proof without a count: this multiple of the
-    error of w plus `proof_line_distance` * |w|, to the left."""
-    proof_line_distance: float = 1e-9
+    error of w plus `proof_line_distance_ratio` * |w|, to the left."""
+    proof_line_distance_ratio: float = 1e-9
     """Part of the distance in `proof_line_distance_in_errors` that is proportional to |w|, divided by |w|."""
 
 
@@ -64,10 +64,10 @@ class Candidates:
     vectors: Complex | None
     failure: str = ""
 
-    def worst_error(self, modes: int) -> float:
-        """Largest relative error estimate among the first `modes` roots."""
-        errors: Any = self.roots.error[:modes].tolist()
-        w: Any = self.roots.w[:modes].tolist()
+    def worst_error(self, mode_count: int) -> float:
+        """Largest relative error estimate among the first `mode_count` roots."""
+        errors: Any = self.roots.error[:mode_count].tolist()
+        w: Any = self.roots.w[:mode_count].tolist()
         return max(0.0, *map(truediv, errors, map(abs, w)))
 
 
@@ -114,17 +114,18 @@ def candidates_on_mesh(
     return Candidates(mesh, kept_roots, vectors_kept, failure)
 
 
-def compare_with_count(problem: TransverseProblem, roots: Roots, modes: int) -> CountComparison:
+def compare_with_count(problem: TransverseProblem, roots: Roots, mode_count: int) -> CountComparison:
     """Number of eigenvalues to the right of a vertical line, by a proof or a count, compared with those
-    found. The line lies to the left of the `modes` leading eigenvalues and of all unstable eigenvalues."""
+    found. The line lies to the left of the `mode_count` leading eigenvalues and of all unstable
+    eigenvalues."""
     w: Any = roots.w.tolist()  # for so few numbers Python is faster than NumPy
     errors: Any = roots.error.tolist()
-    line = line_for_proof(w[modes - 1], errors[modes - 1])
+    line = line_for_proof(w[mode_count - 1], errors[mode_count - 1])
     is_complete, evaluations = problem.prove_completeness(line, roots)
     if is_complete:
         found_count, are_clear = _count_right_of(line, w, errors)
         return CountComparison(EigenvalueCount(found_count, evaluations), found_count, are_clear)
-    for line in lines_for_count(w, modes):
+    for line in lines_for_count(w, mode_count):
         count = problem.count(line, roots)
         if count.number is not None:
             break
@@ -137,7 +138,7 @@ def line_for_proof(last: complex, error: float) -> float:
     return min(
         last.real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error
-        - CANDIDATE_SETTINGS.proof_line_distance * abs(last),
+        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(last),
         0.0,
     )
 
@@ -149,25 +150,26 @@ def _count_right_of(line: float, w: list[complex], errors: list[float]) -> tuple
     return sum(value.real > line for value in w), are_clear
 
 
-def lines_for_count(w: list[complex], modes: int) -> list[float]:
+def lines_for_count(w: list[complex], mode_count: int) -> list[float]:
     """Real parts of up to `max_count_lines` vertical lines to the right of which eigenvalues are counted,
-    best first: middles of the widest gaps to the left of the `modes` leading and of all unstable eigenvalues.
+    best first: middles of the widest gaps to the left of the `mode_count` leading and of all unstable
+    eigenvalues.
 
-    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap` (unstable rod:
+    w: eigenvalues found, by descending real part. Gaps wider than `wide_gap_ratio` (unstable rod:
     `wide_gap_if_unstable`) are equally good; the rightmost comes first. The last line lies to the left of all
     eigenvalues found.
     """
-    min_gap = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap
-    target = min(w[modes - 1].real, 0.0)
+    min_gap = CANDIDATE_SETTINGS.wide_gap_if_unstable if w[0].real > 0 else CANDIDATE_SETTINGS.wide_gap_ratio
+    target = min(w[mode_count - 1].real, 0.0)
     real_parts = [target] + [value.real for value in w if value.real < target]
     gaps = []
     for right, left in zip(real_parts[:-1], real_parts[1:], strict=True):
         width = (right - left) / abs(left)
-        if width > CANDIDATE_SETTINGS.min_gap:
+        if width > CANDIDATE_SETTINGS.min_gap_ratio:
             gaps.append((min(width, min_gap), (left + right) / 2))
     gaps.sort(key=lambda gap: -gap[0])  # stable sort: the first wide gap stays first
     last_real_part = real_parts[-1]
-    last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance * (
+    last_line = last_real_part - CANDIDATE_SETTINGS.last_line_distance_ratio * (
         abs(w[-1]) if last_real_part < 0 else abs(w[0].real) + 1.0
     )
     return [*(middle for _, middle in gaps[: CANDIDATE_SETTINGS.max_count_lines - 1]), last_line]

@@ -58,8 +58,8 @@ class TransverseProblem(ABC):
         return
 
     @abstractmethod
-    def mesh_for(self, modes: int, accuracy: float) -> Any:
-        """The mesh expected to give `modes` leading eigenvalues with relative error below `accuracy`."""
+    def mesh_for(self, mode_count: int, accuracy: float) -> Any:
+        """The mesh expected to give `mode_count` leading eigenvalues with relative error below `accuracy`."""
 
     def finer_mesh(self, mesh: AnyMesh) -> AnyMesh:
         """The next finer mesh after `mesh`, with about a third more unknowns."""
@@ -107,8 +107,8 @@ class UniformProblem(TransverseProblem):
         self._sqrt_frequency_bound = sqrt(frequency_bound(rod))
         self.has_bound = isfinite(self._sqrt_frequency_bound)
 
-    def mesh_for(self, modes: int, accuracy: float) -> Resolution:
-        return resolution_for(expected_wave_number(modes, self._wave_number), accuracy)
+    def mesh_for(self, mode_count: int, accuracy: float) -> Resolution:
+        return resolution_for(expected_wave_number(mode_count, self._wave_number), accuracy)
 
     def finer_mesh_for_waves(self, mesh: Resolution, waves: Array, accuracy: float) -> Resolution:
         """The mesh for the largest wave number of `waves`, (modes,), and the relative accuracy `accuracy`; at
@@ -150,8 +150,8 @@ class ArmProblem(TransverseProblem):
         right_end = self._hull.a**2 / (4 * (1 - self._hull.c))
         self.shift = max(self.shift, min(2 * self.shift, right_end))
 
-    def mesh_for(self, modes: int, accuracy: float) -> ArmMesh:
-        return arm_mesh(self.rod, modes, accuracy)
+    def mesh_for(self, mode_count: int, accuracy: float) -> ArmMesh:
+        return arm_mesh(self.rod, mode_count, accuracy)
 
     def refined_roots(self, mesh_eigenvalues: Complex, max_q: float) -> Roots:
         """Roots of D refined from `mesh_eigenvalues`, (n,); if a proof is requested, and until one fails,

@@ -138,7 +138,11 @@ class SpectrumSearch:
         if comparison is not None and comparison.agrees and not self.needs_vectors:
             return error
         limits = SEARCH_SETTINGS
-        allowed = limits.max_displacement if self.problem.has_bound else limits.max_displacement_without_bound
+        allowed = (
+            limits.max_root_distance_ratio
+            if self.problem.has_bound
+            else limits.max_root_distance_ratio_without_bound
+        )
         displacement = float(candidates.roots.displacement[: self.modes].max())
         return max(error, displacement / (self.request.accuracy if self.needs_vectors else allowed))
 

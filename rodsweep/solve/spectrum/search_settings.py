@@ -31,12 +31,12 @@ class SearchSettings:
     max_stalled_error_over_limit: float = 0.8
     """Largest ratio of error estimate to requested accuracy, like `max_error_over_limit`, if further meshes
     do not reduce the error."""
-    max_displacement: float = 1e-3
+    max_root_distance_ratio: float = 1e-3
     """Largest relative distance between an eigenvalue of the mesh and the root of D to which it converges. At
     a larger distance the mesh may have missed an eigenvalue."""
-    max_displacement_without_bound: float = 1e-6
-    """Like `max_displacement`, for a rod without an a-priori bound of its eigenvalues, where convergence
-    is the only evidence that no eigenvalue is missing."""
+    max_root_distance_ratio_without_bound: float = 1e-6
+    """Like `max_root_distance_ratio`, for a rod without an a-priori bound of its eigenvalues, where
+    convergence is the only evidence that no eigenvalue is missing."""
 
 
 SEARCH_SETTINGS = SearchSettings()

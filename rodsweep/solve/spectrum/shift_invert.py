@@ -45,7 +45,7 @@ class KrylovSettings:
     """The number of Krylov vectors is at most the number of finite eigenvalues plus this. Applying
     shift-and-invert once, or twice for k2 = inf, removes all components of infinite eigenvalues. A larger
     Krylov space would add only rounding errors, on which LAPACK may fail (trexc)."""
-    start_vector_width: float = 3.3
+    start_vector_width_ratio: float = 3.3
     """Width of the first Krylov vector, a displacement concentrated at the tip, divided by the distance
     between nodes. Every mode moves the tip, and the vector is as smooth as the wanted modes, which saves two
     Krylov steps of eleven."""
@@ -106,7 +106,9 @@ class ShiftInvertSolver(ABC):
             [n, n], csr=(self.row_starts, self.row_starts[:-1], np.ones(n)), comm=PETSc.COMM_SELF
         )
         first = np.zeros(n)
-        distance = (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.start_vector_width
+        distance = (
+            (1 - pattern.node_positions[1:]) * pattern.node_count / KRYLOV_SETTINGS.start_vector_width_ratio
+        )
         first[: pattern.node_count] = np.exp(-(distance**2)) * np.sqrt(mass)
         first[pattern.node_count : 2 * pattern.node_count] = (
             KRYLOV_SETTINGS.start_vector_rotation * first[: pattern.node_count]

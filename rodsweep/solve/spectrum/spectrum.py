@@ -37,13 +37,13 @@ class SpectrumRequest:
 class SpectrumErrorSettings:
     """Settings for the rounding errors of eigenvalues, which are added to the error from the determinant."""
 
-    rounding: float = 6.0
+    rounding_in_ulps: float = 6.0
     """Rounding error of an eigenvalue of a uniform rod, divided by the spacing of doubles at |w|: the
     rounding of w itself and of the coefficients of D."""
     rounding_of_arms: float = 24.0
-    """Like `rounding`, for an arm, whose determinant D is computed with propagators. Every propagator rounds
-    the coefficients of its element, and D may amplify these errors. Among 3960 eigenvalues of random arms,
-    compared with results of 34 digits, the largest error is 1.6 times the stated error."""
+    """Like `rounding_in_ulps`, for an arm, whose determinant D is computed with propagators. Every propagator
+    rounds the coefficients of its element, and D may amplify these errors. Among 3960 eigenvalues of random
+    arms, compared with results of 34 digits, the largest error is 1.6 times the stated error."""
 
 
 SPECTRUM_ERROR_SETTINGS = SpectrumErrorSettings()
@@ -118,7 +118,7 @@ def errors_with_rounding(w: Complex, error: Array, rod: Rod) -> Array:
     """Absolute errors of eigenvalues: `error` of the root of D plus the rounding error of w. w, error: arrays
     of equal shape. rod: the rod, or any rod of the path of these eigenvalues."""
     settings = SPECTRUM_ERROR_SETTINGS
-    rounding = settings.rounding if rod.is_uniform_and_linear else settings.rounding_of_arms
+    rounding = settings.rounding_in_ulps if rod.is_uniform_and_linear else settings.rounding_of_arms
     return error + rounding * ROUND_OFF * np.abs(w)
 
 

@@ -35,10 +35,10 @@ class TwoMeshSettings:
     """The number of requested eigenvalues is doubled until the leading ones change relatively by less."""
     unchanged_rounding_tolerance: float = 3e-11
     """The doubling also ends if the leading eigenvalues change by less than this times (|shift| + F^2). The
-    value is a hundred times `rounding`, as rounding differs between SLEPc's releases and processors."""
+    value is a hundred times `rounding_ratio`, as rounding differs between SLEPc's releases and processors."""
     mesh_error_factor: float = 3.0
     """Safety factor on the difference between two meshes, which estimates the error on the finer mesh."""
-    rounding: float = 3e-13
+    rounding_ratio: float = 3e-13
     """Rounding error of an eigenvalue w, divided by |w| + |shift| + F^2. F^2 is included because the first
     eigenvalue of a pulled rod is exponentially small compared with F^2."""
     min_unknowns_per_mode: int = 3
@@ -98,7 +98,7 @@ def _missed_accuracy_text(problem: TransverseProblem, request: SpectrumRequest, 
     sizes = np.abs(spectrum.eigenvalues)
     relative_errors = spectrum.error_estimate / sizes
     index = int(np.argmax(relative_errors))
-    rounding = TWO_MESH_SETTINGS.rounding * (sizes[index] + _eigenvalue_rounding_scale(problem))
+    rounding = TWO_MESH_SETTINGS.rounding_ratio * (sizes[index] + _eigenvalue_rounding_scale(problem))
     cause = "rounding errors" if rounding > request.accuracy * sizes[index] else "the meshes"
     max_error = float(relative_errors[index])
     return (
@@ -119,19 +119,19 @@ class _MeshEigenvalues(NamedTuple):
     indices: NDArray[np.intp]
 
 
-def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, modes: int) -> _MeshEigenvalues:
-    """Sorted eigenvalues of a mesh. The requested number is doubled until the `modes` leading eigenvalues no
-    longer change. The result is empty if the mesh is too coarse for a doubled request."""
+def _leading_eigenvalues(problem: TransverseProblem, mesh: AnyMesh, mode_count: int) -> _MeshEigenvalues:
+    """Sorted eigenvalues of a mesh. The requested number is doubled until the `mode_count` leading
+    eigenvalues no longer change. The result is empty if the mesh is too coarse for a doubled request."""
     solver = problem.solver(mesh)
-    requested = modes + TWO_MESH_SETTINGS.spare_eigenvalues
+    requested = mode_count + TWO_MESH_SETTINGS.spare_eigenvalues
     # The solver finds the eigenvalues nearest to the shift, which need not lead: more are requested until
     # the leading eigenvalues stay the same.
     previous_w = np.empty(0, complex)
     while True:
         mesh_eigenvalues = solver.solve(problem.rod, problem.shift, requested, to_rounding=True)
         order = np.lexsort((-mesh_eigenvalues.imag, -mesh_eigenvalues.real))
-        leading = mesh_eigenvalues[order[:modes]]
-        is_complete = len(leading) == len(previous_w) == modes
+        leading = mesh_eigenvalues[order[:mode_count]]
+        is_complete = len(leading) == len(previous_w) == mode_count
         rounding_change = TWO_MESH_SETTINGS.unchanged_rounding_tolerance * _eigenvalue_rounding_scale(problem)
         if is_complete and np.allclose(
             leading, previous_w, rtol=TWO_MESH_SETTINGS.unchanged_tolerance, atol=rounding_change
@@ -158,7 +158,7 @@ def _errors_between_meshes(w: Complex, coarser: Complex, scale: float) -> Array:
     crowding_factor = np.sqrt(1 + np.abs(w) / separations.min(axis=1, initial=np.inf))
     errors: Array = TWO_MESH_SETTINGS.mesh_error_factor * max_distances * np.abs(
         w
-    ) + TWO_MESH_SETTINGS.rounding * crowding_factor * (np.abs(w) + scale)
+    ) + TWO_MESH_SETTINGS.rounding_ratio * crowding_factor * (np.abs(w) + scale)
     return errors
 
 

@@ -14,7 +14,7 @@ from ...config.arm.status import CRUSHED, FLUTTER_UNKNOWN, NO_FLUTTER, SLENDER, 
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import ARM_SCALES, LOAD_OF_RATIO, SCALE_NAME
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import NONLINEAR_PARAMETERS, parameter_names_except
 from .flutter_forces import FlutterForce
 from .points import Points
@@ -33,14 +33,14 @@ def grid_of_arms(
     given_parameters: Mapping[str, Array],
     names: tuple[str, ...],
     flutter: FlutterSearch,
-    build: Build = DEFAULT_BUILD,
+    material: RodMaterial = DEFAULT_MATERIAL,
 ) -> Points:
     """Points of a grid over an arm's quantities, and over the parameters in `given_parameters` that have
     several values.
 
     given_parameters: values, (n,), of the parameters that replace the arm's parameters, by name. names: the
-    parameters of the task. flutter: force of first flutter of an arm, for relative loads. build: constitutive
-    law and profile of all arms. Raises ValueError if the rod model applies to no point.
+    parameters of the task. flutter: force of first flutter of an arm, for relative loads. material:
+    constitutive law and profile of all arms. Raises ValueError if the rod model applies to no point.
     """
     arms, statuses = zip(*(_arm_or_status(section, v) for v in section.values_of_arms()), strict=True)
     loads = section.quantity_axes[section.load_key].array() if section.load_key else np.zeros(1)
@@ -59,10 +59,12 @@ def grid_of_arms(
         if section.load_key in LOAD_OF_RATIO:
             units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    builds = tuple(arm.build if arm else DEFAULT_BUILD for arm in arms) if section.is_nonuniform else ()
+    materials = (
+        tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms) if section.is_nonuniform else ()
+    )
     if "F" in table:
-        ratios = build.relative_crushing_forces(table.get("taper", np.ones(1)))
-        if builds:
+        ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
+        if materials:
             ratios = _quantity_of_arms(arms, lambda arm: arm.crushing_force / arm.k1)
         is_crushed = np.broadcast_to(table["F"] >= CRUSHED_FORCE_RATIO * table["k1"] * ratios, shape)
         codes[(codes == SLENDER) & is_crushed] = CRUSHED
@@ -74,7 +76,9 @@ def grid_of_arms(
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     failures = _search_failures(codes, forces)
     stored = codes.astype(np.int8).ravel()
-    return Points(names, columns, False, values, units, builds=builds, arm_statuses=stored, failures=failures)
+    return Points(
+        names, columns, False, values, units, materials=materials, arm_statuses=stored, failures=failures
+    )
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:

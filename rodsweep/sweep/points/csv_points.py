@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from ...config.values import cell_number, short_repr
 from ...errors import InputError
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 from ...wording import enumeration
@@ -21,7 +21,9 @@ LONGEST_LINE = 10_000
 """A CSV file with a line of this many characters or more is refused; a long line could fill the memory."""
 
 
-def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD) -> tuple[Array, ...]:
+def read_points(
+    path: Path, names: tuple[str, ...], material: RodMaterial = DEFAULT_MATERIAL
+) -> tuple[Array, ...]:
     """Columns, (points,) each, of a CSV file that lists points, in the order of the parameters `names`. The
     header has the same names in any order. Raises InputError for an unreadable file, a wrong header, a file
     without points, or parameter values outside the model."""
@@ -35,7 +37,7 @@ def read_points(path: Path, names: tuple[str, ...], build: Build = DEFAULT_BUILD
                 raise InputError(f"{path}: {_header_fault(header)}; it must name {enumeration(names, 'and')}")
             columns = [array("d") for _ in header]  # a Python list would take eight times the memory
             for row in filter(None, rows):
-                numbers = _row_numbers(row, header, f"{path}, line {rows.line_num}", build)
+                numbers = _row_numbers(row, header, f"{path}, line {rows.line_num}", material)
                 for column, number in zip(columns, numbers, strict=True):
                     column.append(number)
     except MemoryError:
@@ -71,7 +73,7 @@ def _lines(file: TextIO, path: Path) -> Iterator[str]:
         yield line
 
 
-def _row_numbers(row: list[str], header: list[str], row_text: str, build: Build) -> list[float]:
+def _row_numbers(row: list[str], header: list[str], row_text: str, material: RodMaterial) -> list[float]:
     """Numbers in a row of the file; InputError for a cell that is not a number, or for values outside the
     model. header: names of the columns. row_text: file and line, for the message."""
     if len(row) != len(header):
@@ -84,7 +86,7 @@ def _row_numbers(row: list[str], header: list[str], row_text: str, build: Build)
             raise InputError(f"{row_text}: {name} = {cell.strip()[:40]!r} is not a number") from None
     parameters: dict[str, Any] = {**NEUTRAL_VALUES, **dict(zip(header, numbers, strict=True))}
     try:
-        Rod(**parameters, build=build)
+        Rod(**parameters, material=material)
     except ValueError as error:
         raise InputError(f"{row_text}: {error}") from None
     return numbers

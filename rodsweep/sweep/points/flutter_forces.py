@@ -15,7 +15,7 @@ from ...config.arm.status import ArmOutsideModel
 from ...errors import InputError
 from ...model.arm.arm import SlenderArm
 from ...model.arm.quantities import LOAD_OF_RATIO
-from ...model.material.build import Build
+from ...model.material.rod_material import RodMaterial
 from ...model.rod import Rod
 
 
@@ -37,17 +37,17 @@ OWN_TAPER: ReplacedTapers = (None,)
 
 
 def rods_needing_flutter_force(
-    section: ArmConfig | None, build: Build | None = None, tapers: ReplacedTapers = OWN_TAPER
+    section: ArmConfig | None, material: RodMaterial | None = None, tapers: ReplacedTapers = OWN_TAPER
 ) -> list[Rod]:
     """The distinct rods whose flutter forces the points of an arm need; empty if the load is not relative to
-    flutter. build: constitutive law and profile from the config section `material`, None if the section is
+    flutter. material: constitutive law and profile from the config section `material`, None if the section is
     not given. Raises InputError for an invalid arm."""
     if section is None or section.load_key not in LOAD_OF_RATIO:
         return []
     from ...verdict.relative_load import rods_by_plane
 
     shapes = ((arm, taper) for arm in _unloaded_arms(section) for taper in tapers)
-    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, build, taper)))
+    return list(dict.fromkeys(rod for arm, taper in shapes for rod, _ in rods_by_plane(arm, material, taper)))
 
 
 def _unloaded_arms(section: ArmConfig) -> Iterable[SlenderArm]:
@@ -72,18 +72,18 @@ def flutter_force_of_rod(rod: Rod) -> FlutterForce:
 
 
 def flutter_force_of_arm(
-    arm: SlenderArm, taper: float | None, flutter_forces: FlutterForces, build: Build | None = None
+    arm: SlenderArm, taper: float | None, flutter_forces: FlutterForces, material: RodMaterial | None = None
 ) -> FlutterForce:
     """Force of first flutter of an arm, in k3/L^2 of the arm: the smallest force over the planes of motion.
 
     If the search failed in a plane, the failure is returned. taper: replaces the arm's taper unless None.
-    flutter_forces: forces of all rods of `rods_needing_flutter_force`. build: constitutive law and profile
+    flutter_forces: forces of all rods of `rods_needing_flutter_force`. material: constitutive law and profile
     from the config section `material`, None if the section is not given.
     """
     from ...verdict.relative_load import rods_by_plane
 
     flutter_force = inf
-    for rod, scale in rods_by_plane(arm, build, taper):
+    for rod, scale in rods_by_plane(arm, material, taper):
         rod_force = flutter_forces[rod]
         if rod_force.failure:
             return rod_force

@@ -14,7 +14,7 @@ from ...config.arm.status import CRUSHED, SLENDER
 from ...config.base_config import Config
 from ...errors import InputError
 from ...model.arm.refusals import CRUSHED_FORCE_RATIO
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import CRUSHING_PARAMETERS, PARAMETERS, Range
 from ...model.rod import Rod
 from .arm_grid import grid_of_arms
@@ -44,7 +44,7 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
     for name, value in parameters.constant_parameters.items():
         require_in_range(PARAMETERS[name].allowed, name, (value,))
     if parameters.points is not None:
-        columns = read_points(directory / parameters.points, config.parameter_names, config.build)
+        columns = read_points(directory / parameters.points, config.parameter_names, config.rod_material)
         return Points(config.parameter_names, columns, is_grid=False)
     axes = {name: axis.array() for name, axis in parameters.axes.items()}
     if parameters.arm is not None and parameters.arm_axes:
@@ -52,17 +52,17 @@ def points_of(config: Config, directory: Path, flutter: FlutterForces | None = N
             require_in_range(PARAMETERS[name].allowed, name, column)
         try:
             forces = flutter or {rod: flutter_force_of_rod(rod) for rod in rods_for_flutter_forces(config)}
-            of_arm = partial(flutter_force_of_arm, flutter_forces=forces, build=config.stated_build)
-            return grid_of_arms(parameters.arm, axes, config.parameter_names, of_arm, config.build)
+            of_arm = partial(flutter_force_of_arm, flutter_forces=forces, material=config.stated_rod_material)
+            return grid_of_arms(parameters.arm, axes, config.parameter_names, of_arm, config.rod_material)
         except ValueError as error:
             raise InputError(str(error)) from None
     by_name = {name: axes[name] for name in config.parameter_names}
-    arm_statuses = None if parameters.arm is None else _crushing_codes(by_name, config.build)
-    refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.build)
+    arm_statuses = None if parameters.arm is None else _crushing_codes(by_name, config.rod_material)
+    refuse_invalid_axes(axes, config.allows_crushed_rods or arm_statuses is not None, config.rod_material)
     return Points(config.parameter_names, tuple(by_name.values()), is_grid=True, arm_statuses=arm_statuses)
 
 
-def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | None:
+def _crushing_codes(axes: dict[str, Array], material: RodMaterial) -> NDArray[np.int8] | None:
     """Status codes CRUSHED or SLENDER, (points,), of a grid of parameters in which the load crushes some
     rods. None if all rods or no rods are crushed, for a grid without F or k1, and for grids of more than
     MAX_ARM_GRID_POINTS points. axes: values of each parameter, (n,)."""
@@ -72,7 +72,7 @@ def _crushing_codes(axes: dict[str, Array], build: Build) -> NDArray[np.int8] | 
     columns = {
         name: axes[name].reshape([-1 if axis_name == name else 1 for axis_name in axes]) for name in axes
     }
-    ratios = build.relative_crushing_forces(columns.get("taper", np.ones(1)))
+    ratios = material.relative_crushing_forces(columns.get("taper", np.ones(1)))
     if axes["F"].max() < axes["k1"].min() * ratios.min():
         return None
     shape = tuple(map(len, axes.values()))
@@ -84,9 +84,11 @@ def rods_for_flutter_forces(config: Config) -> list[Rod]:
     """The distinct rods whose flutter forces the points of a config need; InputError for an invalid arm."""
     taper_axis = config.parameters.given_axes.get("taper")
     if taper_axis is None:
-        return rods_needing_flutter_force(config.parameters.arm, config.stated_build)
+        return rods_needing_flutter_force(config.parameters.arm, config.stated_rod_material)
     require_in_range(PARAMETERS["taper"].allowed, "taper", taper_axis.array())
-    return rods_needing_flutter_force(config.parameters.arm, config.stated_build, taper_axis.array().tolist())
+    return rods_needing_flutter_force(
+        config.parameters.arm, config.stated_rod_material, taper_axis.array().tolist()
+    )
 
 
 def require_in_range(
@@ -103,7 +105,7 @@ def require_in_range(
 
 
 def refuse_invalid_axes(
-    axes: dict[str, Array], allows_crushed_rods: bool = False, build: Build = DEFAULT_BUILD
+    axes: dict[str, Array], allows_crushed_rods: bool = False, material: RodMaterial = DEFAULT_MATERIAL
 ) -> None:
     """Raises InputError if a value on an axis is outside the range of its parameter, or if rods are crushed.
     axes: values, (n,), by name of the parameter. allows_crushed_rods: whether some rods, but not all rods, of
@@ -112,7 +114,7 @@ def refuse_invalid_axes(
         require_in_range(PARAMETERS[name].allowed, name, column)
     if not set(CRUSHING_PARAMETERS) <= axes.keys():
         return
-    crushing_forces = build.relative_crushing_forces(axes.get("taper", np.ones(1)))
+    crushing_forces = material.relative_crushing_forces(axes.get("taper", np.ones(1)))
     if (crushing_forces == 1).all():
         _refuse_crushed(axes["F"], axes["k1"], allows_crushed_rods)
     elif allows_crushed_rods and axes["F"].min() >= axes["k1"].max() * crushing_forces.max():

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...config.arm.axes import parameter_of_axis
 from ...config.arm.status import SLENDER
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import PARAMETERS
 from ...model.rod import Rod
 
@@ -38,11 +38,11 @@ class Points:
     """Axes of a grid over an arm's quantities by name, in SI units, (n,) each; else empty."""
     units: dict[str, Array] = field(default_factory=dict)
     """The arm's units of time, force and pressure at every point of a grid over its quantities, (points,)."""
-    build: Build = DEFAULT_BUILD
-    """Constitutive law and profile of all rods, unless `builds` is given."""
-    builds: tuple[Build, ...] = ()
+    material: RodMaterial = DEFAULT_MATERIAL
+    """Constitutive law and profile of all rods, unless `materials` is given."""
+    materials: tuple[RodMaterial, ...] = ()
     """Constitutive law and profile of each arm of a grid over an arm's quantities, in the order of the
-    points. Every arm has the same number of consecutive points. Empty if all points have `build`."""
+    points. Every arm has the same number of consecutive points. Empty if all points have `material`."""
     arm_statuses: NDArray[np.int8] | None = None
     """Status code of each point of an arm, (points,), from `rodsweep.config.arm.status`: SLENDER if the rod
     model applies, else the code of the reason why it does not apply. None if every point has a rod."""
@@ -114,21 +114,21 @@ class Points:
         """Rod of the point at a flat index; raises Crushed. The values in `F` replace the values of the
         point. A parameter with neither value has the value in NEUTRAL_VALUES."""
         parameters: dict[str, Any] = {**NEUTRAL_VALUES, **self.values(index), **F}
-        return Rod(**parameters, build=self.build_of(index))
+        return Rod(**parameters, material=self.material_of(index))
 
     @property
-    def builds_of_rods(self) -> tuple[list[Build], NDArray[np.int64]]:
-        """Returns (distinct builds, index of the build of each point of `rod_values`, (rods,))."""
-        distinct_builds = list(dict.fromkeys(self.builds)) or [self.build]
-        build_of_arm = np.array([distinct_builds.index(build) for build in self.builds] or [0])
-        numbers = build_of_arm[np.arange(self.count) * len(build_of_arm) // self.count]
-        return distinct_builds, numbers if self.arm_statuses is None else numbers[
+    def materials_of_rods(self) -> tuple[list[RodMaterial], NDArray[np.int64]]:
+        """Returns (distinct materials, index of the material of each point of `rod_values`, (rods,))."""
+        distinct_materials = list(dict.fromkeys(self.materials)) or [self.material]
+        material_of_arm = np.array([distinct_materials.index(material) for material in self.materials] or [0])
+        numbers = material_of_arm[np.arange(self.count) * len(material_of_arm) // self.count]
+        return distinct_materials, numbers if self.arm_statuses is None else numbers[
             self.arm_statuses == SLENDER
         ]
 
-    def build_of(self, index: int) -> Build:
+    def material_of(self, index: int) -> RodMaterial:
         """Constitutive law and profile of the rod of the point at a flat index."""
-        return self.builds[index * len(self.builds) // self.count] if self.builds else self.build
+        return self.materials[index * len(self.materials) // self.count] if self.materials else self.material
 
 
 @dataclass(frozen=True, slots=True)

@@ -93,10 +93,10 @@ def rod_numbers(points: Points) -> NDArray[np.int64] | None:
     if not points.arm_axes:
         return None
     columns = list(points.columns)
-    if points.builds:
-        number = {build: float(i) for i, build in enumerate(points.builds)}
-        points_per_rod = points.count // len(points.builds)
-        columns.append(np.repeat([number[build] for build in points.builds], points_per_rod))
+    if points.materials:
+        number = {material: float(i) for i, material in enumerate(points.materials)}
+        points_per_rod = points.count // len(points.materials)
+        columns.append(np.repeat([number[material] for material in points.materials], points_per_rod))
     table = np.stack(columns, axis=-1)
     rods = np.unique(np.nan_to_num(table, nan=-1.0), axis=0, return_inverse=True)[1].ravel()
     return None if rods.max() + 1 == len(rods) else rods

@@ -212,11 +212,11 @@ class ArmValidity:
         """The force that would compress the base as much as F compresses the weakest section; NaN for rubber,
         whose constitutive law includes large compression. F, index: forces, and indices of their points, as
         in `variables_of_points`."""
-        build = self.points.build_of(int(np.ravel(index)[0]))
-        if build.law != LINEAR.law:
+        material = self.points.material_of(int(np.ravel(index)[0]))
+        if material.law != LINEAR.law:
             return np.full(np.shape(F), np.nan)
         tapers = self._parameter_values("taper", index)
-        ratios = build.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
+        ratios = material.relative_crushing_forces(np.ones(()) if tapers is None else tapers)
         return np.asarray(F) / ratios.reshape(ratios.shape + (1,) * max(np.ndim(F) - ratios.ndim, 0))
 
     def _parameter_values(self, name: str, index: int | NDArray[np.int64]) -> Array | None:

@@ -60,7 +60,7 @@ def boundary_curve_values(
     values = _values_along_dimension(declared, "curve_point", "curve_", points) | _values_along_dimension(
         declared, "fold", "fold_", folds
     )
-    values |= {"curve_agreement": traced.largest_seed_distance, "curves_untraced": traced.untraced_count}
+    values |= {"curve_agreement": traced.max_seed_distance, "curves_untraced": traced.untraced_count}
     return _variables_with_values(declared, values | limit_values)
 
 
@@ -125,7 +125,7 @@ def cycle_curve_values(
     variables = cycle_curve_variables(*plane)
     values = _values_along_dimension(variables, "cycle_curve_point", "cycle_curve_", rows)
     values |= {
-        "cycle_curve_agreement": traced.largest_seed_distance,
+        "cycle_curve_agreement": traced.max_seed_distance,
         "cycle_curves_untraced": traced.untraced_count,
     }
     return _variables_with_values(variables, values)
@@ -167,13 +167,13 @@ def _end_reasons(end_reasons: Sequence[int], count: int) -> list[dict[str, int]]
     return reasons
 
 
-def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
+def cycles_record(result: "CoexistenceRow", line_parameter: str) -> dict[str, Any]:
     """Variables of the cycles of a row: special points, stable states, time and status.
 
-    line: parameter that varies along the row.
+    line_parameter: parameter that varies along the row.
     """
-    variables = [v for v in cycle_variables(line) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
-    attribute_names = {f"cycle_special_{line}": "parameter_value"}
+    variables = [v for v in cycle_variables(line_parameter) if v.extra == (CYCLE_SPECIAL_DIMENSION,)]
+    attribute_names = {f"cycle_special_{line_parameter}": "parameter_value"}
     rows = [
         outcome_values(variables, point, prefix="cycle_special_", names=attribute_names)
         for point in result.special_points
@@ -184,11 +184,13 @@ def cycles_record(result: "CoexistenceRow", line: str) -> dict[str, Any]:
     return values | {"seconds": result.seconds, "status": int(result.status)}
 
 
-def special_points_of_rows(view: ResultView, line: str, rows: np.ndarray) -> "list[RowSpecialPoint]":
-    """Folds and torus points of all rows of the file with a finite parameter value. line: parameter along the
-    rows. rows: parameter value of every row, (rows,).
+def special_points_of_rows(
+    view: ResultView, line_parameter: str, rows: np.ndarray
+) -> "list[RowSpecialPoint]":
+    """Folds and torus points of all rows of the file with a finite parameter value. line_parameter: parameter
+    along the rows. rows: parameter value of every row, (rows,).
     """
-    names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
+    names = (f"cycle_special_{name}" for name in ("kind", line_parameter, "period", "tip_y_max"))
     kinds, *columns = map(view.by_point, names)
     return [
         point
@@ -200,11 +202,11 @@ def special_points_of_rows(view: ResultView, line: str, rows: np.ndarray) -> "li
 
 
 def special_points_of_row(
-    values: Mapping[str, np.ndarray], line: str, row_index: int, row_value: float
+    values: Mapping[str, np.ndarray], line_parameter: str, row_index: int, row_value: float
 ) -> "list[RowSpecialPoint]":
-    """Folds and torus points of a row from its variables, by name, (special points,) each. line: parameter
-    along the row. row_index, row_value: index of the row, and value of its parameter."""
-    names = (f"cycle_special_{name}" for name in ("kind", line, "period", "tip_y_max"))
+    """Folds and torus points of a row from its variables, by name, (special points,) each. line_parameter:
+    parameter along the row. row_index, row_value: index of the row, and value of its parameter."""
+    names = (f"cycle_special_{name}" for name in ("kind", line_parameter, "period", "tip_y_max"))
     kinds, *columns = (values[name] for name in names)
     return followed_special_points(kinds, columns, row_index, row_value)
 

@@ -73,7 +73,7 @@ class DiagramCurves:
             self.special_points_by_row[number, 0] = row.special_points + row.folds_beyond
         return row
 
-    def initial_data(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
+    def cached_starts(self, items: "Stage", item_numbers: Sequence[int]) -> "dict[RowKey, Any]":
         """Special points cached on this rank, for the rows on which the half curves numbered `item_numbers`
         start. items: all half curves, or rows; rows that are solved again need no special points."""
         from ...solve.branch.special.detached_rows import DetachedRows
@@ -83,7 +83,7 @@ class DiagramCurves:
         keys = {(row, len(items.starts_of_row(row))) for row in map(items.row_of, item_numbers)}
         return {key: self.special_points_by_row[key] for key in keys if key in self.special_points_by_row}
 
-    def add_initial_data(self, starts: "Mapping[RowKey, Any]") -> None:
+    def add_starts(self, starts: "Mapping[RowKey, Any]") -> None:
         """Caches special points of rows solved on other ranks."""
         self.special_points_by_row.update(starts)
 
@@ -218,7 +218,7 @@ class DiagramCurves:
             PlaneAxis(name, float(values[0]), float(values[-1]), axes[name].is_logarithmic)
             for name, values in ((line, self.task.line_values), (row, finite))
         )
-        rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, build=self.task.config.build)
+        rod = Rod(**not_crushed, gamma1=self.task.config.gamma1, material=self.task.config.rod_material)
         return ParameterPlane(rod, (abscissa, ordinate))
 
     def _special_points(

@@ -56,16 +56,20 @@ def followed_special_points(
 
 
 def rows_with_leaving_branches(
-    view: ResultView, line: str, rows: Mapping[int, float], limits: tuple[float, float]
+    view: ResultView, line_parameter: str, rows: Mapping[int, float], limits: tuple[float, float]
 ) -> dict[int, float]:
     """The rows of `rows` with branches that leave or enter the range `limits`; values of the row parameter by
-    index of the row. view: the file with all rows. line: parameter along the rows."""
+    index of the row. view: the file with all rows. line_parameter: parameter along the rows."""
     from ...solve.branch.special.special_curves import CURVE_IDENTITY_SETTINGS
     from ...solve.branch.special.special_point import SpecialKind
 
-    kinds, positions = (view.by_point(name) for name in ("cycle_special_kind", f"cycle_special_{line}"))
+    kinds, positions = (
+        view.by_point(name) for name in ("cycle_special_kind", f"cycle_special_{line_parameter}")
+    )
     distances = np.abs(positions[..., None] - limits)
-    is_at_limit = (distances <= CURVE_IDENTITY_SETTINGS.max_row_distance * np.ptp(limits)).any(axis=-1)
+    is_at_limit = (distances <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * np.ptp(limits)).any(
+        axis=-1
+    )
     is_leaving = ((kinds == SpecialKind.end) & is_at_limit).any(axis=1)
     return {row: value for row, value in rows.items() if is_leaving[row]}
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...model.material.build import DEFAULT_BUILD, Build
+from ...model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from ...model.parameters import TRANSVERSE_PARAMETERS
 from ...model.rod import Rod
 from ...results.layouts.limit_cycle import hopf_point_variables
@@ -34,7 +34,7 @@ class HopfLine:
     """The fixed parameters of the straight rod."""
     start: float
     stop: float
-    build: Build = DEFAULT_BUILD
+    material: RodMaterial = DEFAULT_MATERIAL
     """Constitutive law and profile of all rods on the line."""
 
     def hopf_points(self) -> "ThresholdSearchResult | None":
@@ -48,7 +48,7 @@ class HopfLine:
 
         forget_arm_determinants()
         fixed = self.fixed_parameters
-        ratio = self.build.relative_crushing_force(fixed.get("taper", 1.0))
+        ratio = self.material.relative_crushing_force(fixed.get("taper", 1.0))
         margin = 1 - CRUSHING_END_SETTINGS.crushing_margin
         start = self.start
         end = self.stop
@@ -60,7 +60,7 @@ class HopfLine:
             return None
         start_values: dict[str, Any] = fixed | {self.varied_parameter: start}
         try:
-            path = ParameterPath(Rod(**start_values, build=self.build), self.varied_parameter)
+            path = ParameterPath(Rod(**start_values, material=self.material), self.varied_parameter)
             return find_axis_crossings(path, start, end)
         except (*FAILURES, ValueError):  # ValueError: the search needs a rod outside the model's range
             return None
@@ -81,21 +81,21 @@ def _hopf_lines_along(points: Points, name: str, names: Sequence[str]) -> Iterat
     if points.is_grid:
         rods = np.array(list(product(*(np.unique(columns[n]) for n in others))))
         ends = [_finite_range(columns[name])] * len(rods)
-        builds = [points.build] * len(rods)
+        materials = [points.material] * len(rods)
     else:
-        distinct_builds, numbers = points.builds_of_rods
+        distinct_materials, numbers = points.materials_of_rods
         table = np.stack([numbers, *(columns[n] for n in others)], axis=-1)
         lines, line = np.unique(table, axis=0, return_inverse=True)
         order = np.argsort(line.ravel(), kind="stable")
         line_starts = np.cumsum(np.bincount(line.ravel()))[:-1]
         ends = [_finite_range(values) for values in np.split(columns[name][order], line_starts)]
         rods = lines[:, 1:]
-        builds = [distinct_builds[int(number)] for number in lines[:, 0]]
+        materials = [distinct_materials[int(number)] for number in lines[:, 0]]
     rod_counts = Counter(map(tuple, rods.tolist()))
-    for rod, (start, end), build in zip(map(tuple, rods.tolist()), ends, builds, strict=True):
+    for rod, (start, end), material in zip(map(tuple, rods.tolist()), ends, materials, strict=True):
         if start < end and rod_counts[rod] == 1:
             search_start = min(start, 0.0) if name == "F" else start
-            yield HopfLine(name, dict(zip(others, rod, strict=True)), search_start, end, build)
+            yield HopfLine(name, dict(zip(others, rod, strict=True)), search_start, end, material)
 
 
 def _finite_range(values: np.ndarray) -> tuple[float, float]:

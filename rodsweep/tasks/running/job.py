@@ -153,14 +153,14 @@ def job_of_config(
             f"{MAX_RECORD_BYTES / 1e9:.3g} GB allowed; reduce the options of {config.task} that set how many "
             "values are stored"
         )
-    points = replace(points_of(config, path.parent, flutter), build=config.build)
+    points = replace(points_of(config, path.parent, flutter), material=config.rod_material)
     return Job(path, config, source, points, TASKS[config.task](config, points), document, layout)
 
 
 def plan_without_solver(config: Config, points: Points) -> FilePlan:
     """Plan of the result file of a config on given points, without attributes and status flags."""
     document = resolved_config(config)
-    task = TASKS[config.task](config, replace(points, build=config.build))
+    task = TASKS[config.task](config, replace(points, material=config.rod_material))
     return _plan(task, document, layout_of(document))
 
 

@@ -5,9 +5,9 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.bordered.scale import deflection_of
 from rodsweep.solve.orbit.orbit import Orbit
@@ -22,7 +22,7 @@ STEP = Profile((0.0, JUMP, JUMP, 1.0), ((1.0,) * 6,) * 2 + ((1.0, 1.0, SOFTER, 1
 @pytest.mark.parametrize("names", LAWS)
 def test_the_deflection_of_a_shape_does_not_depend_on_the_mesh(order, names):
     """Where m3 jumps, branches of rubber arms stopped as soon as its mean limited their accuracy."""
-    rod = Rod(F=20.0, k1=300.0, k2=150.0, gamma3=0.02, taper=0.7, build=Build(*names, STEP))
+    rod = Rod(F=20.0, k1=300.0, k2=150.0, gamma3=0.02, taper=0.7, material=RodMaterial(*names, STEP))
     form = StressForm(rod, mesh_with_edges((0.0, JUMP, 1.0), order))
     u = form.mesh.node_positions
     before, behind = 2 - u, 1.5 * (1 - u)

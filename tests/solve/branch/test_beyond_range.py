@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rodsweep.determinant.parameter_plane import PlaneAxis
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch import branches, region_beyond, regions_beyond
 from rodsweep.solve.branch.branch_request import BranchRequest
@@ -25,7 +25,7 @@ from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 
 FIG_2C = Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4)
-RUBBER = Rod(F=0.0, k1=322.11, k2=1e4, gamma3=0.02, build=Build("neo_hookean", "swelling"))
+RUBBER = Rod(F=0.0, k1=322.11, k2=1e4, gamma3=0.02, material=RodMaterial("neo_hookean", "swelling"))
 ACCURACY = 1e-4
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_continuation import follow_branch
 from rodsweep.solve.branch.branch_end_reason import BranchEndReason
@@ -76,7 +76,9 @@ def test_cycles_are_the_same_whether_omega_is_an_unknown_or_eliminated():
 
 def test_a_branch_along_the_rotational_drag_ends_at_zero():
     """No rod has a negative drag, so that no step passes this end of the range."""
-    rod = Rod(F=7.31, k1=23.9, k2=1.37, gamma3=0.0, gamma1=0.21, build=Build("neo_hookean", "swelling"))
+    rod = Rod(
+        F=7.31, k1=23.9, k2=1.37, gamma3=0.0, gamma1=0.21, material=RodMaterial("neo_hookean", "swelling")
+    )
     ends = []
     for accuracy in (1e-4, 1e-6):
         found = solve_branches(rod, BranchRequest("gamma3", 0.0, 5.3, accuracy, False, 100, 10))

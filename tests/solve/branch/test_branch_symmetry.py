@@ -38,7 +38,7 @@ from rodsweep.solve.branch.symmetry_breaking import (
 from rodsweep.solve.changes.thresholds_along_path import find_axis_crossings
 from rodsweep.solve.orbit.matrix.right_sides import write_rates_of_state
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath, measures_of
+from rodsweep.solve.orbit.measures import CycleMotion, measures_of
 from rodsweep.solve.orbit.symmetry import REFLECTION
 from rodsweep.tasks.branch import branch_values
 
@@ -142,7 +142,7 @@ def test_the_largest_angle_is_that_of_the_mirror_image(known):
     orbit = next_cycle(here, ROUGH).orbit
     states = REFLECTION.apply(orbit.all_states, orbit.form.layout)
     image = replace(orbit, values=np.append(states.ravel(), orbit.period))
-    paths = [CyclePath(each) for each in (orbit, image)]
+    paths = [CycleMotion(each) for each in (orbit, image)]
     signed = [path.tip_samples[:, 2].max() for path in paths]
     assert abs(signed[0] / signed[1] - 1) > 0.01
     for path in paths:

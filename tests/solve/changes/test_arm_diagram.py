@@ -8,8 +8,8 @@ from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.determinant.stability_boundary import StabilityBoundary
 from rodsweep.errors import InputError
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
@@ -18,19 +18,21 @@ from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds_along_path import find_thresholds
 from rodsweep.solve.hopf.bautin_points import curve_criticality
 
-ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
-SWELLING = Build("neo_hookean", "swelling")
+ONES = RodMaterial(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
+SWELLING = RodMaterial("neo_hookean", "swelling")
 FORCE_AND_STIFFNESS = PlaneAxis("F", 20.0, 140.0), PlaneAxis("k1", 100.0, 300.0)
 ROD = {"k2": 1e4, "gamma3": 1e-4}
 
 
-def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
+def traced(material, kind, axes=FORCE_AND_STIFFNESS, **values):
     """The curve from the first change of a kind on the middle row of a plane."""
     first, second = axes
-    middle = Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, build=build)
+    middle = Rod(
+        **{"F": 0.0, "k1": 300.0, **ROD, **values, second.name: second.value(0.5)}, material=material
+    )
     found = find_thresholds(ParameterPath(middle, "F"), 0.0, min(first.stop, 0.999 * middle.crushing_force))
     change = next(c for c in found.thresholds if c.kind == kind)
-    plane = ParameterPlane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, build=build), axes)
+    plane = ParameterPlane(Rod(**{"F": 0.0, "k1": 300.0, **ROD, **values}, material=material), axes)
     sign = 0.0 if kind == ThresholdKind.hopf else -1.0
     return trace_boundary(
         sign, plane, (first.coordinate(change.value), 0.5), change.frequency or change.growth_rate
@@ -39,7 +41,7 @@ def traced(build, kind, axes=FORCE_AND_STIFFNESS, **values):
 
 @pytest.mark.long
 def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
-    exact, found = (traced(build, ThresholdKind.hopf) for build in (Build(), ONES))
+    exact, found = (traced(material, ThresholdKind.hopf) for material in (RodMaterial(), ONES))
     (fold,), (of_arm,) = exact.folds, found.folds
     assert of_arm.values[1] == pytest.approx(fold.values[1], rel=1e-13)
     assert abs(of_arm.values[0] - fold.values[0]) <= of_arm.errors[0] < 2e-7
@@ -48,13 +50,13 @@ def test_the_hopf_curve_of_a_uniform_arm_folds_where_the_closed_form_does():
 
 @pytest.mark.parametrize("kind", [ThresholdKind.hopf, ThresholdKind.onset])
 def test_tangents_of_a_uniform_arm_are_those_of_the_closed_form(kind):
-    curve = traced(Build(), kind)
+    curve = traced(RodMaterial(), kind)
     boundaries = [
         StabilityBoundary(
-            ParameterPlane(Rod(F=20.0, k1=300.0, **ROD, build=build), FORCE_AND_STIFFNESS),
+            ParameterPlane(Rod(F=20.0, k1=300.0, **ROD, material=material), FORCE_AND_STIFFNESS),
             curve.eigenvalue_sign,
         )
-        for build in (Build(), ONES)
+        for material in (RodMaterial(), ONES)
     ]
     for v in curve.scaled_points[::6]:
         exact, found = (boundary.tangent(v) for boundary in boundaries)
@@ -70,7 +72,7 @@ def test_the_fold_of_rubber_bounds_the_rows_that_flutter():
 
     def hopfs(stiffness):
         found = find_thresholds(
-            ParameterPath(Rod(F=0.0, k1=stiffness, **ROD, build=SWELLING), "F"), 0.0, 500.0
+            ParameterPath(Rod(F=0.0, k1=stiffness, **ROD, material=SWELLING), "F"), 0.0, 500.0
         )
         return [
             c.value for c in found.thresholds if c.kind in (ThresholdKind.hopf, ThresholdKind.restabilization)
@@ -88,7 +90,7 @@ def test_a_curve_over_the_taper_folds_where_the_window_of_flutter_closes():
     taper = fold.values[1]
     numbers = []
     for side in (-1e-5, 1e-5):
-        rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, build=SWELLING)
+        rod = Rod(F=0.0, k1=500.0, **ROD, taper=taper + side, material=SWELLING)
         found = find_thresholds(ParameterPath(rod, "F"), 0.0, 560.0)
         numbers.append(
             sum(c.kind in (ThresholdKind.hopf, ThresholdKind.restabilization) for c in found.thresholds)
@@ -101,7 +103,7 @@ def test_rows_reach_beyond_k1_for_rubber_and_to_the_tip_for_cones():
         request = RowRequest(name, np.array(values), accuracy=1e-10, certify=True, max_thresholds=16)
         return solve_row(rod, request)
 
-    rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, build=SWELLING))
+    rubber = row("F", [10.0, 100.0, 500.0, 550.0], Rod(F=0.0, k1=500.0, **ROD, material=SWELLING))
     assert rubber.status == ThresholdStatus.ok
     assert rubber.rod_class.tolist() == [
         RodClass.monotone,
@@ -155,8 +157,8 @@ def test_a_generalised_hopf_point_of_a_uniform_arm_is_that_of_the_closed_form():
     plane_axes = PlaneAxis("F", 60.0, 110.0), PlaneAxis("k1", 145.0, 160.0)
     fold = 75.3972626336484526, 147.921519683199662, 770.860809443855688
     points = []
-    for build in (Build(), ONES):
-        plane = ParameterPlane(Rod(F=0.0, k1=200.0, **ROD, build=build), plane_axes)
+    for material in (RodMaterial(), ONES):
+        plane = ParameterPlane(Rod(F=0.0, k1=200.0, **ROD, material=material), plane_axes)
         start = tuple(axis.coordinate(value) for axis, value in zip(plane_axes, fold[:2], strict=True))
         told = curve_criticality(plane, trace_boundary(0.0, plane, start, fold[2]), 1e-10)
         assert told.unlocated_count == 0

@@ -7,8 +7,8 @@ from surveyed import RODS, survey_only
 import rodsweep as rs
 from rodsweep.determinant.parameter_path import ParameterPath
 from rodsweep.model.arm.arm import SlenderArm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.results.layouts.phase_diagram import STABILITY_CLASSES
 from rodsweep.solve.changes.status import ThresholdStatus
@@ -53,7 +53,7 @@ def test_a_real_eigenvalue_takes_the_lead_where_bisection_finds_it(rod, F):
         (
             cone(
                 *(232.47833692152994, 163.1012000931068, 0.0002505587603018475, 0.15516879019780894),
-                build=Build("neo_hookean", "swelling"),
+                material=RodMaterial("neo_hookean", "swelling"),
             ),
             46.9623437016846,
         ),
@@ -130,7 +130,7 @@ def test_lists_of_cones_with_crowded_eigenvalues_are_proved_and_right(rod):
 def test_leaders_of_random_arms_are_those_of_spectra(seed):
     random = np.random.default_rng(seed)
     k1 = 10 ** random.uniform(2.3, 5)
-    build = Build("neo_hookean", "swelling") if seed % 3 == 2 else Build()
+    material = RodMaterial("neo_hookean", "swelling") if seed % 3 == 2 else RodMaterial()
     rod = cone(
         *(
             k1,
@@ -138,7 +138,7 @@ def test_leaders_of_random_arms_are_those_of_spectra(seed):
             10 ** random.uniform(-5, -2),
             10 ** random.uniform(-1, 0.2),
         ),
-        build=build,
+        material=material,
     )
     found = solve_thresholds(rod, TO_30)
     assert found.status == ThresholdStatus.ok
@@ -166,7 +166,7 @@ NEARLY_CRUSHED = Rod(
     k1=109.83750492645562,
     k2=7.02,
     gamma3=0.21681568646611862,
-    build=Build(
+    material=RodMaterial(
         profile=Profile(
             (0.0, 1.0),
             (

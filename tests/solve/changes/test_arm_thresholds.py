@@ -12,8 +12,8 @@ from surveyed import RODS
 
 from rodsweep.determinant.arm.hull import hull
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.changes.diagram.rows import RodClass, RowRequest, solve_row
 from rodsweep.solve.changes.search_range import IntervalQueue
@@ -36,21 +36,25 @@ def across_the_axis(found):
     [
         (Rod(F=0.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5), 40.0, [(ThresholdKind.hopf, 15.4627583986)]),
         (
-            Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
+            Rod(F=0.0, k1=200.0, k2=1e4, gamma3=1e-4, material=RodMaterial("neo_hookean")),
             150.0,
             [(ThresholdKind.hopf, 45.8967541917)],
         ),
         (
-            Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean")),
+            Rod(F=0.0, k1=100.0, k2=1e4, gamma3=1e-4, material=RodMaterial("neo_hookean")),
             150.0,
             [(ThresholdKind.hopf, 57.3983354479)],
         ),
         (
-            Rod(F=0.0, k1=500.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")),
+            Rod(F=0.0, k1=500.0, k2=1e4, gamma3=1e-4, material=RodMaterial("neo_hookean", "swelling")),
             600.0,
             [(ThresholdKind.hopf, 59.0162383065), (ThresholdKind.restabilization, 414.527760519)],
         ),
-        (Rod(F=0.0, k1=300.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 600.0, []),
+        (
+            Rod(F=0.0, k1=300.0, k2=1e4, gamma3=1e-4, material=RodMaterial("neo_hookean", "swelling")),
+            600.0,
+            [],
+        ),
     ],
     ids=["cone", "rubber 200", "rubber 100", "swelling 500", "swelling 300"],
 )
@@ -68,7 +72,7 @@ def test_a_profile_of_ones_has_the_thresholds_of_the_uniform_rod():
         ThresholdsRequest(200, 1e-10, True, 16),
     )
     uniform = solve_thresholds(Rod(**values), request)
-    profiled = solve_thresholds(Rod(**values, build=Build(profile=ONES)), request)
+    profiled = solve_thresholds(Rod(**values, material=RodMaterial(profile=ONES)), request)
     assert [c.kind for c in profiled.thresholds] == [c.kind for c in uniform.thresholds]
     for name in ("value", "frequency", "growth_rate"):
         ours, theirs = ([getattr(c, name) for c in found.thresholds] for found in (profiled, uniform))
@@ -80,12 +84,12 @@ def test_no_crossing_is_missed_between_the_forces_of_a_dense_scan(seed):
     rng = np.random.default_rng(seed)
     rod = random_arm(rng, pulled=0.0)
     found = solve_thresholds(rod.with_values(F=0.0), ThresholdsRequest(3 * rod.F, 1e-9, True, 32))
-    assert found.status == ThresholdStatus.ok, (rod, rod.build, found.message)
+    assert found.status == ThresholdStatus.ok, (rod, rod.material, found.message)
     crossings = [c for c in found.thresholds if c.kind in ACROSS]
     for F in np.linspace(0.03, 0.999, 12) * found.end:
         expected = [c.unstable_after for c in crossings if c.value < F]
         unstable = int((eigenvalues(rod.with_values(F=float(F))).real > 0).sum())
-        assert unstable == (expected[-1] if expected else 0), (rod, rod.build, F)
+        assert unstable == (expected[-1] if expected else 0), (rod, rod.material, F)
 
 
 def test_search_of_a_cone_ends_where_its_tip_is_crushed():
@@ -98,7 +102,7 @@ def test_search_of_a_cone_ends_where_its_tip_is_crushed():
 
 SOFT_TIP = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
 STEP = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, SOFT_TIP, SOFT_TIP))
-STEPPED = Rod(F=0.0, k1=inf, k2=1e4, gamma3=0.0, build=Build(profile=STEP))
+STEPPED = Rod(F=0.0, k1=inf, k2=1e4, gamma3=0.0, material=RodMaterial(profile=STEP))
 
 
 @pytest.fixture
@@ -199,8 +203,8 @@ def test_errors_of_double_eigenvalues_hold_in_the_last_digit():
     k1, k2, k3, gamma1 = (0.95, 1.4, 0.88), (1.3, 1.0, 1.0), (1.7, 1.7, 2.6), (0.86, 0.86, 0.56)
     factors = [(1.0,) * 6, *zip(k1, k2, k3, gamma1, (1.0, 0.93, 0.93), (1.0,) * 3, strict=True)]
     rows = tuple(row for row in factors for _ in range(2))
-    build = Build("neo_hookean", "swelling", Profile((0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 1.0), rows))
-    rod = Rod(F=0.0, k1=5800.0, k2=29.0, gamma3=0.17, build=build)
+    material = RodMaterial("neo_hookean", "swelling", Profile((0.0, 0.3, 0.3, 0.4, 0.4, 0.7, 0.7, 1.0), rows))
+    rod = Rod(F=0.0, k1=5800.0, k2=29.0, gamma3=0.17, material=material)
     found = solve_thresholds(rod, ThresholdsRequest(130.0, 1e-10, True, 16)).thresholds
     double = [
         crossing for crossing in found if crossing.kind in (ThresholdKind.onset, ThresholdKind.real_again)

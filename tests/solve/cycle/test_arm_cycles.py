@@ -17,9 +17,9 @@ from rodsweep.discretization.plane_equations import write_balance, write_balance
 from rodsweep.discretization.straight.mixed_form import MixedForm
 from rodsweep.discretization.stress.form import StressForm
 from rodsweep.discretization.stresses_at_jumps import interpolate_stress, stresses_at_both_sides
-from rodsweep.model.material.build import DEFAULT_BUILD, Build
 from rodsweep.model.material.laws import LAWS
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.material.rod_material import DEFAULT_MATERIAL, RodMaterial
 from rodsweep.model.material.stress_strain import LocalSection, stress_beyond_rest
 from rodsweep.model.parameters import PARAMETERS
 from rodsweep.model.rod import Rod
@@ -35,22 +35,22 @@ from rodsweep.solve.cycle.straight_rod import straight_rod_stability
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.hopf.criticality import CriticalityRequest, solve_criticality
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton
 
 STEP = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6,) * 2 + ((3.0, 0.5, 2.0, 1.0, 1.5, 0.7),) * 2)
 JUMP_OF_ONE = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 4)
 ONES = Profile((0.0, 0.3, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 3)
-RUBBER = [Build(*names) for names in LAWS]
+RUBBER = [RodMaterial(*names) for names in LAWS]
 NAMES = ["-".join(names) for names in LAWS]
 ARMS = {
-    "cone": (Build(), 0.5, (0.0, 1.0)),
-    "segments": (Build(profile=STEP), 0.6, (0.0, 0.4, 1.0)),
-    "rubber": (Build("neo_hookean", "fixed"), 0.7, (0.0, 1.0)),
-    "swelling": (Build("neo_hookean", "swelling"), 0.7, (0.0, 0.3, 1.0)),
-    "uniform swelling": (Build("neo_hookean", "swelling"), 1.0, (0.0, 1.0)),
-    "rubber segments": (Build("neo_hookean", "fixed", STEP), 0.6, (0.0, 0.4, 1.0)),
-    "swelling segments": (Build("neo_hookean", "swelling", STEP), 0.7, (0.0, 0.2, 0.4, 1.0)),
+    "cone": (RodMaterial(), 0.5, (0.0, 1.0)),
+    "segments": (RodMaterial(profile=STEP), 0.6, (0.0, 0.4, 1.0)),
+    "rubber": (RodMaterial("neo_hookean", "fixed"), 0.7, (0.0, 1.0)),
+    "swelling": (RodMaterial("neo_hookean", "swelling"), 0.7, (0.0, 0.3, 1.0)),
+    "uniform swelling": (RodMaterial("neo_hookean", "swelling"), 1.0, (0.0, 1.0)),
+    "rubber segments": (RodMaterial("neo_hookean", "fixed", STEP), 0.6, (0.0, 0.4, 1.0)),
+    "swelling segments": (RodMaterial("neo_hookean", "swelling", STEP), 0.7, (0.0, 0.2, 0.4, 1.0)),
 }
 
 
@@ -60,9 +60,9 @@ def request(accuracy, start="mode"):
 
 def on_mesh(name, **changed):
     """An arm of `ARMS` in its stresses on a coarse mesh."""
-    build, taper, edges = ARMS[name]
+    material, taper, edges = ARMS[name]
     values = {"F": 20.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "gamma1": 0.7, "taper": taper} | changed
-    return StressForm(Rod(**values, build=build), mesh_with_edges(edges, 7))
+    return StressForm(Rod(**values, material=material), mesh_with_edges(edges, 7))
 
 
 def moving(form, size, seed=0):
@@ -134,21 +134,21 @@ def test_the_mixed_form_has_the_same_motion_to_third_order(name):
         errors.append(np.abs(S[:, :-1] - G[:, :-1]).max() / np.abs(G).max())
         balanced = mixed.stresses_and_velocities(mixed_rate(mixed, X) + cubic)[1]
         errors[-1] = max(errors[-1], np.abs(balanced).max() / np.abs(V).max())
-    if form.rod.build.law == "linear":
+    if form.rod.material.law == "linear":
         assert max(errors) < 1e-12
     else:
         assert errors[1] < max(errors[0] / 7, 1e-12)  # what is left is of fourth order in all, relative third
 
 
 @pytest.mark.parametrize(
-    "build", [Build(profile=ONES), DEFAULT_BUILD], ids=["profile of ones", "taper of nearly 1"]
+    "material", [RodMaterial(profile=ONES), DEFAULT_MATERIAL], ids=["profile of ones", "taper of nearly 1"]
 )
-def test_an_arm_that_does_not_vary_beats_as_the_uniform_rod(build):
+def test_an_arm_that_does_not_vary_beats_as_the_uniform_rod(material):
     values = {"F": 50.0, "k1": 1e4, "k2": 1e2, "gamma3": 1e-2}
-    taper = 1.0 if build.profile else 1 + 1e-13
+    taper = 1.0 if material.profile else 1 + 1e-13
     uniform, arm = (
         solve_cycle(Rod(**values), request(1e-8)),
-        solve_cycle(Rod(**values, taper=taper, build=build), request(1e-8)),
+        solve_cycle(Rod(**values, taper=taper, material=material), request(1e-8)),
     )
     assert arm.status == uniform.status
     allowed = arm.errors.period_error + uniform.errors.period_error
@@ -172,8 +172,8 @@ CYCLES = [
 )
 def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
     """By code that shares nothing: Chebyshev collocation of the strains, SciPy's Radau."""
-    build = RUBBER[law]
-    rod = Rod(**values, taper=taper, build=build)
+    material = RUBBER[law]
+    rod = Rod(**values, taper=taper, material=material)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
     orbit = found.neighbour.predictor.orbit
@@ -185,7 +185,7 @@ def test_cycles_are_those_of_strains_marched_in_time(law, taper, values):
         rod.F,
         lambda u: (rod.k1 * radius(u) ** 2, rod.k2 * radius(u) ** 2, radius(u) ** 4),
         lambda u: (rod.gamma1, 1.0, rod.gamma3 * radius(u) ** 2),
-        Law(build.law, build.section),
+        Law(material.law, material.section),
     )
     strains = orbit.form.mesh.evaluation_matrix(arm.u[:-1]) @ orbit.form.strains(orbit.start_state).T
     period, y = arm.cycle(strains.T.ravel(), found.measures.period)
@@ -207,15 +207,15 @@ SEGMENTS = [
 def test_cycles_of_rubber_segments_are_those_of_displacements_marched_in_time(section, values):
     """By code that shares nothing, in which positions are continuous at the jump and strains are not."""
     factors = (0.6, 0.7, 0.5, 1.0, 1.2, 0.8)
-    build = Build("neo_hookean", section, Profile(STEP.u, ((1.0,) * 6,) * 2 + (factors,) * 2))
-    rod = Rod(**values, build=build)
+    material = RodMaterial("neo_hookean", section, Profile(STEP.u, ((1.0,) * 6,) * 2 + (factors,) * 2))
+    rod = Rod(**values, material=material)
     found = solve_cycle(rod, request(1e-8), None, "F")
     assert found.status.name == "cycle"
     orbit = found.neighbour.predictor.orbit
     stiffness, drag = (rod.k1, rod.k2, 1.0), (rod.gamma1, 1.0, rod.gamma3)
     outer = [np.multiply(own, f) for own, f in ((stiffness, factors[:3]), (drag, factors[3:]))]
     segments = Segments(
-        rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(build.law, section), order=14
+        rod.F, (0.0, 0.4, 1.0), (stiffness, outer[0]), (drag, outer[1]), Law(material.law, section), order=14
     )
     shape = orbit.form.mesh.evaluation_matrix(segments.u) @ orbit.form.shape(orbit.start_state).T
     period, y = segments.cycle(shape.T, found.measures.period, turns=1)
@@ -248,21 +248,21 @@ def test_the_largest_y_of_segments_is_within_its_error(accuracy, names, values, 
     at, *stiffness = jump
     factors = (*stiffness, 1.0, 1.0, 1.0)
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + (factors,) * 2)
-    rod = Rod(**values, gamma1=gamma1, build=Build(*names, profile))
+    rod = Rod(**values, gamma1=gamma1, material=RodMaterial(*names, profile))
     memory = NewtonWorkspace()
     form = StressForm(rod, coarse_mesh_along_branch(rod))
     found = refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), accuracy, memory)
     orbit = found.orbit
     finer = mesh_with_edges(orbit.form.mesh.edges, orbit.form.mesh.order + 8)
     start = orbit.on_mesh(finer, 2 * orbit.interval_count, orbit.stage_count + 1)
-    exact = CyclePath(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
+    exact = CycleMotion(newton(start, 1e-12, memory).orbit).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / exact - 1) <= found.errors.amplitude_error
 
 
 def test_the_straight_rod_is_the_same_whatever_was_solved_before():
     """To the last bit: propagators of D made for other |w| would change the eigenvalue by rounding errors."""
-    build = Build("neo_hookean", "swelling", jump_in_k3())
-    rod = Rod(F=24.0, k1=400.0, k2=300.0, gamma3=0.01, build=build)
+    material = RodMaterial("neo_hookean", "swelling", jump_in_k3())
+    rod = Rod(F=24.0, k1=400.0, k2=300.0, gamma3=0.01, material=material)
     alone = straight_rod_stability(rod)
     for first in (10, 14, 20, 28):
         forget_arm_determinants()
@@ -281,8 +281,8 @@ def test_a_jump_of_factor_one_is_none():
     """Of the balance to rounding, although the stress at the jump is solved for."""
     values = {"F": 30.0, "k1": 200.0, "k2": 150.0, "gamma3": 0.02, "taper": 0.7}
     grid = mesh_with_edges((0.0, 0.4, 1.0), 7)
-    builds = (Build("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
-    plain, jumping = (StressForm(Rod(**values, build=build), grid) for build in builds)
+    materials = (RodMaterial("neo_hookean", "swelling", profile) for profile in (None, JUMP_OF_ONE))
+    plain, jumping = (StressForm(Rod(**values, material=material), grid) for material in materials)
     assert (len(plain.nodal_rod.jumps), len(jumping.nodal_rod.jumps)) == (0, 1)
     (x, V, G), (_, V_jumping, G_jumping) = (moving(form, 5.0) for form in (plain, jumping))
     assert np.abs(V_jumping - V).max() < 1e-13 * np.abs(V).max()
@@ -309,7 +309,7 @@ def test_stress_at_a_jump_is_that_of_both_sides_and_strain_their_mean():
 
 def test_fields_with_a_jump_are_carried_to_other_meshes():
     """A field that is smooth on either side, of which only the mean is a number of the node between."""
-    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, build=Build("neo_hookean", "swelling", STEP))
+    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, material=RodMaterial("neo_hookean", "swelling", STEP))
     errors = []
     for order in (7, 13):
         source, target = (
@@ -335,7 +335,7 @@ def test_fields_with_a_jump_are_carried_to_other_meshes():
 
 def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
     """An extrapolation to the jump from the other nodes of the elements is less accurate."""
-    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, build=Build("neo_hookean", "swelling", STEP))
+    rod = Rod(F=40.0, k1=200.0, k2=150.0, gamma3=0.02, material=RodMaterial("neo_hookean", "swelling", STEP))
     source, target = (
         StressForm(rod, mesh_with_edges(edges, order, ratios))
         for edges, order, ratios in (
@@ -367,9 +367,9 @@ def test_states_with_a_jump_have_the_values_of_both_sides_on_other_meshes():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("build", [Build(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
-def test_cycles_agree_with_arkimex_alone(build):
-    rod = Rod(F=60.0, k1=500.0, k2=1e2, gamma3=1e-2, build=build)
+@pytest.mark.parametrize("material", [RodMaterial(profile=STEP), RUBBER[2]], ids=["segments", "swelling"])
+def test_cycles_agree_with_arkimex_alone(material):
+    rod = Rod(F=60.0, k1=500.0, k2=1e2, gamma3=1e-2, material=material)
     found, marched = solve_cycle(rod, request(1e-8)), solve_by_integration(rod, request(1e-5))
     assert found.status.name == marched.status.name == "cycle"
     error = marched.errors.period_error
@@ -377,16 +377,16 @@ def test_cycles_agree_with_arkimex_alone(build):
     assert marched.measures.tip_y_max == pytest.approx(found.measures.tip_y_max, rel=error)
 
 
-SWELLING_STEP = Build("neo_hookean", "swelling", STEP)
+SWELLING_STEP = RodMaterial("neo_hookean", "swelling", STEP)
 
 
-@pytest.mark.parametrize("build", [*RUBBER, SWELLING_STEP], ids=[*NAMES, "segments"])
-def test_the_normal_form_is_the_limit_of_cycles(build):
+@pytest.mark.parametrize("material", [*RUBBER, SWELLING_STEP], ids=[*NAMES, "segments"])
+def test_the_normal_form_is_the_limit_of_cycles(material):
     """Amplitude squared over the distance, by Richardson extrapolation from four forces.
 
     The truncation error is of fourth order, at most 1e-9 here; the rest is the error of the cycles.
     """
-    rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, build=build)
+    rod = Rod(F=0.0, k1=500.0, k2=1e3, gamma3=1e-3, gamma1=0.8, taper=0.8, material=material)
     found = solve_criticality(rod, CriticalityRequest(60.0, 1e-9, True, 2))
     hopf, born = found.hopf_points[0], found.coefficients[0]
     assert found.status.name == "ok"
@@ -401,11 +401,13 @@ def test_the_normal_form_is_the_limit_of_cycles(build):
     assert math.sqrt(ratios[0]) == pytest.approx(born.amplitude_coefficient, rel=1e-8)
 
 
-@pytest.mark.parametrize("build", RUBBER, ids=NAMES)
-def test_inextensible_cones_of_every_law_are_one(build):
+@pytest.mark.parametrize("material", RUBBER, ids=NAMES)
+def test_inextensible_cones_of_every_law_are_one(material):
     """With k1 = inf no law acts but through the bending factor at h1 = 1, which is 1."""
     values = {"F": 20.0, "k1": math.inf, "k2": math.inf, "gamma3": 0.0, "taper": 0.6}
-    linear, arm = (solve_cycle(Rod(**values, build=b), request(1e-7)) for b in (DEFAULT_BUILD, build))
+    linear, arm = (
+        solve_cycle(Rod(**values, material=b), request(1e-7)) for b in (DEFAULT_MATERIAL, material)
+    )
     assert arm.status == linear.status
     assert arm.measures.period == pytest.approx(linear.measures.period, rel=2e-7)
     assert arm.measures.tip_y_max == pytest.approx(linear.measures.tip_y_max, rel=2e-7)
@@ -422,7 +424,7 @@ def test_a_cone_begins_to_beat_where_its_thresholds_say():
 
 def test_a_neighbour_is_restored_with_its_build():
     """A chain that was interrupted goes on with the same data."""
-    rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, build=Build(profile=STEP))
+    rod = Rod(F=50.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=0.9, material=RodMaterial(profile=STEP))
     neighbour = solve_cycle(rod, request(1e-5), None, "F").neighbour
     again = CycleStart.from_arrays(neighbour.arrays())
     assert again.predictor.orbit.form.rod == rod
@@ -436,7 +438,7 @@ def test_a_neighbour_is_restored_with_its_build():
 def test_a_slow_fast_cycle_far_longer_than_the_time_constant_of_its_mode_is_found():
     """The leading mode does not oscillate; a run of so many time constants saw one return or none."""
     values = {"F": 180.12686914945215, "k1": 202.094026246852, "k2": 97.0201637314358, "gamma3": 7.6e-4}
-    rod = Rod(**values, gamma1=0.81, taper=1.463, build=Build("neo_hookean"))
+    rod = Rod(**values, gamma1=0.81, taper=1.463, material=RodMaterial("neo_hookean"))
     found = solve_cycle(rod, request(1e-5))
     assert found.status.name == "cycle", found.message
     assert found.linear_frequency == 0.0
@@ -460,7 +462,7 @@ def test_a_motion_that_repeats_on_a_coarse_mesh_alone_is_integrated_on_a_finer_o
         k2=123.82153699260373,
         gamma3=9.38533509971412e-05,
         gamma1=0.19147935827034565,
-        build=Build("neo_hookean", "swelling", profile),
+        material=RodMaterial("neo_hookean", "swelling", profile),
     )
     found = solve_cycle(rod, request(1e-5))
     assert found.status.name == "cycle", found.message

@@ -14,7 +14,7 @@ from rodsweep.solve.cycle.accuracy.refinement import refined_cycle_of_any_period
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
 from rodsweep.solve.orbit.path_differences import PATH_INDEX, PERIOD_INDEX, Y_INDEX, path_differences
@@ -64,7 +64,7 @@ def test_finer_meshes_differ_by_no_more_than_is_stated(near):
     for field, parts in (("order", known.space_errors), ("interval_count", known.time_errors)):
         finer = replace(FINE, **{field: 2 * getattr(FINE, field)})
         true = path_differences(
-            CyclePath(found), CyclePath(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
+            CycleMotion(found), CycleMotion(newton(finer.interpolated_orbit(found), 1e-12, MEMORY).orbit)
         )
         for which in (PERIOD_INDEX, Y_INDEX, PATH_INDEX):
             assert true[which] <= CALIBRATION_SETTINGS.safety_factor * parts[which] + 1e-12

@@ -28,7 +28,7 @@ from rodsweep.solve.cycle.transient import schemes, transient_integration
 from rodsweep.solve.motion.integrator import destroy_integrators
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath, measures_of
+from rodsweep.solve.orbit.measures import CycleMotion, measures_of
 from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
 from rodsweep.solve.orbit.orbit import Orbit, interval_lengths, node_times
 from rodsweep.solve.orbit.symmetry import NO_SYMMETRY, REFLECTION
@@ -345,8 +345,8 @@ def test_three_periods_are_recognised_and_cut_to_one():
     half = newton(orbit_at_fifty().on_mesh(uniform_mesh(1, 16), 12, 4), 1e-10, NewtonWorkspace()).orbit
     thrice = replace(repeated(half, 3), symmetry=REFLECTION)
     thrice = replace(thrice, values=np.append(thrice.values[:-1], 3 * half.period))
-    assert [common_harmonic_divisor(CyclePath(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
-    assert [possible_period_divisor(CyclePath(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
+    assert [common_harmonic_divisor(CycleMotion(orbit), 1e-3) for orbit in (half, thrice)] == [1, 3]
+    assert [possible_period_divisor(CycleMotion(orbit), 1e-8) for orbit in (half, thrice)] == [1, 3]
     assert restricted_to_minimal_period(half) is half
     once = with_matrix_within_distance(
         newton(restricted_to_minimal_period(thrice), 1e-10, NewtonWorkspace()), 0.0
@@ -367,7 +367,7 @@ def orbit_on(elements, order):
 @pytest.mark.parametrize("elements, order", [(1, 15), (2, 8)])
 def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     half = orbit_on(elements, order)
-    path, form = CyclePath(half), half.form
+    path, form = CycleMotion(half), half.form
     states = np.concatenate((half.equidistant_states, REFLECTION.apply(half.equidistant_states, form.layout)))
     tip = form.tip_coordinates(states).T
     assert path.resampled_tip(22 * 4)[::4] == pytest.approx(tip, abs=1e-13)
@@ -376,14 +376,14 @@ def test_the_path_is_that_of_the_states_strains_and_shapes(elements, order):
     waves = np.exp(2j * np.pi * np.outer(np.arange(22) / 22, np.arange(23)))
     assert np.tensordot(waves, series, 1).real.swapaxes(0, 1) == pytest.approx(strains, abs=1e-12)
     assert path.bending_harmonics == pytest.approx(np.linalg.norm(series[1:, 2], axis=1), abs=1e-13)
-    unsymmetric = CyclePath(repeated(half, 2))
+    unsymmetric = CycleMotion(repeated(half, 2))
     assert unsymmetric.tip_coefficients == pytest.approx(path.tip_coefficients, abs=1e-13)
     assert unsymmetric.bending_harmonics == pytest.approx(path.bending_harmonics, abs=1e-12)
     assert unsymmetric.extrema == pytest.approx(path.extrema, rel=1e-13)
 
 
 def test_extrema_are_those_of_a_dense_path():
-    path = CyclePath(orbit_on(1, 15))
+    path = CycleMotion(orbit_on(1, 15))
     x, y, theta = path.resampled_tip(20000).T
     dense = {"tip_x_min": x.min(), "tip_x_max": x.max(), "tip_y_max": y.max(), "tip_theta_max": theta.max()}
     assert path.extrema == pytest.approx(dense, rel=1e-6)
@@ -392,7 +392,7 @@ def test_extrema_are_those_of_a_dense_path():
 
 def test_means_are_integrals_by_the_methods_own_quadrature():
     half = orbit_on(2, 8)
-    m, stages = measures_of(CyclePath(half)), half.stage_states.reshape(-1, half.form.unknown_count)
+    m, stages = measures_of(CycleMotion(half)), half.stage_states.reshape(-1, half.form.unknown_count)
     power, weights = (
         np.empty((2, len(stages))),
         np.outer(interval_lengths(12), half.collocation.weights).ravel(),
@@ -444,7 +444,7 @@ def test_harmonics_in_common_are_a_shorter_period_for_all_that_is_known(sizes, e
 
 def test_a_period_in_doubt_is_not_called_a_cycle(monkeypatch):
     monkeypatch.setattr(
-        "rodsweep.solve.cycle.accuracy.cycle_verdict.possible_period_divisor", lambda *given: 2
+        "rodsweep.solve.cycle.accuracy.refined_cycle.possible_period_divisor", lambda *given: 2
     )
     c = solve_cycle(rod_of(50.0, *SOFT), CycleRequest(1e-4, 0.1, 3, 0, 0, 0, 300))
     assert c.status == CycleStatus.not_settled

@@ -10,7 +10,7 @@ from rodsweep.solve.cycle.accuracy.error_indicators import AMPLITUDE_ERROR_INDEX
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.orbit.compiled_measures import write_powers
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton, with_matrix_within_distance
 
 STAGES, FINE = 4, 24
@@ -33,8 +33,8 @@ def orbit(request):
 def test_amplitude_error_by_energy_has_the_order_of_magnitude_of_the_error(orbit, intervals):
     """On the same elements, so that the error is that of the time intervals alone."""
     found, exact = converged(orbit, intervals), converged(orbit, FINE)
-    path = CyclePath(found.orbit)
-    y = [one.extrema["tip_y_max"] for one in (path, CyclePath(exact.orbit))]
+    path = CycleMotion(found.orbit)
+    y = [one.extrema["tip_y_max"] for one in (path, CycleMotion(exact.orbit))]
     estimate = error_indicators(found, path)[AMPLITUDE_ERROR_INDEX]
     assert estimate / 10 < abs(y[0] / y[1] - 1) < 10 * estimate
 

@@ -10,8 +10,8 @@ from rods import rod_of
 from surveyed import RODS
 
 from rodsweep.discretization.elements.trigonometric import time_derivative
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.by_integration import solve_by_integration
 from rodsweep.solve.cycle.limit_cycle import CycleRequest, CycleStatus, solve_cycle
@@ -152,7 +152,8 @@ def arm_with_jump(u, tip_gamma2=1.0, tip_gamma3=1.0, **parameters):
     """An arm whose drags jump at u, with factors 1 before the jump."""
     base, tip = (1.0,) * 6, (1.0,) * 4 + (tip_gamma2, tip_gamma3)
     return Rod(
-        build=Build("linear", "fixed", Profile((0.0, u, u, 1.0), (base, base, tip, tip))), **parameters
+        material=RodMaterial("linear", "fixed", Profile((0.0, u, u, 1.0), (base, base, tip, tip))),
+        **parameters,
     )
 
 
@@ -195,7 +196,9 @@ def test_distances_that_stay_below_the_noise_show_that_the_motion_has_settled():
 def test_a_motion_that_settles_fast_is_settled_at_low_accuracy():
     """After 400 returns, each 8e-5 from the one before, the motion was said not to repeat."""
     base, tip = (1.0, 1.0, 3.51, 1.0, 1.0, 1.0), (3.51, 1.0, 4.21, 1.0, 0.196, 1.11)
-    build = Build("neo_hookean", "swelling", Profile((0.0, 0.237, 0.237, 1.0), (base, base, tip, tip)))
-    rod = Rod(F=68.823, k1=254.7, k2=346.3, gamma3=0.1302, gamma1=1.196, taper=0.663, build=build)
+    material = RodMaterial(
+        "neo_hookean", "swelling", Profile((0.0, 0.237, 0.237, 1.0), (base, base, tip, tip))
+    )
+    rod = Rod(F=68.823, k1=254.7, k2=346.3, gamma3=0.1302, gamma1=1.196, taper=0.663, material=material)
     found = solve_by_integration(rod, replace(request(1e-2, most_periods=60), amplitude=0.01))
     assert found.status == IntegrationStatus.cycle

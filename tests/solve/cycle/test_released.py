@@ -7,7 +7,7 @@ import pytest
 
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.limit_cycle import Cycle, CycleRequest, CycleStatus, solve_cycle
+from rodsweep.solve.cycle.limit_cycle import CycleOutcome, CycleRequest, CycleStatus, solve_cycle
 from rodsweep.solve.cycle.transient.motion_mesh import motion_mesh
 from rodsweep.solve.cycle.transient.shape_trace import SHAPE_TRACE_SETTINGS
 from rodsweep.solve.motion.fixed_tip import bent_state_with_tip_at
@@ -20,7 +20,7 @@ BISTABLE = Rod(F=175.0, k1=200.0, k2=1e4, gamma3=1e-4)
 REQUEST = CycleRequest(1e-7, 0.01, 8, 0, 48, 33, 400, tip=(0.7, 0.5), frames=32)
 
 
-def released(rod: Rod, x: float, y: float) -> Cycle:
+def released(rod: Rod, x: float, y: float) -> CycleOutcome:
     return solve_cycle(rod, replace(REQUEST, tip=(x, y)))
 
 

@@ -7,8 +7,8 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.stress.form import STRESS_FORM_SETTINGS, StressForm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
@@ -37,16 +37,16 @@ def period_and_y(rod, accuracy=1e-8):
 
 
 def falling_to(factor):
-    """Build of an arm whose axial drag falls to `factor` at the tip."""
+    """Material of an arm whose axial drag falls to `factor` at the tip."""
     rows = [[1.0] * len(FACTOR_NAMES) for _ in range(3)]
     for row, value in zip(rows, (1.0, factor**0.5, factor), strict=True):
         row[FACTOR_NAMES.index("gamma1")] = value
-    return Build(profile=Profile((0.0, 0.5, 1.0), tuple(map(tuple, rows))))
+    return RodMaterial(profile=Profile((0.0, 0.5, 1.0), tuple(map(tuple, rows))))
 
 
 @pytest.mark.parametrize("factor", [None, 0.01])
 def test_the_two_forms_have_the_same_cycle(factor):
-    arm = replace(ROD, build=falling_to(factor)) if factor else ROD
+    arm = replace(ROD, material=falling_to(factor)) if factor else ROD
     base = LIMIT / (factor or 1)
     with_v1, without = (replace(arm, gamma1=base * (1 + sign * 1e-9)) for sign in (-1, 1))
     forms = [StressForm(rod, uniform_mesh(1, 8)).unknown_velocities for rod in (with_v1, without)]
@@ -65,7 +65,7 @@ def test_period_and_amplitude_are_linear_in_a_small_drag_down_to_none():
 
 def test_an_arm_whose_axial_drag_falls_to_little_beats():
     """From 1e-3 at the base to 1e-6 at the tip. In the form without v1 Newton's method found no cycle."""
-    arm = replace(ROD, gamma1=1e-3, build=falling_to(1e-3))
+    arm = replace(ROD, gamma1=1e-3, material=falling_to(1e-3))
     assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(arm, 1e-8), rel=2e-6)
     assert period_and_y(arm, 1e-6) == pytest.approx(period_and_y(replace(ROD, gamma1=1e-14)), rel=1e-2)
 
@@ -73,12 +73,12 @@ def test_an_arm_whose_axial_drag_falls_to_little_beats():
 @pytest.mark.parametrize(("gamma1", "factor"), [(1.0, 1e-9), (1e-3, 1e-9), (1e-9, 1e-3), (1.0, 0.5)])
 def test_no_part_of_an_integrated_arm_has_less_axial_drag_than_can_be_integrated(gamma1, factor):
     """The drag of the base alone was raised."""
-    arm = replace(ROD, gamma1=gamma1, build=falling_to(factor))
+    arm = replace(ROD, gamma1=gamma1, material=falling_to(factor))
     integrated = integrable_rod(arm)
     least = MOTION_MESH_SETTINGS.min_axial_drag
     u = np.linspace(0.01, 0.99, 50)
     drags = [
-        rod.gamma1 * rod.build.profile.factors_at(u)[FACTOR_NAMES.index("gamma1")]
+        rod.gamma1 * rod.material.profile.factors_at(u)[FACTOR_NAMES.index("gamma1")]
         for rod in (integrated, arm)
     ]
     assert (drags[0] >= least * (1 - 1e-12)).all()
@@ -86,7 +86,7 @@ def test_no_part_of_an_integrated_arm_has_less_axial_drag_than_can_be_integrated
     assert integrated.gamma1 == max(gamma1, least)
     assert (abs(drags[0] - drags[1]) <= least).all()  # what lies between the rows moves little
     others = [name != "gamma1" for name in FACTOR_NAMES]
-    assert (integrated.build.profile.factors_at(u)[others] == 1).all()
+    assert (integrated.material.profile.factors_at(u)[others] == 1).all()
 
 
 def test_a_rubber_arm_beats_at_a_drag_at_which_the_eliminated_form_finds_no_cycle():
@@ -94,8 +94,8 @@ def test_a_rubber_arm_beats_at_a_drag_at_which_the_eliminated_form_finds_no_cycl
     jump[1][FACTOR_NAMES.index("gamma1")] = 0.1
     jump[1][FACTOR_NAMES.index("k3")] = 0.7
     rows = tuple(tuple(row) for row in (jump[0], jump[0], jump[1], jump[1]))
-    build = Build("neo_hookean", "swelling", Profile((0.0, 0.5, 0.5, 1.0), rows))
-    arm = Rod(F=40.0, k1=1e4, k2=30.0, gamma3=1e-4, gamma1=1e-3, build=build)
+    material = RodMaterial("neo_hookean", "swelling", Profile((0.0, 0.5, 0.5, 1.0), rows))
+    arm = Rod(F=40.0, k1=1e4, k2=30.0, gamma3=1e-4, gamma1=1e-3, material=material)
     assert period_and_y(arm) == pytest.approx(period_and_y(arm, 1e-5), rel=2e-5)
 
 

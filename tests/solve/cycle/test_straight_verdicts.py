@@ -7,7 +7,7 @@ import pytest
 from rods import rod_of
 from surveyed import few
 
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below
@@ -86,7 +86,11 @@ def test_the_leading_eigenvalue_is_the_spectrums_also_from_a_rod_near_by():
         (Rod(F=14.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=0.5), 17.0, 1.0),
         (Rod(F=40.0, k1=1e4, k2=1e3, gamma3=1e-2, taper=0.5), 50.0, 1.0),  # a second pair grows from 43.5 on
         (Rod(F=1.0, k1=1e3, k2=1e3, gamma3=1e-2, taper=0.7), 30.0, 0.5),  # real, then a pair
-        (Rod(F=20.0, k1=200.0, k2=1e4, gamma3=1e-4, build=Build("neo_hookean", "swelling")), 40.0, 1.0),
+        (
+            Rod(F=20.0, k1=200.0, k2=1e4, gamma3=1e-4, material=RodMaterial("neo_hookean", "swelling")),
+            40.0,
+            1.0,
+        ),
     ],
 )
 def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):

@@ -88,7 +88,7 @@ def test_another_integrator_on_another_mesh_is_on_the_same_torus():
             returns.append(system.layout.stress_field(state(low), "m3"))
     found = torus_frequency_of(np.array(returns[133:]), abs(np.angle(rod(207.0, 400).multipliers[0])))
     assert found.angle_per_return == pytest.approx(ROTATION, abs=1e-3)
-    assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error / 5
+    assert found.prediction_error < TORUS_TEST_SETTINGS.max_prediction_error_ratio / 5
 
 
 # --- returns that are made up -----------------------------------------------------------------------------
@@ -109,13 +109,17 @@ def test_rotation_on_a_closed_curve_is_found():
 @pytest.mark.parametrize("rate", [3e-3, -3e-3])
 def test_growing_and_decaying_modulations_are_not_predicted(rate):
     returns = 5 + (closed_curve(ANGLE * NUMBERS) - 5) * np.exp(rate * NUMBERS)[:, None]
-    assert torus_frequency_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
+    assert (
+        torus_frequency_of(returns, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error_ratio
+    )
 
 
 def test_irregular_returns_are_not_predicted():
     noise = np.random.default_rng(1).normal(size=len(NUMBERS))
     irregular = closed_curve(ANGLE * NUMBERS + np.cumsum(0.3 * noise))
-    assert torus_frequency_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error
+    assert (
+        torus_frequency_of(irregular, ANGLE).prediction_error > TORUS_TEST_SETTINGS.max_prediction_error_ratio
+    )
 
 
 @pytest.mark.parametrize("turns, after", [(1, 2), (1, 3), (1, 4), (2, 9), (3, 11), (6, 13), (2, 15)])

@@ -12,8 +12,8 @@ from rodsweep.discretization.straight.dense_eigenproblem import dense_eigenprobl
 from rodsweep.discretization.straight.tip_layer import tip_layer_ratio
 from rodsweep.discretization.straight.transverse_mesh import mesh_for, pencil_on
 from rodsweep.model.adjoint import tip_layer_factor
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.modes.inverse_iteration import mode_vectors
 from rodsweep.solve.modes.leading_modes import ModesRequest, solve_modes
@@ -24,9 +24,9 @@ INF = float("inf")
 TIGHT = ModesRequest(modes=4, accuracy=1e-10, node_count=65, computes_growth=True)
 NEAR = ModesRequest(modes=4, accuracy=1e-9, node_count=65, computes_growth=True)
 """Rounding leaves 2e-10 of the bending strain of the steepest of `ARMS`."""
-ONES = Build(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
+ONES = RodMaterial(profile=Profile((0.0, 1.0), ((1.0,) * 6, (1.0,) * 6)))
 STEPS = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, (0.3, 0.5, 0.2, 1.0, 1.5, 0.4), (1.0,) * 6))
-SWELLING = Build("neo_hookean", "swelling")
+SWELLING = RodMaterial("neo_hookean", "swelling")
 UNIFORM = [
     {"F": 15.0, "k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
     {"F": 30.0, "k1": 1e4, "k2": 1e4, "gamma3": 1e-4},
@@ -36,10 +36,10 @@ UNIFORM = [
 ]
 ARMS = [
     Rod(F=10.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=0.5),
-    Rod(F=14.0, k1=500.0, k2=200.0, gamma3=1e-2, taper=0.6, build=SWELLING),
-    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=1e-3, build=Build(profile=STEPS)),
-    Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=2.0, build=Build("neo_hookean", "fixed", STEPS)),
-    Rod(F=25.0, k1=500.0, k2=500.0, gamma3=1e-3, build=SWELLING),
+    Rod(F=14.0, k1=500.0, k2=200.0, gamma3=1e-2, taper=0.6, material=SWELLING),
+    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=1e-3, material=RodMaterial(profile=STEPS)),
+    Rod(F=40.0, k1=1e4, k2=1e4, gamma3=1e-4, taper=2.0, material=RodMaterial("neo_hookean", "fixed", STEPS)),
+    Rod(F=25.0, k1=500.0, k2=500.0, gamma3=1e-3, material=SWELLING),
 ]
 
 
@@ -65,7 +65,7 @@ def numbers(result):
 
 
 @pytest.mark.parametrize("values", UNIFORM)
-@pytest.mark.parametrize("arm", [{"build": ONES}, {"taper": 1 + 1e-12}])
+@pytest.mark.parametrize("arm", [{"material": ONES}, {"taper": 1 + 1e-12}])
 def test_an_arm_that_is_uniform_has_the_modes_of_a_uniform_rod(values, arm):
     exact, found = solve_modes(Rod(**values), TIGHT), solve_modes(Rod(**values, **arm), TIGHT)
     assert found.status == SpectrumStatus.ok
@@ -177,7 +177,7 @@ def test_unshearable_limit_of_an_arm_is_reached_at_first_order():
 
 SLAVED = [
     Rod(F=10.0, k1=1e4, k2=200.0, gamma3=0.0, taper=0.5),
-    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=0.0, build=Build(profile=STEPS)),
+    Rod(F=12.0, k1=1e3, k2=1e3, gamma3=0.0, material=RodMaterial(profile=STEPS)),
     Rod(F=1.0, k1=1e4, k2=1e8, gamma3=0.0, taper=0.3),
     Rod(F=-30.0, k1=1e4, k2=12.0, gamma3=0.0, taper=0.9),
 ]
@@ -195,7 +195,7 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
             return at.c3 * np.cos(T) ** 2 - foundation * np.sin(T) ** 2
         return at.c3 - foundation * T**2
 
-    T, breaks, poles = np.zeros(1), rod.build.breaks, rod.F < 0
+    T, breaks, poles = np.zeros(1), rod.material.breaks, rod.F < 0
     for start, end in zip(breaks[:-1], breaks[1:], strict=True):
         T = solve_ivp(slope, (start, end), T, method="Radau", rtol=1e-11, atol=1e-14).y[:, -1]
     assert tip_layer_ratio(rod) == pytest.approx(np.tan(T[0]) if poles else T[0], rel=1e-8)
@@ -204,7 +204,7 @@ def test_the_slaved_layer_of_an_arm_solves_its_riccati_equation(rod):
 @pytest.mark.parametrize("k2", [30.0, 1e4, 1e9])
 def test_the_slaved_layer_of_a_uniform_arm_is_the_closed_form(k2):
     values = {"F": 15.0, "k1": 1e4, "k2": k2, "gamma3": 0.0}
-    assert tip_layer_ratio(Rod(**values, build=ONES)) == pytest.approx(
+    assert tip_layer_ratio(Rod(**values, material=ONES)) == pytest.approx(
         tip_layer_factor(Rod(**values)), rel=1e-12
     )
 

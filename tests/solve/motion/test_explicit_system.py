@@ -51,13 +51,13 @@ def rough(system):
 
 def injected_and_dissipated(system, z):
     """-F v1(1), by the reaction v1(1) of the tip's stress, and <Gamma V, V>."""
-    material, matrices = system.rod.material, system.mesh.matrices
+    coefficients, matrices = system.rod.balance_coefficients, system.mesh.matrices
     stress = np.zeros((3, system.mesh.node_count + 1))
     stress[:, :-1] = z.reshape(3, -1) / system.sqrt_compliance[:, :-1]
-    stress += material.tip_stress[:, None]
-    V = velocity(material, stress, stress @ matrices.D.T)
-    dissipated = dissipated_power_per_length(material, V) @ matrices.weights
-    straining = ad(strain(material, stress), V)[0, -1]  # ad_E V of the tip
+    stress += coefficients.tip_stress[:, None]
+    V = velocity(coefficients, stress, stress @ matrices.D.T)
+    dissipated = dissipated_power_per_length(coefficients, V) @ matrices.weights
+    straining = ad(strain(coefficients, stress), V)[0, -1]  # ad_E V of the tip
     reaction = matrices.weights[-1] * straining - matrices.D[:, -1] @ (matrices.weights * V[0])
     return system.rod.F * reaction, dissipated
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from rodsweep.discretization.explicit_system import ExplicitSystem
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.cycle import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
@@ -17,7 +17,12 @@ from rodsweep.solve.motion.time_scheme import TimeScheme
 
 STIFF_END = Profile((0.0, 0.6, 0.6, 1.0), (*((1.0,) * 6,) * 2, *((7.0, 7.0, 7.0, 1.0, 1.0, 0.3),) * 2))
 RUBBER = Rod(
-    F=60.0, k1=830.0, k2=35.0, gamma3=2e-6, gamma1=1.0, build=Build("neo_hookean", "swelling", STIFF_END)
+    F=60.0,
+    k1=830.0,
+    k2=35.0,
+    gamma3=2e-6,
+    gamma1=1.0,
+    material=RodMaterial("neo_hookean", "swelling", STIFF_END),
 )
 DURATION = 0.005
 
@@ -65,9 +70,9 @@ def test_rubber_that_loses_its_stiffness_leaves_the_model(step):
     """At forces that differ by rounding errors only: the last accepted state may be convex or not."""
     soft_end = (0.2267, 7.722, 0.1047, 1.0, 1.0, 2.409)
     profile = Profile((0.0, 0.283, 0.283, 1.0), ((1.0,) * 6, (1.0,) * 6, soft_end, soft_end))
-    build = Build("neo_hookean", "swelling", profile)
+    material = RodMaterial("neo_hookean", "swelling", profile)
     F = 81.05 * (1 + step * 1e-13)
-    rod = Rod(F=F, k1=222.81, k2=9.0225, gamma3=3.95e-5, gamma1=1.0, build=build)
+    rod = Rod(F=F, k1=222.81, k2=9.0225, gamma3=3.95e-5, gamma1=1.0, material=material)
     cycle = solve_cycle(rod, CycleRequest(1e-6, 0.1, 1, 0, 0, 0, 400))
     assert cycle.status == CycleStatus.left_the_model
     assert "not convex" in cycle.message

@@ -5,7 +5,7 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import uniform_mesh
 from rodsweep.discretization.explicit_system import ExplicitSystem
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.motion.fixed_tip import FIXED_TIP_SETTINGS, bent_state_with_tip_at
 
@@ -14,7 +14,7 @@ RODS = {
     "soft": Rod(F=20.0, k1=60.0, k2=30.0, gamma3=0.1),
     "stiff": Rod(F=0.0, k1=1e8, k2=1e8, gamma3=1e-6),
     "pulled": Rod(F=-20.0, k1=1e4, k2=1e2, gamma3=1e-2),
-    "rubber": Rod(F=20.0, k1=100.0, k2=30.0, gamma3=0.1, build=Build(law="neo_hookean")),
+    "rubber": Rod(F=20.0, k1=100.0, k2=30.0, gamma3=0.1, material=RodMaterial(law="neo_hookean")),
 }
 EACH_ROD = pytest.mark.parametrize("rod", RODS.values(), ids=RODS)
 PLACES = [(0.6, 0.2), (0.6, -0.2), (0.3, 0.0), (0.0, 0.55), (-0.3, 0.2), (0.0, 0.0), (-0.1, -0.5)]

@@ -13,7 +13,7 @@ from surveyed import survey_only
 
 from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.errors import InputError
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.post.figures import draw
 from rodsweep.post.figures.cycle.portrait import draw_portrait
@@ -30,7 +30,7 @@ from rodsweep.solve.motion.leading_mode import leading_mode
 SOFT = (1e4, 1e2, 1e-2, 1.0)
 STRETCHABLE = (200.0, 1e4, 1e-4, 1.0)
 COUNT = 1000
-SWELLING = Build("neo_hookean", "swelling")
+SWELLING = RodMaterial("neo_hookean", "swelling")
 
 
 @cache
@@ -72,7 +72,7 @@ def test_transient_is_the_motion_that_another_integrator_finds():
     [
         (Rod(F=50.0, k1=1e4, k2=1e4, gamma3=1e-4), 0.01, 3e-8),
         (
-            Rod(F=31.0, k1=2380.0, k2=1248.0, gamma3=2.82e-3, gamma1=0.5, taper=0.506, build=SWELLING),
+            Rod(F=31.0, k1=2380.0, k2=1248.0, gamma3=2.82e-3, gamma1=0.5, taper=0.506, material=SWELLING),
             1e-3,
             1e-4,
         ),

@@ -7,15 +7,15 @@ import pytest
 
 from rodsweep.discretization.elements.mesh import mesh_with_edges
 from rodsweep.discretization.stress.form import StressForm
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.transient.motion_mesh import coarse_mesh_along_branch
 from rodsweep.solve.orbit.element_order_ratios import ORDER_RATIO_SETTINGS, element_order_ratios
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.newton import newton
 from rodsweep.solve.orbit.orbit_mesh import OrbitMesh, mesh_of
 from rodsweep.solve.orbit.tails import coefficients_of_elements
@@ -33,7 +33,7 @@ def refined(name):
     """(cycle, memory) of an arm of `RODS`."""
     at, stiffness, values, names = RODS[name]
     profile = Profile((0.0, at, at, 1.0), ((1.0,) * len(FACTOR_NAMES),) * 2 + ((*stiffness, 1, 1, 1),) * 2)
-    rod = Rod(**values, k1=1e4, k2=1e4, gamma3=1e-3, gamma1=0.7, build=Build(*names, profile))
+    rod = Rod(**values, k1=1e4, k2=1e4, gamma3=1e-3, gamma1=0.7, material=RodMaterial(*names, profile))
     memory = NewtonWorkspace()
     form = StressForm(rod, coarse_mesh_along_branch(rod))
     return refined_cycle(orbit_from_hopf(form, hopf_point_below(rod), memory), ACCURACY, memory), memory
@@ -48,7 +48,7 @@ def test_a_cycle_on_elements_of_unequal_orders_is_within_its_error(name):
     equal = mesh_with_edges(grid.edges, grid.order + 8)
     exact = newton(orbit.on_mesh(equal, 2 * orbit.interval_count, orbit.stage_count + 1), 1e-12, memory).orbit
     assert abs(found.measures.period / exact.period - 1) <= found.errors.period_error <= 3 * ACCURACY
-    y = CyclePath(exact).extrema["tip_y_max"]
+    y = CycleMotion(exact).extrema["tip_y_max"]
     assert abs(found.measures.tip_y_max / y - 1) <= found.errors.amplitude_error
 
 

@@ -8,16 +8,16 @@ from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.orbit import measures
 from rodsweep.solve.orbit.least_stretch import LEAST_STRETCH_SETTINGS
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 
 
 @pytest.fixture(scope="module")
-def compressed_cycles() -> list[tuple[CyclePath, float, float]]:
+def compressed_cycles() -> list[tuple[CycleMotion, float, float]]:
     """(path, smallest nodal h1, smallest h1 as measured) of cycles of a rod that the force almost crushes."""
     seen = []
     search = measures.least_stretch_between_nodes
 
-    def recorded(path: CyclePath, at_nodes: float) -> float:
+    def recorded(path: CycleMotion, at_nodes: float) -> float:
         found = search(path, at_nodes)
         seen.append((path, at_nodes, found))
         return found
@@ -29,10 +29,10 @@ def compressed_cycles() -> list[tuple[CyclePath, float, float]]:
     return seen
 
 
-def least_on_fine_grid(path: CyclePath) -> float:
+def least_on_fine_grid(path: CycleMotion) -> float:
     """Smallest h1 at 4000 positions on the rod and 1024 times of the period."""
     c = path.strain_coefficients[:, 0]
-    positions = path.orbit.form.mesh.element_evaluation_matrix(np.linspace(0.0, 1.0, 4000))
+    positions = path.orbit.form.mesh.one_sided_evaluation_matrix(np.linspace(0.0, 1.0, 4000))
     turns = np.exp(2j * np.pi * np.outer(np.arange(1024) / 1024, np.arange(len(c))))
     return float((turns @ (c @ positions.T)).real.min())
 

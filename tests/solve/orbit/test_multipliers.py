@@ -41,8 +41,8 @@ def test_eigenvalues_of_any_size_are_right_to_the_largest_times_rounding():
 
 
 def test_what_is_left_out_is_rounding():
-    A = np.diag([1.0, 1e-8, 0.1 * FLOQUET_MULTIPLIER_SETTINGS.negligible_column, 0.0])
-    assert compressed_matrix(A, FLOQUET_MULTIPLIER_SETTINGS.negligible_column).shape == (2, 2)
+    A = np.diag([1.0, 1e-8, 0.1 * FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio, 0.0])
+    assert compressed_matrix(A, FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio).shape == (2, 2)
     assert sorted(nonzero_eigenvalues(A).real) == pytest.approx([1e-8, 1.0], rel=1e-14)
     assert nonzero_eigenvalues(np.zeros((3, 3))) == pytest.approx([0.0])
 

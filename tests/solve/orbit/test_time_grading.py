@@ -12,7 +12,7 @@ from rodsweep.solve.branch.symmetry_breaking import extended_to_whole_period
 from rodsweep.solve.cycle.accuracy.minimal_period import restricted_to_minimal_period
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
-from rodsweep.solve.orbit.measures import CyclePath
+from rodsweep.solve.orbit.measures import CycleMotion
 from rodsweep.solve.orbit.mesh_choice import grading_and_interval_ratio, mesh_from_tails, regraded
 from rodsweep.solve.orbit.newton import newton, relative_change
 from rodsweep.solve.orbit.orbit import interval_lengths, node_times
@@ -52,7 +52,7 @@ def test_doubled_grading_repeats_in_each_half():
 
 
 def test_graded_and_uniform_orbits_agree_in_all_measures():
-    uniform, graded = (CyclePath(orbit_with(40, grading)) for grading in (UNIFORM_TIME, GRADING))
+    uniform, graded = (CycleMotion(orbit_with(40, grading)) for grading in (UNIFORM_TIME, GRADING))
     # Between the nodes the uniform path has an error of 8e-9.
     assert path_differences(graded, uniform)[:PATH_INDEX].max() < 1e-9
     assert path_differences(graded, uniform)[PATH_INDEX] < 2e-8
@@ -70,8 +70,8 @@ def test_graded_and_uniform_orbits_agree_in_all_measures():
 
 
 def test_a_graded_mesh_has_a_smaller_error_with_as_many_intervals():
-    exact = CyclePath(orbit_with(40, UNIFORM_TIME))
-    errors = [path_differences(CyclePath(orbit_with(11, g)), exact) for g in (UNIFORM_TIME, GRADING)]
+    exact = CycleMotion(orbit_with(40, UNIFORM_TIME))
+    errors = [path_differences(CycleMotion(orbit_with(11, g)), exact) for g in (UNIFORM_TIME, GRADING)]
     assert errors[1][PATH_INDEX] < errors[0][PATH_INDEX] / 2
     assert errors[1][0] < errors[0][0] / 2
     assert errors[1][EXTREMUM_INDEX] < 1e-5
@@ -108,7 +108,7 @@ def test_a_graded_orbit_over_the_whole_period_is_a_solution():
     solved = newton(whole, 1e-10, NewtonWorkspace()).orbit
     # The extended orbit is interpolated between stages.
     assert relative_change(whole, solved.values - whole.values) < 1e-5
-    differences = path_differences(CyclePath(solved), CyclePath(half))
+    differences = path_differences(CycleMotion(solved), CycleMotion(half))
     assert differences[:EXTREMUM_INDEX].max() < 1e-10
     # The time nodes of both meshes differ; between them the paths have errors of 1e-7.
     assert differences[PATH_INDEX] < 3e-7
@@ -126,7 +126,7 @@ def test_three_graded_periods_are_cut_to_one():
     once = restricted_to_minimal_period(thrice)
     assert once.grading == UNIFORM_TIME
     assert once.period == pytest.approx(half.period)
-    assert path_differences(CyclePath(once), CyclePath(half)).max() < 1e-5
+    assert path_differences(CycleMotion(once), CycleMotion(half)).max() < 1e-5
 
 
 def test_meshes_and_stored_orbits_keep_their_grading():

@@ -8,7 +8,7 @@ from reference.random_arms import random_arm
 from surveyed import RODS
 
 from rodsweep.determinant.parameter_path import ParameterPath
-from rodsweep.model.material.build import Build
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum.path import arm_count, carried_arm_count, neighbouring_rods
 from rodsweep.solve.spectrum.path.arm_count import confirmed_count_at
@@ -49,7 +49,7 @@ def test_followed_spectra_are_those_of_single_points(name):
 
 
 def test_uniform_rubber_has_the_spectra_of_its_linear_equivalent():
-    rod = Rod(F=10.0, k1=300.0, k2=1e3, gamma3=1e-3, build=Build("neo_hookean", "swelling"))
+    rod = Rod(F=10.0, k1=300.0, k2=1e3, gamma3=1e-3, material=RodMaterial("neo_hookean", "swelling"))
     stretch = NeighbouringRods(ParameterPath(rod, "F"), np.linspace(10, 200, 10))
     found = solve_stretch(stretch, REQUEST)
     assert found.certified.all()
@@ -125,7 +125,7 @@ def test_counts_of_followed_points_are_those_of_dense_eigenvalues(seed):
             # An eigenvalue of an arm in tension may be -1e-18, the largest ones of the mesh are 1e9.
             blur = 1e-16 * np.abs(dense).max()
             least, most = (int((dense.real > limit).sum()) for limit in (blur, -blur))
-            assert least <= reached.unstable_count[i] <= most, (rod, rod.build, values[i])
+            assert least <= reached.unstable_count[i] <= most, (rod, rod.material, values[i])
             for w in dense[:4]:
                 assert np.abs(reached.w[i] - w).min() <= 1e-4 * max(abs(w), 1.0)
             compared += 1

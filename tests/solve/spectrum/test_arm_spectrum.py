@@ -12,8 +12,8 @@ from surveyed import RODS
 from rodsweep.determinant.arm.determinant import ArmDeterminant
 from rodsweep.determinant.arm.hull.region import UNBOUNDED_HULL
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error
-from rodsweep.model.material.build import Build
 from rodsweep.model.material.profile import Profile
+from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.spectrum import problem, search
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
@@ -31,7 +31,7 @@ def test_random_arms_have_the_leading_eigenvalues_of_another_discretisation(seed
     for _ in range(3):
         rod = random_arm(rng, pulled=0.0)
         found, dense = solve_spectrum(rod, REQUEST), eigenvalues(rod)
-        assert (found.status, found.certified) == (SpectrumStatus.ok, True), (rod, rod.build)
+        assert (found.status, found.certified) == (SpectrumStatus.ok, True), (rod, rod.material)
         assert found.unstable_count == int((dense.real > 0).sum())
         for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
             assert np.abs(dense - w).min() <= 1e-5 * max(abs(w), 1.0)
@@ -44,7 +44,7 @@ def test_random_arms_have_the_leading_eigenvalues_of_another_discretisation(seed
 def exact_root(w, rod):
     """The root of D next to w in 32 digits, of a stepped arm of linear material."""
     mp.mp.dps = 32
-    profile = rod.build.profile
+    profile = rod.material.profile
     ends = zip(profile.u[::2], profile.u[1::2], profile.rows[::2], strict=True)
     k1, k2, F, gamma3 = map(mp.mpf, (rod.k1, rod.k2, rod.F, rod.gamma3))
 
@@ -77,7 +77,7 @@ def test_errors_of_stepped_arms_hold_in_the_last_digit(seed):
     profile = Profile((0.0, 0.3, 0.3, 0.65, 0.65, 1.0), rows)
     numbers = {"k1": 10 ** rng.uniform(2, 4.5), "k2": 10 ** rng.uniform(1, 4), "gamma3": 1e-3}
     F = min(10 ** rng.uniform(0.3, 2), 0.9 * numbers["k1"] * factors[:, 0].min())
-    rod = Rod(F=F, **numbers, build=Build(profile=profile))
+    rod = Rod(F=F, **numbers, material=RodMaterial(profile=profile))
     found = solve_spectrum(rod, REQUEST)
     assert found.status == SpectrumStatus.ok
     for w, error in zip(found.eigenvalues.tolist(), found.error_estimate.tolist(), strict=True):
@@ -86,7 +86,7 @@ def test_errors_of_stepped_arms_hold_in_the_last_digit(seed):
 
 def test_a_profile_of_ones_is_the_uniform_rod():
     uniform = solve_spectrum(Rod(**UNIFORM), REQUEST)
-    profiled = solve_spectrum(Rod(**UNIFORM, build=Build(profile=ONES)), REQUEST)
+    profiled = solve_spectrum(Rod(**UNIFORM, material=RodMaterial(profile=ONES)), REQUEST)
     np.testing.assert_allclose(profiled.eigenvalues, uniform.eigenvalues, rtol=1e-12)
     assert profiled.certified
 
@@ -95,8 +95,8 @@ def test_a_profile_of_ones_is_the_uniform_rod():
 def test_uniform_rubber_is_solved_by_its_linear_equivalent(section):
     """Both ways: the closed form of the equivalent rod, and elements with a profile of ones."""
     values = {"F": 450.0, "k1": 500.0, "k2": 1e4, "gamma3": 1e-4}
-    quick = solve_spectrum(Rod(**values, build=Build("neo_hookean", section)), REQUEST)
-    general = solve_spectrum(Rod(**values, build=Build("neo_hookean", section, ONES)), REQUEST)
+    quick = solve_spectrum(Rod(**values, material=RodMaterial("neo_hookean", section)), REQUEST)
+    general = solve_spectrum(Rod(**values, material=RodMaterial("neo_hookean", section, ONES)), REQUEST)
     assert quick.certified
     assert general.certified
     np.testing.assert_allclose(general.eigenvalues, quick.eigenvalues, rtol=1e-11)
@@ -133,7 +133,7 @@ def test_many_growing_modes_of_a_soft_segment_are_all_found():
     """Few modes are asked for; all that grow are counted, between them and beyond."""
     soft = (0.1, 0.01, 0.1, 0.1, 0.1, 0.1)
     jump = Profile((0.0, 0.4, 0.4, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
-    rod = Rod(F=4.0, k1=1e4, k2=1.0, gamma3=1e-2, build=Build(profile=jump))
+    rod = Rod(F=4.0, k1=1e4, k2=1.0, gamma3=1e-2, material=RodMaterial(profile=jump))
     found = solve_spectrum(rod, REQUEST)
     assert (found.status, found.certified, found.unstable_count) == (SpectrumStatus.ok, True, 24)
     dense = eigenvalues(rod, 10)[:4]  # two pairs, each in either order
@@ -147,7 +147,7 @@ def test_growing_modes_beyond_enough_are_solved_for_only_for_a_count(monkeypatch
     """A count needs all growing modes of a stepped arm; where no count is possible the first are enough."""
     soft = (1.0, 0.5, 0.5, 1.0, 1.0, 1.0)
     step = Profile((0.0, 0.5, 0.5, 1.0), ((1.0,) * 6, (1.0,) * 6, soft, soft))
-    rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, build=Build(profile=step))
+    rod = Rod(F=400.0, k1=1e4, k2=1e4, gamma3=0.0, material=RodMaterial(profile=step))
     wanted, whole = [], search.candidates_on_mesh
 
     def attempt(rod_problem, mesh, number, vectors, tight):
@@ -171,8 +171,8 @@ def test_two_rows_far_apart_are_the_same_arm_as_many_rows_on_their_line(factor):
 
     def leading(u):
         table = [(1.0, 1 + (factor - 1) * each, 1.0, 1.0, 1.0, 1.0) for each in u]
-        build = Build(profile=Profile(tuple(u), tuple(table)))
-        rod = Rod(F=3.8, k1=1e4, k2=1e4, gamma3=1e-4, build=build)
+        material = RodMaterial(profile=Profile(tuple(u), tuple(table)))
+        rod = Rod(F=3.8, k1=1e4, k2=1e4, gamma3=1e-4, material=material)
         return solve_spectrum(rod, SpectrumRequest(4, 1e-10, True))
 
     few = leading([0.0, 1.0])

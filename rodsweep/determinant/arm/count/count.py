@@ -39,9 +39,9 @@ NO_KNOWN_EIGENVALUES: Complex = np.empty(0, complex)
 class PhaseLost(ArithmeticError):
     """The change of arg D along the contour could not be determined; node_count: number of nodes used."""
 
-    def __init__(self, nodes: int):
+    def __init__(self, node_count: int):
         super().__init__(PHASE_LOST_MESSAGE)
-        self.node_count = nodes
+        self.node_count = node_count
 
 
 class ContourTraversal(NamedTuple):
@@ -79,10 +79,10 @@ def count_right_of(
         return EigenvalueCount(None, 0, f"no a-priori bound on the eigenvalues applies to this rod {place}")
     if line >= hull.box(max(-line, 0.0))[0]:
         return EigenvalueCount(0, 0)
-    known_w = known_w[errors < CONTOUR_SETTINGS.max_known_error * np.abs(known_w.real - line)]
+    known_w = known_w[errors < CONTOUR_SETTINGS.max_known_error_ratio * np.abs(known_w.real - line)]
     known_w = known_w[has_conjugate(known_w)]
     height = np.maximum(np.abs(known_w.imag), abs(line))
-    known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance * height]
+    known_w = known_w[np.abs(known_w.real - line) < CONTOUR_SETTINGS.max_known_distance_ratio * height]
     try:
         change, nodes = _phase_change(line, determinant, hull, known_w)
     except PhaseLost as lost:
@@ -100,7 +100,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
     if not math.isfinite(hull.a):
         return False
     try:
-        determinant.propagators_for(abs(_upper_right_corner(0.0, hull)), CONTOUR_SETTINGS.max_level_ratio)
+        determinant.propagators_for(abs(_upper_right_corner(0.0, hull)), CONTOUR_SETTINGS.max_W_ratio)
     except FloatingPointError:
         return False
     return True
@@ -109,7 +109,7 @@ def is_countable(determinant: ArmDeterminant, hull: EigenvalueHull) -> bool:
 def largest_w_of_count(line: float, determinant: ArmDeterminant, hull: EigenvalueHull) -> float:
     """The largest |w| at which a count right of the line evaluates D."""
     corner = _upper_right_corner(line, hull)
-    return abs(corner) + CONTOUR_SETTINGS.first_radius * determinant.w_scale(corner)
+    return abs(corner) + CONTOUR_SETTINGS.first_radius_in_lengths * determinant.w_scale(corner)
 
 
 def _upper_right_corner(line: float, hull: EigenvalueHull) -> complex:
@@ -126,10 +126,10 @@ def _phase_change(
     corners = np.array([corner.real, corner, complex(line, corner.imag), line])
     # The elements for the largest |w| come first, because they serve most other w of the contour.
     largest_w = largest_w_of_count(line, determinant, hull)
-    propagators = determinant.propagators_for(largest_w, CONTOUR_SETTINGS.max_level_ratio)
+    propagators = determinant.propagators_for(largest_w, CONTOUR_SETTINGS.max_W_ratio)
     samples = determinant.samples, determinant.gauss_samples
     unit = determinant.w_scale(corners[0])
-    trial_radii = unit, min(CONTOUR_SETTINGS.first_radius * unit, propagators[0] - abs(corners[0]))
+    trial_radii = unit, min(CONTOUR_SETTINGS.first_radius_in_lengths * unit, propagators[0] - abs(corners[0]))
     first_node = phase_node(corners[0], known_w, trial_radii, hull, (samples[1], propagators))
     traversal = ContourTraversal(0, 0.0, 0.0, 1, first_node, 0.0, 0.0, 0.0)
     while True:
@@ -138,9 +138,7 @@ def _phase_change(
             break
         if traversal.required_w_bound == math.inf:
             raise PhaseLost(traversal.node_count)
-        propagators = determinant.propagators_for(
-            traversal.required_w_bound, CONTOUR_SETTINGS.max_level_ratio
-        )
+        propagators = determinant.propagators_for(traversal.required_w_bound, CONTOUR_SETTINGS.max_W_ratio)
     return traversal.phase_change, traversal.node_count
 
 
@@ -170,7 +168,7 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
             step = min(_overlapping_distance(node.valid_radius, growth), length - t)
         w = end if step == length - t else corners[side] + (end - corners[side]) / length * (t + step)
         unit = mean_wave_number_and_w_scale(w, samples[0])[1]
-        first = CONTOUR_SETTINGS.first_radius * unit
+        first = CONTOUR_SETTINGS.first_radius_in_lengths * unit
         radius = min(2 * node.radius, CONTOUR_SETTINGS.max_circle_radius * unit) if node.radius > 0 else first
         radius = max(radius, CONTOUR_SETTINGS.max_wave_radius * w.imag)
         limit = max(first, min(CONTOUR_SETTINGS.max_wave_radius * w.imag, largest_w - abs(w)))
@@ -193,14 +191,14 @@ def _continue_traversal(  # noqa: PLR0913, PLR0917 - state and constants of one 
 @compiled
 def _is_lost(node: PhaseNode, node_count: int) -> bool:
     """Whether the phase is lost: the valid radius of the node is too small, or there are too many nodes."""
-    min_radius = CONTOUR_SETTINGS.min_valid_radius * abs(node.w)
+    min_radius = CONTOUR_SETTINGS.min_valid_radius_ratio * abs(node.w)
     return not node.valid_radius > min_radius or node_count > CONTOUR_SETTINGS.max_nodes
 
 
 @compiled
 def _serves_efficiently(W: float, required_W: float) -> bool:
     """Whether propagators for |w| <= W are valid at |w| = `required_W`, with W not much larger than that."""
-    return required_W <= W <= CONTOUR_SETTINGS.max_level_ratio * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
+    return required_W <= W <= CONTOUR_SETTINGS.max_W_ratio * max(required_W, ARM_ELEMENT_SETTINGS.min_W)
 
 
 @compiled
@@ -219,7 +217,7 @@ def _shortened_distance(reach: float, growth: float, distance: float) -> float:
     return (
         shorter_distance
         if shorter_distance > reach
-        else min(CONTOUR_SETTINGS.safe_step * reach, distance / 2)
+        else min(CONTOUR_SETTINGS.safe_step_ratio * reach, distance / 2)
     )
 
 

@@ -16,7 +16,7 @@ from ....model.compiled.compilation import compiled
 from ....model.compiled.kernel_constants import KernelConstants
 from ..determinant import ArmDeterminant, PropagatorsUpToW
 from ..local_waves import ArmSamples
-from ..value import determinant_along_chain
+from ..value import determinant_from_propagators
 from .dominant_wave import dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS
 
@@ -29,16 +29,16 @@ class NearAxisSettings(KernelConstants):
     """Im w of the first starting point, in 1/tau2; crossings of all arms of the surveys lie above 1."""
     height_ratio: float = 1.25
     """Ratio of Im w of a starting point to Im w of the previous starting point."""
-    max_distance: float = 0.5
+    max_distance_ratio: float = 0.5
     """Newton's method stops if a step, or the distance of w from the starting point, exceeds this number
     times Im w of the starting point."""
     max_steps: int = 12
     """Maximum number of Newton steps from one starting point."""
-    converged_step: float = 1e-9
+    converged_step_ratio: float = 1e-9
     """Newton's method has converged if |step| <= this number times |w|; eigenvalues are refined later."""
     max_modes: int = 64
     """Maximum number of eigenvalues, including the known eigenvalues."""
-    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance": (0.0, 1.0)}
+    field_ranges: ClassVar = {"height_ratio": (1.0, math.inf), "max_distance_ratio": (0.0, 1.0)}
 
 
 NEAR_AXIS_SETTINGS = NearAxisSettings()
@@ -52,11 +52,11 @@ def modes_near_axis(determinant: ArmDeterminant, max_frequency: float, known_w: 
     height = NEAR_AXIS_SETTINGS.first_height
     while height < max_frequency:
         W, propagators = determinant.propagators_for(
-            (1 + NEAR_AXIS_SETTINGS.max_distance) * height, CONTOUR_SETTINGS.max_level_ratio
+            (1 + NEAR_AXIS_SETTINGS.max_distance_ratio) * height, CONTOUR_SETTINGS.max_W_ratio
         )
         heights = [height]
         while heights[-1] * NEAR_AXIS_SETTINGS.height_ratio < min(
-            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance)
+            max_frequency, W / (1 + NEAR_AXIS_SETTINGS.max_distance_ratio)
         ):
             heights.append(heights[-1] * NEAR_AXIS_SETTINGS.height_ratio)
         eigenvalues = _modes_from(np.array(heights), eigenvalues, (W, propagators), determinant.gauss_samples)
@@ -90,18 +90,18 @@ def _mode_near(
     """The eigenvalue close to `guess` that is not in `known_w`, (n,); nan if no further one is close."""
     w = guess
     for _ in range(NEAR_AXIS_SETTINGS.max_steps):
-        value = determinant_along_chain(w, propagator_set[0], propagator_set[1])
+        value = determinant_from_propagators(w, propagator_set[0], propagator_set[1])
         if value.D == 0:
             return w
         slope = value.D_w / value.D - dominant_exponent_slope(w, samples)
         for k in range(len(known_w)):
             slope -= 1 / (w - known_w[k]) if w != known_w[k] else 0j
-        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance * guess.imag > 1:
+        if not abs(slope) * NEAR_AXIS_SETTINGS.max_distance_ratio * guess.imag > 1:
             break
         step = 1 / slope
         w -= step
-        if not (w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance * guess.imag):
+        if not (w.imag > 0 and abs(w - guess) < NEAR_AXIS_SETTINGS.max_distance_ratio * guess.imag):
             break
-        if abs(step) <= NEAR_AXIS_SETTINGS.converged_step * abs(w):
+        if abs(step) <= NEAR_AXIS_SETTINGS.converged_step_ratio * abs(w):
             return w
     return complex(math.nan, math.nan)

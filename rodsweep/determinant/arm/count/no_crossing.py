@@ -32,7 +32,7 @@ from ..elements.propagators import element_propagators
 from ..family_values import propagators_at
 from ..hull.region import EigenvalueHull, PathHulls
 from ..local_waves import ArmSamples, mean_wave_number_and_w_scale
-from ..value import chain_value, determinant_along_chain
+from ..value import determinant_from_propagators, scaled_determinant_from_propagators
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS, NO_CROSSING_SETTINGS
 
@@ -102,7 +102,11 @@ def proves_no_crossing(
     arms = ArmsOfInterval(w, error, squares, samples[0].weights, family.largest_w, np.array(propagators))
     unit = mean_wave_number_and_w_scale(complex(line, 0.0), samples[0])[1]
     height, radius = covered_height(
-        line, 0.0, top, (CONTOUR_SETTINGS.first_radius * unit, NO_CROSSING_SETTINGS.min_radius * unit), arms
+        line,
+        0.0,
+        top,
+        (CONTOUR_SETTINGS.first_radius_in_lengths * unit, NO_CROSSING_SETTINGS.min_radius * unit),
+        arms,
     )
     if height < top and radius > 0:
         try:
@@ -130,9 +134,9 @@ def covered_height(
         if max_valid_radius < NO_CROSSING_SETTINGS.min_fitting_fraction * radius:
             return height, radius
         radius = min(radius, max_valid_radius)
-        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap * radius)
+        w0 = complex(line, 0.0 if height == 0 else height + NO_CROSSING_SETTINGS.overlap_ratio * radius)
         if _is_zero_free(w0, radius, arms):
-            height = w0.imag + NO_CROSSING_SETTINGS.overlap * radius
+            height = w0.imag + NO_CROSSING_SETTINGS.overlap_ratio * radius
             radius *= NO_CROSSING_SETTINGS.radius_growth
         else:
             radius /= NO_CROSSING_SETTINGS.radius_divisor
@@ -145,11 +149,11 @@ def covered_height(
 def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
     """Whether the disc about w0 contains no unknown eigenvalue of any arm of the interval, by the estimate of
     the module docstring."""
-    value = determinant_along_chain(w0, arms.largest_w, arms.propagators[0])
+    value = determinant_from_propagators(w0, arms.largest_w, arms.propagators[0])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return False
     divided_indices = np.flatnonzero(
-        np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance * radius
+        np.abs(arms.known_eigenvalues[0] - w0) < NO_CROSSING_SETTINGS.divided_distance_ratio * radius
     )
     L = value.D_w / value.D
     for n in divided_indices:
@@ -172,7 +176,8 @@ def _is_zero_free(w0: complex, radius: float, arms: ArmsOfInterval) -> bool:
 def _is_too_close_to_divide(v: complex, w: complex, error: float) -> bool:
     """Whether v is too close to the known eigenvalue w, with `error`, for D(v)/(v - w)."""
     return not abs(v - w) > max(
-        NO_CROSSING_SETTINGS.min_known_distance * abs(v), NO_CROSSING_SETTINGS.min_distance_in_errors * error
+        NO_CROSSING_SETTINGS.min_known_distance_ratio * abs(v),
+        NO_CROSSING_SETTINGS.min_distance_in_errors * error,
     )
 
 
@@ -189,7 +194,7 @@ def _has_small_change(node: LineNode, radius: float, arm: int, arms: ArmsOfInter
         growth = (dominant_exponent(point_above, samples) - middle_exponent).real
     for direction in CONTOUR_SETTINGS.directions:
         v = node.w + radius * direction
-        D, S = chain_value(v, arms.largest_w, arms.propagators[arm])
+        D, S = scaled_determinant_from_propagators(v, arms.largest_w, arms.propagators[arm])
         h = (node.L - node.exponent_and_slope[1]) * (v - node.w) + growth
         if node.exponent_and_slope[0] != 0:
             h += dominant_exponent(v, samples) - node.exponent_and_slope[0]

@@ -28,7 +28,7 @@ from ...value import DeterminantValue
 from ..determinant import PropagatorsUpToW
 from ..hull.region import EigenvalueHull, distance_and_normal
 from ..local_waves import ArmSamples
-from ..value import determinant_along_chain, log_modulus_by_chain
+from ..value import determinant_from_propagators, log_modulus_from_propagators
 from .dominant_wave import dominant_exponent, dominant_exponent_slope
 from .settings import CONTOUR_SETTINGS
 
@@ -68,7 +68,7 @@ def phase_node(
     """The node at w, inside or outside the hull. known_w: eigenvalues to divide out of D, (n,). trial_radii:
     (length over which D changes, largest radius of a circle). arm: samples of the arm, and the propagators
     for |v| <= W on the largest circle about w."""
-    value = determinant_along_chain(w, arm[1][0], arm[1][1])
+    value = determinant_from_propagators(w, arm[1][0], arm[1][1])
     if not abs(value.D) > CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error:
         return PhaseNode(w, value.D, 0j, (0j, 0j), 0.0, 0.0)
     direction = value.D / abs(value.D)
@@ -99,7 +99,7 @@ def _node_inside(
     largest radius of a circle). arm: (samples of the arm's coefficients, propagators for |w| <= W)."""
     w = node.w
     samples, (W, propagators) = arm
-    unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.least_divisor))
+    unit = min(trial[0], CONTOUR_SETTINGS.max_log_slope / max(abs(node.L), EXPONENT_SETTINGS.min_divisor))
     min_rho = CONTOUR_SETTINGS.min_circle_radius * unit
     rounding = CONTOUR_SETTINGS.rounding_safety_factor * value.rounding_error
     excess = CONTOUR_SETTINGS.max_change - rounding / abs(value.D)
@@ -115,7 +115,7 @@ def _node_inside(
         reach, log_max = math.inf, -math.inf  # log_max: log of the largest |f| at points of the circle
         for direction in CONTOUR_SETTINGS.directions:
             v = w + rho * direction
-            log_f = log_modulus_by_chain(v, W, propagators) - _log_of_distance_product(v, known_w)
+            log_f = log_modulus_from_propagators(v, W, propagators) - _log_of_distance_product(v, known_w)
             log_max = max(log_max, log_f - linearised_log_determinant(tried, v, samples).real)
             growth = math.exp(min(log_max - log_D, EXPONENT_SETTINGS.max_exponent))
             reach = _valid_radius(rho, CONTOUR_SETTINGS.circle_safety_factor * growth, excess)
@@ -145,5 +145,5 @@ def _log_of_distance_product(v: complex, known_w: Complex) -> float:
     """log prod |v - w_n| over the known eigenvalues w_n, (n,)."""
     total = 0.0
     for n in range(len(known_w)):
-        total += math.log(max(abs(v - known_w[n]), EXPONENT_SETTINGS.least_divisor))
+        total += math.log(max(abs(v - known_w[n]), EXPONENT_SETTINGS.min_divisor))
     return total

@@ -221,7 +221,7 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
                 terms[lane, n, MINORS * k + row] = entry
                 size = max(size, abs(entry))
                 constant_size = max(constant_size, abs(terms[lane, 0, MINORS * k + row]))
-        is_negligible = is_negligible and size <= ARM_ELEMENT_SETTINGS.negligible_term * constant_size
+        is_negligible = is_negligible and size <= ARM_ELEMENT_SETTINGS.negligible_term_ratio * constant_size
     return is_negligible
 
 

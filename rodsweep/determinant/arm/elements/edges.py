@@ -82,11 +82,11 @@ def halved_where_coarse(edges: Array, coefficients: Array) -> Array:
 
 
 @cache
-def _last_legendre_matrix(stages: int) -> Array:
+def _last_legendre_matrix(stage_count: int) -> Array:
     """Matrix from values at the Gauss points to the two highest Legendre coefficients, (2, stages)."""
-    x, weights = np.polynomial.legendre.leggauss(stages)
-    last_coefficients = np.polynomial.legendre.legvander(x, stages - 1)[:, -2:] * (
-        np.arange(stages)[-2:] + 0.5
+    x, weights = np.polynomial.legendre.leggauss(stage_count)
+    last_coefficients = np.polynomial.legendre.legvander(x, stage_count - 1)[:, -2:] * (
+        np.arange(stage_count)[-2:] + 0.5
     )
     return np.ascontiguousarray((weights[:, None] * last_coefficients).T)
 
@@ -105,7 +105,7 @@ def _is_coarse(coefficients: Array, last_terms: Array) -> NDArray[np.bool_]:
     for q in range(quantities - 1):
         for arm in range(arms):
             for e in range(elements):
-                size = EXPONENT_SETTINGS.least_divisor  # a compliance or a drag may be 0
+                size = EXPONENT_SETTINGS.min_divisor  # a compliance or a drag may be 0
                 next_to_last = 0.0
                 last = 0.0
                 for i in range(stages):

@@ -16,14 +16,15 @@ from .settings import ARM_ELEMENT_SETTINGS
 
 
 @cache
-def gauss_method(stages: int) -> tuple[Array, Array, Array]:
-    """(Gauss points on [0, 1], (s,); integrals from 0 to each, (s, s); Gauss weights, (s,)); s: `stages`."""
-    x, weights = np.polynomial.legendre.leggauss(stages)
+def gauss_method(stage_count: int) -> tuple[Array, Array, Array]:
+    """(Gauss points on [0, 1], (s,); integrals from 0 to each, (s, s); Gauss weights, (s,)); s:
+    `stage_count`."""
+    x, weights = np.polynomial.legendre.leggauss(stage_count)
     # The Legendre coefficients of a function's interpolant, integrated exactly.
-    vandermonde = np.polynomial.legendre.legvander(x, stages - 1)
-    to_series = vandermonde.T * weights * (np.arange(stages)[:, None] + 0.5)
-    integrals = np.empty((stages, stages))
-    for column in range(stages):
+    vandermonde = np.polynomial.legendre.legvander(x, stage_count - 1)
+    to_series = vandermonde.T * weights * (np.arange(stage_count)[:, None] + 0.5)
+    integrals = np.empty((stage_count, stage_count))
+    for column in range(stage_count):
         integral = np.polynomial.legendre.legint(to_series[:, column], lbnd=-1)
         integrals[:, column] = np.polynomial.legendre.legval(x, integral)
     return (x + 1) / 2, integrals / 2, weights / 2

@@ -44,7 +44,7 @@ class ArmElementSettings(KernelConstants):
     """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28
     """Maximum number of powers of w in a propagator; 24 suffice for exp(3.2)."""
-    negligible_term: float = 1e-18
+    negligible_term_ratio: float = 1e-18
     """The series of a propagator in w ends at the first term below this fraction of the leading term."""
     max_cached_arms: int = 16
     """Maximum number of arms whose propagators are cached. It limits the memory and changes no result."""
@@ -62,11 +62,12 @@ class ArmElementSettings(KernelConstants):
 
         At |z| = R > 1 the exponents of an element are at most q sqrt(R), q = `max_exponent`. By Cauchy's
         bound with the best R, term n of the propagator is at most (e q/(2 n))^(2 n) |z|^n. From n on, such a
-        term of the derivative is at most `negligible_term`, and each term at most half of the previous term.
+        term of the derivative is at most `negligible_term_ratio`, and each term at most half of the previous
+        term.
         """
         factors = [(math.e * self.max_exponent / (2 * n)) ** 2 for n in range(2, self.max_terms)]
         sizes = [
-            min((self.negligible_term / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
+            min((self.negligible_term_ratio / (n * factor**n)) ** (1 / (n - 1)), 1 / (3 * factor))
             for n, factor in enumerate(factors, start=2)
         ]
         return (0.0, 0.0, *sizes)

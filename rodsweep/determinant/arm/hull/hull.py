@@ -19,8 +19,8 @@ a convex region bounded by a parabola. Of several alpha the one with the smalles
 = g/(nu + |F| sqrt(c2 c3 gamma3/gamma2)) the region of a uniform rod equals the region of
 `rodsweep.determinant.certificate.box`.
 
-Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement` allows for
-the arm between these points."""
+Extremes along the arm are evaluated at points between the breaks, and `HULL_SETTINGS.enlargement_fraction`
+allows for the arm between these points."""
 
 from collections.abc import Sequence
 from functools import cache, lru_cache
@@ -31,7 +31,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ....model.material.build import Build
+from ....model.material.rod_material import RodMaterial
 from ....model.rod import Rod
 from ...parameter_path import ParameterPath
 from .averaged_weight import AVERAGED_WEIGHT_SETTINGS, averaged_regions
@@ -46,8 +46,8 @@ def hull_of(rod: Rod) -> EigenvalueHull:
 
 def hulls_along(path: ParameterPath, low: float, high: float, count: int) -> PathHulls:
     """The hulls of all arms of a path between neighbouring ones of `count` equally spaced values of p, from
-    `low` to `high`. Extremes along the path are evaluated at these values only; `HULL_SETTINGS.enlargement`
-    allows for the arms between."""
+    `low` to `high`. Extremes along the path are evaluated at these values only;
+    `HULL_SETTINGS.enlargement_fraction` allows for the arms between."""
     p = np.linspace(low, high, count)
     arms = _hull_samples([path.rod_at(x) for x in p.tolist()])
     hulls = [_hull_of_sampled_arms(_slice_of_samples(arms, slice(i, i + 2))) for i in range(count - 1)]
@@ -60,11 +60,11 @@ def _hull_of_sampled_arms(arms: "HullSamples") -> EigenvalueHull:
     a, c = _smallest_region(
         arms.F, arms.lengths, arms.local, arms.averaged_regions, _chebyshev_matrices(), max_c
     )
-    return EigenvalueHull((1 + HULL_SETTINGS.enlargement) * a, c) if isfinite(a) else UNBOUNDED_HULL
+    return EigenvalueHull((1 + HULL_SETTINGS.enlargement_fraction) * a, c) if isfinite(a) else UNBOUNDED_HULL
 
 
 class HullSamples(NamedTuple):
-    """Coefficients of n arms of one build at Chebyshev points, from which hulls are computed.
+    """Coefficients of n arms of one material at Chebyshev points, from which hulls are computed.
 
     F: forces, (n,). lengths: lengths of the intervals between breaks, (pieces,). local: coefficients,
     (6, n, pieces, points), with increasing u. averaged_regions: constants (a, c) of the trial regions of each
@@ -79,24 +79,24 @@ class HullSamples(NamedTuple):
 
 
 def _hull_samples(rods: Sequence[Rod]) -> HullSamples:
-    """The `HullSamples` of arms of one build."""
-    build = rods[0].build
-    lengths, u = _chebyshev_points_of_build(build)
+    """The `HullSamples` of arms of one material."""
+    material = rods[0].material
+    lengths, u = _chebyshev_points_of_material(material)
     F = np.array([rod.F for rod in rods])
     coefficients = np.array(Rod.local_coefficients_of_rods(rods, u))
     averaged = np.empty((len(rods), 0, 2))
-    if build.jump_positions:
+    if material.jump_positions:
         averaged = _averaged_regions_by_arm(F, lengths, coefficients)
     return HullSamples(F, lengths, coefficients, averaged)
 
 
-@lru_cache(maxsize=HULL_SETTINGS.max_cached_builds)
-def _chebyshev_points_of_build(build: Build) -> tuple[Array, Array]:
+@lru_cache(maxsize=HULL_SETTINGS.max_cached_materials)
+def _chebyshev_points_of_material(material: RodMaterial) -> tuple[Array, Array]:
     """(lengths of the intervals between breaks, (pieces,); their Chebyshev points u, (pieces, points))."""
-    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
-    lengths = np.diff(build.breaks)
-    u = build.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
-    return lengths * (1 - 2 * HULL_SETTINGS.end_distance), u
+    x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
+    lengths = np.diff(material.breaks)
+    u = material.breaks[:-1, None] + lengths[:, None] * (x + 1) / 2
+    return lengths * (1 - 2 * HULL_SETTINGS.end_distance_fraction), u
 
 
 def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> Array:
@@ -106,7 +106,7 @@ def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> A
     sampled points, (6, n, pieces, points).
     """
     interval_starts = np.cumsum(lengths) - lengths
-    x = (1 - 2 * HULL_SETTINGS.end_distance) * _chebyshev_matrices().points
+    x = (1 - 2 * HULL_SETTINGS.end_distance_fraction) * _chebyshev_matrices().points
     u = (interval_starts[:, None] + lengths[:, None] * (x + 1) / 2).ravel()
     flat_coefficients = coefficients.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
@@ -173,13 +173,13 @@ def _smallest_region(
         for square in varying_weight_norms(F, lengths, coefficients, chebyshev.derivative):
             smallest = _smaller_region(smallest, (sqrt(square), 0.0), max_c)
     for trial in range(averaged.shape[1]):
-        c = (1 + HULL_SETTINGS.enlargement) * averaged[:, trial, 1].max()
+        c = (1 + HULL_SETTINGS.enlargement_fraction) * averaged[:, trial, 1].max()
         smallest = _smaller_region(smallest, (averaged[:, trial, 0].max(), c), max_c)
     if not (c2 > 0).all():
         alphas = np.ones(1)
     integrals = clamp_integrals(alphas, F, lengths, coefficients, chebyshev.integral)
     for k in range(len(alphas)):
-        c = (1 + HULL_SETTINGS.enlargement) * sqrt(integrals[k]) / 2
+        c = (1 + HULL_SETTINGS.enlargement_fraction) * sqrt(integrals[k]) / 2
         smallest = _smaller_region(smallest, (sqrt(alphas[k] * max_weighted_force), c), max_c)
     return smallest
 

@@ -17,9 +17,9 @@ class HullSettings(KernelConstants):
     points_per_interval: int = 25
     """Number of Chebyshev points of each interval between breaks of the profile, where coefficients are
     evaluated and alpha is differentiated."""
-    enlargement: float = 0.05
+    enlargement_fraction: float = 0.05
     """The constants of a hull are enlarged by this fraction, for extremes between points and for rounding."""
-    end_distance: float = 1e-9
+    end_distance_fraction: float = 1e-9
     """Distance of the first and last Chebyshev point from the ends of an interval between breaks, divided by
     the length of the interval, so that no point lies on a jump."""
     min_remainder: float = 0.1
@@ -32,8 +32,8 @@ class HullSettings(KernelConstants):
     """Smallest constant weight alpha tried, if |g/nu| is smaller somewhere."""
     supporting_lines: int = 48
     """Number of supporting lines of the hull tried for the distance of a point w from the hull."""
-    max_cached_builds: int = 16
-    """Maximum number of builds whose points are cached: it bounds the memory and changes no number."""
+    max_cached_materials: int = 16
+    """Maximum number of materials whose points are cached: it bounds the memory and changes no number."""
     weight_factors: tuple[float, ...] = (0.0, 0.5, 1.0)
     """Factors of |F| sqrt(c2 c3 gamma3/gamma2) in the varying weights alpha that are tried."""
 
@@ -59,7 +59,7 @@ class EigenvalueHull(NamedTuple):
             return inf, inf
         n = (a + sqrt(a * a + 4 * b * depth)) / (2 * b)
         # A pad in proportion to the depth keeps the box open where F = 0 makes the bound vanish.
-        padding = BOX_SETTINGS.padding * depth + BOX_SETTINGS.least_padding
+        padding = BOX_SETTINGS.padding_fraction * depth + BOX_SETTINGS.min_padding
         return a * a / (4 * b) + padding, a * n + self.c * n * n + padding
 
 

@@ -80,7 +80,7 @@ def draw_arm_map(request: FigureRequest) -> str:
             handles += _draw_curves(subplot, panel, view, x, index)
         covers.append(_cover_invalid_cells(subplot, view, panel, (x, y), index))
     entries = {str(handle.get_label()): handle for handle in reversed(handles)}  # first of equal entries
-    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], columns=3)
+    style.legend_below(figure, [*reversed(entries.values()), *covers[0]], column_count=3)
     band_axes = [DRAG_AXIS] if not y and DRAG_AXIS in indices and len(view.variables[DRAG_AXIS]) > 1 else []
     figure.suptitle(style.heading_text(view, constant_quantities_text(view, axes + band_axes)))
     labels = " and ".join(panel.label for panel in panels)

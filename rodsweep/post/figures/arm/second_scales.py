@@ -91,11 +91,11 @@ def _outermost_panel(axes: Axes, letter: str) -> Axes:
     return max(row, key=lambda panel: panel.get_subplotspec().colspan.start)
 
 
-def _add_second_scale(axes: Axes, letter: str, unit: float, load: str) -> None:
+def _add_second_scale(axes: Axes, letter: str, unit: float, load_kind: str) -> None:
     """Adds a second scale to a panel, opposite to the axis `letter` ("x" or "y"). unit: load at F = 1, in SI
     units."""
-    symbol = UNITS[load][0]
-    word = LOAD_WORDS[load]
+    symbol = UNITS[load_kind][0]
+    word = LOAD_WORDS[load_kind]
     largest_value = unit * max(map(abs, getattr(axes, f"get_{letter}lim")()))
     power = 3 * int(np.floor(np.log10(largest_value) / 3)) if largest_value > 0 else 0
     power = int(np.clip(power, min(EngFormatter.ENG_PREFIXES), max(EngFormatter.ENG_PREFIXES)))

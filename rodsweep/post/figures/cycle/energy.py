@@ -37,7 +37,7 @@ def draw_energy(view: ResultView, points: Sequence[int], is_narrow: bool = False
     for axes, label in zip(rows[:, 0], cycles[0].units.energy_and_power_labels, strict=True):
         axes.set_ylabel(label)
     handles = [handle for axes in rows[1:, 0] for handle in axes.get_legend_handles_labels()[0]]
-    legend_below(figure, handles, columns=2 if is_narrow else min(3, 1 + len(cycles)))
+    legend_below(figure, handles, column_count=2 if is_narrow else min(3, 1 + len(cycles)))
     figure.align_ylabels(rows[:, 0])
     figure.suptitle(selection.title)
     return figure, "energy, injection and dissipation over a cycle" + selection.omissions

@@ -78,7 +78,7 @@ def draw_maps(view: ResultView, is_narrow: bool = False) -> tuple[Figure, str]:
     label_maps(panels, points)
     if handles:
         rows = -(-len(handles) // MAX_LEGEND_ROW_ENTRIES)
-        style.legend_below(figure, handles, columns=-(-len(handles) // rows))
+        style.legend_below(figure, handles, column_count=-(-len(handles) // rows))
     figure.suptitle(style.heading_text(view, _common_parameters_text(view, points, units.in_si)))
     return figure, f"period and amplitude over {' and '.join(points.names)}{points.omissions}"
 

@@ -32,7 +32,7 @@ MIN_PANEL_HEIGHT = 0.45
 """Smallest height of a panel, in inches; two tick labels fit above each other."""
 SPARE_HEIGHT = 4.0
 """Height, in inches, that is added to the figure while texts are measured, so that no panel vanishes."""
-EQUAL_SCALE_SLACK = 1.03
+EQUAL_SCALE_HEIGHT_FACTOR = 1.03
 """Factor on the required height of panels with equal scales. Without this factor, height and width would both
 just suffice, and successive layouts would alternate."""
 TEXT_MARGIN = 0.04
@@ -173,13 +173,15 @@ def _legend_column_count(legend: Legend) -> int:
     return len({round(text.get_window_extent().x0) for text in legend.get_texts()})
 
 
-def _legend_with_columns(figure: Figure, legend: Legend, columns: int) -> Legend:
-    """Replaces a legend of the figure by a legend with the same entries in `columns` columns; returns the new
-    legend."""
+def _legend_with_columns(figure: Figure, legend: Legend, column_count: int) -> Legend:
+    """Replaces a legend of the figure by a legend with the same entries in `column_count` columns; returns
+    the new legend."""
     texts = [text.get_text() for text in legend.get_texts()]
     handles = [handle for handle in legend.legend_handles if handle is not None]
     legend.remove()
-    columned_legend = figure.legend(handles, texts, loc="outside lower center", ncols=columns, frameon=False)
+    columned_legend = figure.legend(
+        handles, texts, loc="outside lower center", ncols=column_count, frameon=False
+    )
     _position_panels(figure)
     return columned_legend
 
@@ -198,7 +200,7 @@ def _spare_height(figure: Figure, min_aspect: float) -> float:
         label = axes.yaxis.label.get_window_extent().height / figure.dpi
         scale = axes.get_aspect()  # panels with equal scales have the aspect ratio of their data
         data_ratio = 0.0 if scale == "auto" else float(axes.get_data_ratio() * scale)
-        shape = max(min_aspect, EQUAL_SCALE_SLACK * data_ratio)
+        shape = max(min_aspect, EQUAL_SCALE_HEIGHT_FACTOR * data_ratio)
         min_height = max(shape * panel_box.width * width, label + TEXT_MARGIN, MIN_PANEL_HEIGHT)
         spares.append((panel_box.height * height - min_height) / row_fraction)
     return min(spares)

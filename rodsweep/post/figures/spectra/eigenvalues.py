@@ -42,7 +42,7 @@ def draw_eigenvalues(view: ResultView) -> Figure:
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     axes.margins(0.12)
     axes.set(xlabel=r"$\mathrm{Re}\,\omega\,\tau_2$", ylabel=r"$\mathrm{Im}\,\omega\,\tau_2$")
-    legend_below(figure, handles, columns=2)
+    legend_below(figure, handles, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 
@@ -60,7 +60,7 @@ def draw_list_of_spectra(view: ResultView) -> Figure:
         axes.axhline(0, color="0.5", lw=0.6, zorder=0)
         axes.set_ylabel(rf"$\mathrm{{{part_name}}}\,\omega\,\tau_2$")
     label_point_numbers(panels[1], view, len(growth))
-    legend_below(figure, handles, columns=2)
+    legend_below(figure, handles, column_count=2)
     set_heading(figure, view, parameter_text(shared_parameters(view)))
     return figure
 

@@ -42,11 +42,13 @@ DOUBLE_LOOK = "double eigenvalue", 1.0, ":"
 """(legend entry, width, style) of double eigenvalues in figures whose dashed curves are subcritical."""
 
 
-def draw_boundary_curves(axes: Axes, view: ResultView, line: str, row: str, hopf_only: bool) -> list[Line2D]:
+def draw_boundary_curves(
+    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str, hopf_only: bool
+) -> list[Line2D]:
     """Draws boundary curves and folds; if `hopf_only`, only Hopf curves. Returns legend entries."""
     v = view.variables
     has_criticality = "curve_criticality" in v
-    handles = _draw_criticality(axes, view, line, row) if has_criticality else []
+    handles = _draw_criticality(axes, view, line_parameter, row_parameter) if has_criticality else []
     curve_looks = {0: DOUBLE_LOOK} if has_criticality else CURVE_LOOKS
     for number, (word, width, style) in curve_looks.items():
         mask = v["curve_kind"] == number
@@ -54,80 +56,104 @@ def draw_boundary_curves(axes: Axes, view: ResultView, line: str, row: str, hopf
             continue
         curves = [v["curve_number"] == curve for curve in np.unique(v["curve_number"][mask])]
         for curve in curves:
-            axes.plot(v[f"curve_{line}"][curve], v[f"curve_{row}"][curve], style, color="k", lw=width)
+            axes.plot(
+                v[f"curve_{line_parameter}"][curve],
+                v[f"curve_{row_parameter}"][curve],
+                style,
+                color="k",
+                lw=width,
+            )
         if mask.any():
             handles.append(Line2D([], [], color="k", lw=width, ls=style, label=word))
         if mask.any() and not has_criticality:
-            named = boundaries_to_name(view, number, line, row)
-            paths = [np.column_stack([v[f"curve_{n}"][curve] for n in (line, row)]) for curve in named]
-            if paths and "F" in (line, row):
-                paths = lowest_parts(paths, 0 if line == "F" else 1)
+            named = boundaries_to_name(view, number, line_parameter, row_parameter)
+            paths = [
+                np.column_stack([v[f"curve_{n}"][curve] for n in (line_parameter, row_parameter)])
+                for curve in named
+            ]
+            if paths and "F" in (line_parameter, row_parameter):
+                paths = lowest_parts(paths, 0 if line_parameter == "F" else 1)
             name, position = CURVE_SYMBOLS[number]
             if paths:
-                label_longest_curve(axes, paths, name + constant_force_text(view, line, row), position)
-    return handles if hopf_only else handles + _mark_curve_folds(axes, view, line, row)
+                label_longest_curve(
+                    axes, paths, name + constant_force_text(view, line_parameter, row_parameter), position
+                )
+    return handles if hopf_only else handles + _mark_curve_folds(axes, view, line_parameter, row_parameter)
 
 
-def boundaries_to_name(view: ResultView, kind: int, line: str, row: str) -> list[NDArray[np.bool_]]:
+def boundaries_to_name(
+    view: ResultView, kind: int, line_parameter: str, row_parameter: str
+) -> list[NDArray[np.bool_]]:
     """Masks, (curve_point,), of the curves of the kind `kind` that are labelled with a symbol: all curves of
     kind 0 (onsets); of the Hopf curves only those that bound the region of stable straight rods (F**)."""
     v = view.variables
     numbers = np.unique(v["curve_number"][v["curve_kind"] == kind])
-    bounds = curves_bounding_stability(view, line, row) if kind else dict.fromkeys(numbers.tolist(), True)
+    bounds = (
+        curves_bounding_stability(view, line_parameter, row_parameter)
+        if kind
+        else dict.fromkeys(numbers.tolist(), True)
+    )
     return [v["curve_number"] == number for number in numbers if bounds[int(number)]]
 
 
-def constant_force_text(view: ResultView, line: str, row: str) -> str:
-    """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis. line, row: see the module."""
-    return "" if "F" in (line, row) else f" = {float(view.parameter_values['F'][0]):g}"
+def constant_force_text(view: ResultView, line_parameter: str, row_parameter: str) -> str:
+    """Text " = 30" if F is 30 in the whole plane; empty if F is on an axis. line_parameter, row_parameter:
+    see the module."""
+    return "" if "F" in (line_parameter, row_parameter) else f" = {float(view.parameter_values['F'][0]):g}"
 
 
-def _mark_curve_folds(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
+def _mark_curve_folds(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Marks the folds of Hopf curves, and the fold in the partial beam limit; returns legend entries."""
     v = view.variables
     handles = []
     for i in range(len(v["fold"])):
         if v["fold_kind"][i] == 1 and v["fold_of"][i] == 1:  # a window of flutter closes at this fold
-            F = v[f"fold_{line}"][i]
-            k = v[f"fold_{row}"][i]
+            F = v[f"fold_{line_parameter}"][i]
+            k = v[f"fold_{row_parameter}"][i]
             axes.plot(F, k, "ko", ms=4)
-            label = rf"fold ${SYMBOLS[line]} = {F:.6g}$, ${SYMBOLS[row]} = {k:.6g}$"
+            label = rf"fold ${SYMBOLS[line_parameter]} = {F:.6g}$, ${SYMBOLS[row_parameter]} = {k:.6g}$"
             handles.append(Line2D([], [], color="k", marker="o", ls="", ms=4, label=label))
     if "partial_beam_k1" in v:
         F, k = float(v["partial_beam_F"]), float(v["partial_beam_k1"])
-        x, y = (F, k) if line == "F" else (k, F)
-        rows = view.parameter_values[row]
-        if not (v[line][0] <= x <= v[line][-1] and rows[0] <= y <= rows[-1]):
+        x, y = (F, k) if line_parameter == "F" else (k, F)
+        rows = view.parameter_values[row_parameter]
+        if not (v[line_parameter][0] <= x <= v[line_parameter][-1] and rows[0] <= y <= rows[-1]):
             return handles
         label = rf"partial beam $2F_c = {F:.6g}$, $4F_c = {k:.6g}$"
         handles += axes.plot(x, y, "+", color="k", ls="", ms=10, mew=1.2, label=label)
     return handles
 
 
-def draw_cycle_curves(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
-    """Draws curves of folds and torus points of cycles; returns legend entries. line, row: see the module."""
+def draw_cycle_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+    """Draws curves of folds and torus points of cycles; returns legend entries. line_parameter,
+    row_parameter: see the module."""
     v = view.variables
     handles = []
     for kind, (word, colour) in CYCLE_CURVE_STYLES.items():
         mask = v["cycle_curve_kind"] == SPECIAL_KINDS.index(kind)
         for curve in np.unique(v["cycle_curve_number"][mask]):
             curve_mask = v["cycle_curve_number"] == curve
-            points = v[f"cycle_curve_{line}"][curve_mask], v[f"cycle_curve_{row}"][curve_mask]
+            points = (
+                v[f"cycle_curve_{line_parameter}"][curve_mask],
+                v[f"cycle_curve_{row_parameter}"][curve_mask],
+            )
             axes.plot(*points, color=colour, lw=1.8, zorder=1.9)  # below marks and Hopf curves
         if mask.any():
             handles.append(Line2D([], [], color=colour, lw=1.8, label=word))
     return handles
 
 
-def mark_cycles_on_rows(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
+def mark_cycles_on_rows(
+    axes: Axes, view: ResultView, line_parameter: str, row_parameter: str
+) -> list[Line2D]:
     """Marks the special points of cycles on rows that lie on no curve; returns legend entries."""
     handles: list[Line2D] = []
-    values = view.point_columns[row]
-    kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", line))
+    values = view.point_columns[row_parameter]
+    kinds, positions = (view.by_point(f"cycle_special_{name}") for name in ("kind", line_parameter))
     for kind, (word, marker) in CYCLE_MARKS.items():
         rows, items = np.nonzero(kinds == SPECIAL_KINDS.index(kind))
         x, y = positions[rows, items], values[rows]
-        is_free = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line, row, x, y)
+        is_free = ~_is_on_curve(view, SPECIAL_KINDS.index(kind), line_parameter, row_parameter, x, y)
         if is_free.any():
             handles += axes.plot(
                 x[is_free], y[is_free], marker, color="k", mfc="white", ms=3.5, mew=0.8, label=word
@@ -135,18 +161,22 @@ def mark_cycles_on_rows(axes: Axes, view: ResultView, line: str, row: str) -> li
     return handles
 
 
-def _is_on_curve(view: ResultView, kind: int, line: str, row: str, x: Array, y: Array) -> NDArray[np.bool_]:
+def _is_on_curve(
+    view: ResultView, kind: int, line_parameter: str, row_parameter: str, x: Array, y: Array
+) -> NDArray[np.bool_]:
     """Mask of the special points (x, y), (n,) each, that lie on a curve of their kind `kind`."""
     v = view.variables
     is_near = np.zeros(len(x), dtype=bool)
     if "cycle_curve_number" not in v:
         return is_near
-    row_values = view.point_columns[row]
-    plane = DrawnPlane(v[line], row_values[np.isfinite(row_values)])
+    row_values = view.point_columns[row_parameter]
+    plane = DrawnPlane(v[line_parameter], row_values[np.isfinite(row_values)])
     points = plane.fractions_of_axes(x, y)
     for curve in np.unique(v["cycle_curve_number"][v["cycle_curve_kind"] == kind]):
         mask = v["cycle_curve_number"] == curve
-        vertices = plane.fractions_of_axes(*(v[f"cycle_curve_{name}"][mask] for name in (line, row)))
+        vertices = plane.fractions_of_axes(
+            *(v[f"cycle_curve_{name}"][mask] for name in (line_parameter, row_parameter))
+        )
         vertices = vertices[np.append(True, np.diff(vertices, axis=0).any(axis=1))]
         for start, chord in zip(vertices[:-1], np.diff(vertices, axis=0), strict=True):
             fractions = np.clip((points - start) @ chord / (chord @ chord), 0, 1)
@@ -155,13 +185,15 @@ def _is_on_curve(view: ResultView, kind: int, line: str, row: str, x: Array, y: 
     return is_near
 
 
-def _draw_criticality(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
+def _draw_criticality(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
     """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
     entries."""
     v = view.variables
     drawn_criticalities = set()
     for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
-        for criticality, points in parts_of_equal_criticality(view, int(curve), line, row):
+        for criticality, points in parts_of_equal_criticality(
+            view, int(curve), line_parameter, row_parameter
+        ):
             _, width, style = CRITICALITY_LOOKS[criticality]
             axes.plot(*points.T, style, color="k", lw=width)
             drawn_criticalities.add(criticality)
@@ -171,37 +203,43 @@ def _draw_criticality(axes: Axes, view: ResultView, line: str, row: str) -> list
         if criticality in drawn_criticalities
     ]
     for i in range(len(v["bautin_curve"])):
-        x = v[f"bautin_{line}"][i]
-        y = v[f"bautin_{row}"][i]
-        label = rf"generalised Hopf point: ${SYMBOLS[line]}$ = {x:.6g}, ${SYMBOLS[row]}$ = {y:.6g}"
+        x = v[f"bautin_{line_parameter}"][i]
+        y = v[f"bautin_{row_parameter}"][i]
+        symbols = SYMBOLS[line_parameter], SYMBOLS[row_parameter]
+        label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
         handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
-    return handles + (_bautin_curves(axes, view, line, row) if "bautin_along_curve" in v else [])
+    return handles + (
+        _bautin_curves(axes, view, line_parameter, row_parameter) if "bautin_along_curve" in v else []
+    )
 
 
-def _bautin_curves(axes: Axes, view: ResultView, line: str, row: str) -> list[Line2D]:
-    """Draws curves of generalised Hopf points; returns legend entries. line, row: see the module."""
+def _bautin_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+    """Draws curves of generalised Hopf points; returns legend entries. line_parameter, row_parameter: see the
+    module."""
     v = view.variables
     curves = []
-    third = next(n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line, row))
+    third = next(
+        n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line_parameter, row_parameter)
+    )
     for number in np.unique(v["bautin_along_curve"]):
         mask = v["bautin_along_curve"] == number
         third_values = v[f"bautin_along_{third}"][mask]
         low, high = (number_text(float(end), 3) for end in (third_values.min(), third_values.max()))
         label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
-        x, y = (v[f"bautin_along_{name}"][mask] for name in (line, row))
+        x, y = (v[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
         curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
     return curves
 
 
 def parts_of_equal_criticality(
-    view: ResultView, curve: int, line: str, row: str
+    view: ResultView, curve: int, line_parameter: str, row_parameter: str
 ) -> list[tuple[int, np.ndarray]]:
     """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
     v = view.variables
     indices = np.flatnonzero(v["curve_number"] == curve)
     bautin = np.flatnonzero(v["bautin_curve"] == curve)
     places = np.searchsorted(indices, v["bautin_curve_point"][bautin] - 1, side="right")
-    names = ((f"curve_{name}", f"bautin_{name}") for name in (line, row))
+    names = ((f"curve_{name}", f"bautin_{name}") for name in (line_parameter, row_parameter))
     points = np.column_stack([np.insert(v[a][indices], places, v[b][bautin]) for a, b in names])
     criticality = np.insert(np.nan_to_num(v["curve_criticality"][indices]), places, 0)
     # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.

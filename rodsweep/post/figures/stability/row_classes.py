@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from ....arrays import Array
 from ....model.crushing import uncrushed_interval
-from ....model.material.build import Build
+from ....model.material.rod_material import RodMaterial
 from ....results.file.view import ResultView
 from ....results.layouts.phase_diagram import STABILITY_CLASSES, STABLE_STATES
 from ....results.layouts.thresholds import CROSSING_KINDS, HOPF_CROSSING_CODES
 from ....results.layouts.variables import flag_number
-from ...crushing import build_of_rods
+from ...crushing import material_of_rods
 
 CLASS_WORDS = {"class": STABILITY_CLASSES, "stable_states": STABLE_STATES}
 """(code, word) of the values of the variables `class` and `stable_states`, by variable."""
@@ -31,24 +31,27 @@ STABLE_CLASS = {
 """Class of a stable rod at forces above a crossing, by kind of the crossing."""
 
 
-def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Array, Array, NDArray[np.intp]]:
+def classes_between_crossings(
+    view: ResultView, line_parameter: str, row_parameter: str
+) -> tuple[Array, Array, NDArray[np.intp]]:
     """Returns (x, y, classes), (n,) each, of the midpoints between neighbouring crossings on rows, and of
     the midpoints of the two outer parts, which end at the ends of the row or where the force crushes the rod.
 
-    line, row: parameters along a row, and constant on a row. x: value of `line`. y: value of `row`. The class
-    of a midpoint is known even if the crossings are close. The first part has a midpoint only before an onset
-    of a stable rod, and the last part only if all crossings are stored. Rows at infinity are left out.
+    line_parameter, row_parameter: parameters along a row, and constant on a row. x: value of
+    `line_parameter`. y: value of `row_parameter`. The class of a midpoint is known even if the crossings are
+    close. The first part has a midpoint only before an onset of a stable rod, and the last part only if all
+    crossings are stored. Rows at infinity are left out.
     """
     names = ("crossing_kind", "unstable_after", "crossing_at", "crossing_count", "open_from")
     kinds, unstable_counts, positions, counts, undecided_from = map(view.by_point, names)
-    values = view.point_columns[row]
-    build = build_of_rods(view)
+    values = view.point_columns[row_parameter]
+    material = material_of_rods(view)
     rows: list[tuple[float, float, int]] = []
     for index in np.flatnonzero(np.isfinite(values)):
         stored_indices = np.flatnonzero(kinds[index] > 0)
         if not len(stored_indices):
             continue
-        low, high = _uncrushed_row(view, build, line, int(index))
+        low, high = _uncrushed_row(view, material, line_parameter, int(index))
         ends = [low, *positions[index, stored_indices].tolist(), high]
         crossings = [(int(kinds[index, i]), int(unstable_counts[index, i])) for i in stored_indices]
         curve_words = ["monotone" if crossings[0] == (ONSET, 0) else ""]
@@ -62,11 +65,13 @@ def classes_between_crossings(view: ResultView, line: str, row: str) -> tuple[Ar
     return x, y, classes.astype(np.intp)
 
 
-def _uncrushed_row(view: ResultView, build: Build, line: str, index: int) -> tuple[float, float]:
-    """First and last value of `line` on a row at which the force does not crush the rod."""
+def _uncrushed_row(
+    view: ResultView, material: RodMaterial, line_parameter: str, index: int
+) -> tuple[float, float]:
+    """First and last value of `line_parameter` on a row at which the force does not crush the rod."""
     rod = {name: float(column[index]) for name, column in view.point_columns.items()}
-    row_start, row_end = view.variables[line][[0, -1]].tolist()
-    return uncrushed_interval(build, rod, (line, row_start, row_end))
+    row_start, row_end = view.variables[line_parameter][[0, -1]].tolist()
+    return uncrushed_interval(material, rod, (line_parameter, row_start, row_end))
 
 
 def class_above_crossing(kind: int, unstable: int) -> str:
@@ -79,7 +84,7 @@ def class_above_crossing(kind: int, unstable: int) -> str:
 
 
 def pixel_classes_of_row(
-    view: ResultView, variable: str, line: str, row: str, index: int, pixel_edges: Array
+    view: ResultView, variable: str, line_parameter: str, row_parameter: str, index: int, pixel_edges: Array
 ) -> NDArray[np.intp]:
     """Class of each pixel of a row of a diagram, (n,). variable: `class` or `stable_states`. line, row:
     parameters along and across rows. pixel_edges: edges of the pixels, (n + 1,).
@@ -87,12 +92,12 @@ def pixel_classes_of_row(
     A pixel has the class of the nearest computed point between the same two changes of class; "undecided" if
     there is no such point.
     """
-    x = view.variables[line]
+    x = view.variables[line_parameter]
     classes = view.by_point(variable)[index]
-    changes = _class_changes(view, variable, line, index)
+    changes = _class_changes(view, variable, line_parameter, index)
     if variable == "class":
-        positions, rows, classified = classes_between_crossings(view, line, row)
-        is_in_row = rows == view.parameter_values[row][index]
+        positions, rows, classified = classes_between_crossings(view, line_parameter, row_parameter)
+        is_in_row = rows == view.parameter_values[row_parameter][index]
         x = np.append(x, positions[is_in_row])
         classes = np.append(classes, classified[is_in_row])
     decided = np.abs(x[:, None] - changes).min(axis=1, initial=np.inf) > CHANGE_TOLERANCE * np.abs(x)
@@ -109,18 +114,21 @@ def pixel_classes_of_row(
     return classified
 
 
-def _class_changes(view: ResultView, variable: str, line: str, index: int) -> Array:
+def _class_changes(view: ResultView, variable: str, line_parameter: str, index: int) -> Array:
     """Positions of the changes of class along a row, in increasing order, (m,). variable: `class` or
     `stable_states`."""
-    names = ("crossing_at", "crossing_kind", f"cycle_special_{line}")
+    names = ("crossing_at", "crossing_kind", f"cycle_special_{line_parameter}")
     v = {name: view.by_point(name)[index] for name in names if name in view.variables}
     positions = v["crossing_at"]
     kinds = v["crossing_kind"]
     if variable == "class":
         change_positions = [positions[kinds > 0]]
     else:
-        change_positions = [positions[np.isin(kinds, HOPF_CROSSING_CODES)], v[f"cycle_special_{line}"]]
-    row_ends = view.variables[line][[0, -1]]
-    ends = np.array(_uncrushed_row(view, build_of_rods(view), line, index))
+        change_positions = [
+            positions[np.isin(kinds, HOPF_CROSSING_CODES)],
+            v[f"cycle_special_{line_parameter}"],
+        ]
+    row_ends = view.variables[line_parameter][[0, -1]]
+    ends = np.array(_uncrushed_row(view, material_of_rods(view), line_parameter, index))
     changes = np.concatenate([*change_positions, ends[ends != row_ends]])
     return np.unique(changes[np.isfinite(changes)])

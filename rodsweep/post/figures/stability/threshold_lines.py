@@ -60,7 +60,7 @@ def draw_lines_of_grid(view: ResultView, names: list[str], search: str) -> tuple
             handles.append(Line2D([], [], color=shade, lw=2, label=label))
     _label_axes(axes, view, x_name, table)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.legend_below(figure, handles, columns=3)
+    style.legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     caption = f"critical forces against {x_name}" + (f" for every {other}" if other else "")
     return figure, caption + _infinite_values_clause(view, [x_name])
@@ -83,7 +83,7 @@ def draw_lines_of_files(views: Sequence[ResultView], x_name: str, search: str) -
         style.scale_axis(axes, "y", forces)
         axes.set_ylim(forces[0] / FORCE_AXIS_RATIO, forces[-1] * FORCE_AXIS_RATIO)
     axes.set_ylabel(style.CRITICAL_FORCE_LABEL)
-    style.legend_below(figure, handles, columns=2)
+    style.legend_below(figure, handles, column_count=2)
     figure.suptitle("\n".join(filter(None, (style.constant_parameters_text(longest, x_name), search))))
     clause = _infinite_values_clause(longest, [x_name])
     return figure, f"critical forces against {x_name} of {len(views)} files{clause}"
@@ -109,7 +109,7 @@ def draw_selected_lines(
         for name, word, colour, marker, _ in CRITICAL_FORCES
         if np.isfinite(view.variables[name]).any()
     ]
-    style.legend_below(figure, handles, columns=3)
+    style.legend_below(figure, handles, column_count=3)
     set_heading(figure, view, style.constant_parameters_text(view, *names), search)
     lines = f"lines for {' and '.join(texts)} (--what map: all)"
     omissions = _infinite_values_clause(view, names)

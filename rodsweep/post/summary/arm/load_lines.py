@@ -6,7 +6,7 @@ import numpy as np
 from ....model.arm.neglected import COMPRESSION_LIMIT, DOUBTFUL_RATIO
 from ....model.arm.quantities import SCALE_NAME, UNITS
 from ....results.file.view import ResultView
-from ...crushing import build_of_rods
+from ...crushing import material_of_rods
 from .arm import range_in_unit, region_of_arms
 
 ANSWER_DIGITS = 3
@@ -56,7 +56,7 @@ def compression_lines(view: ResultView, rods: np.ndarray) -> list[str]:
         return []  # no rows along F
     columns = view.point_columns
     tapers = columns.get("taper", np.ones_like(columns["k1"]))
-    largest = COMPRESSION_LIMIT * columns["k1"] * build_of_rods(view).relative_crushing_forces(tapers)
+    largest = COMPRESSION_LIMIT * columns["k1"] * material_of_rods(view).relative_crushing_forces(tapers)
     limits = largest.reshape(rods.shape)[rods]
     kind = view.load_kind
     scale = np.broadcast_to(view.variables[SCALE_NAME[kind]], rods.shape)[rods]

@@ -21,11 +21,11 @@ from functools import lru_cache
 import numpy as np
 
 from ....arrays import Array
+from ....discretization.coefficients_on_mesh import relative_bending_compliance_at_nodes
 from ....discretization.elements.elements import ELEMENT_SETTINGS
 from ....discretization.elements.mesh import Mesh
-from ....discretization.material_on_mesh import relative_bending_compliance_at_nodes
 from ....discretization.state_layout import StateLayout
-from ....model.material.build import Build
+from ....model.material.rod_material import RodMaterial
 from ...orbit.orbit import Orbit
 
 ALONG_PARAMETER = np.array([0.0, 0.0, 1.0])
@@ -86,13 +86,13 @@ def deflection_of(orbit: Orbit) -> float:
 def deflection_functional(orbit: Orbit) -> Array:
     """The linear functional, (n,), whose product with a state of the orbit is the state's deflection in L."""
     form = orbit.form
-    return _cached_deflection_functional(form.layout, form.mesh, form.rod.build)
+    return _cached_deflection_functional(form.layout, form.mesh, form.rod.material)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _cached_deflection_functional(layout: StateLayout, mesh: Mesh, build: Build) -> Array:
+def _cached_deflection_functional(layout: StateLayout, mesh: Mesh, material: RodMaterial) -> Array:
     """Cached `deflection_functional`, (n,); callers share the array and must not change it."""
     # In linear theory the curvature at u moves the tip by the lever 1 - u. Values at the tip have the weight
     # 0.
-    weights = mesh.quadrature * relative_bending_compliance_at_nodes(build, mesh)
+    weights = mesh.quadrature * relative_bending_compliance_at_nodes(material, mesh)
     return layout.state_with_stresses({"m3": weights[:-1] * (1 - mesh.node_positions[:-1])})

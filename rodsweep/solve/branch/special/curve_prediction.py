@@ -49,7 +49,7 @@ def length_before_crushing(
         rod = known[-1].orbit.form.rod
         _, parameters = _parameters(roles, known, lagrange_weights(lengths, length))
         values = {**rod.values, **parameters}
-        load = rod.build.crushing_ratio(values["F"], values["k1"], values["taper"])
+        load = rod.material.crushing_ratio(values["F"], values["k1"], values["taper"])
         return 1 - margin / 2 - load
 
     if distance(length) >= 0 or distance(0.0) <= 0:

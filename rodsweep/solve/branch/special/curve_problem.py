@@ -134,12 +134,12 @@ class SpecialCurveProblem:
 
     def margins(self, point: SolvedPoint) -> Array:
         """Margins, (7,); the curve ends where a margin becomes 0: distances from the four edges, 1 -
-        `Build.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
+        `RodMaterial.crushing_ratio` - `crushing_margin`, smallest h1, largest tip y minus `min_amplitude`."""
         plane_point = self.roles.in_plane(point)
         x = self.line_axis.coordinate(plane_point.parameter)
         y = plane_point.row_coordinate
         rod = point.orbit.form.rod
-        crushing = 1 - END_SETTINGS.crushing_margin - rod.build.crushing_ratio(rod.F, rod.k1, rod.taper)
+        crushing = 1 - END_SETTINGS.crushing_margin - rod.material.crushing_ratio(rod.F, rod.k1, rod.taper)
         stretch = least_stretch_of_orbit(point.orbit)
         return np.array([x, 1 - x, y, 1 - y, crushing, stretch, point.tip_y_max - END_SETTINGS.min_amplitude])
 

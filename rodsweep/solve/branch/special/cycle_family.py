@@ -14,7 +14,7 @@ from ....arrays import Array
 from ....determinant.parameter_plane import PlaneAxis
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_limit, mesh_of
+from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ...orbit.tails import smooth_tails
 from ...unsolvable import Unsolvable
 from ..bordered.matrix import BorderedMatrix
@@ -137,7 +137,7 @@ class CycleFamily:
                 )
                 return replace(coarser_point, measured_error=errors)
             coarser_point = fine_point
-        raise mesh_limit()
+        raise mesh_limit_error()
 
     def finer_mesh_than(self, point: SolvedPoint) -> OrbitMesh:
         """A mesh finer than that of `point` in space and time; raises Unsolvable if it is not allowed."""
@@ -146,5 +146,5 @@ class CycleFamily:
         larger = mesh.with_order(mesh.order + CURVE_SECANT_SETTINGS.order_increase)
         finer_mesh = replace(larger, interval_count=longer)
         if not finer_mesh.is_allowed:
-            raise mesh_limit()
+            raise mesh_limit_error()
         return finer_mesh

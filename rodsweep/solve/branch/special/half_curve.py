@@ -29,7 +29,7 @@ def trace_half_curve(
         for point in located
         if point.kind == special_point.kind
         and abs(point.parameter_value - special_point.parameter_value)
-        <= CURVE_IDENTITY_SETTINGS.max_row_distance * width
+        <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction * width
         and abs(point.period / special_point.period - 1) <= CURVE_IDENTITY_SETTINGS.max_period_difference
     ]
     if not matches:
@@ -99,7 +99,7 @@ def _distances(
     return {
         i: distance
         for i, distance in distances.items()
-        if distance <= CURVE_IDENTITY_SETTINGS.max_row_distance
+        if distance <= CURVE_IDENTITY_SETTINGS.max_row_distance_fraction
     }
 
 

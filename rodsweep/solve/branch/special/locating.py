@@ -14,10 +14,10 @@ import numpy as np
 from ....arrays import Array, Complex
 from ...continuation.curve import zero_along_step
 from ...orbit.least_stretch import least_stretch
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import mesh_limit, mesh_of
+from ...orbit.orbit_mesh import mesh_limit_error, mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
@@ -41,7 +41,7 @@ def test_function_value(kind: SpecialKind, segment: BranchSegment, solved: Conve
     if kind == SpecialKind.fold:
         return segment.parameter_rate()
     if kind == SpecialKind.left_the_model:
-        return least_stretch(CyclePath(solved.orbit))
+        return least_stretch(CycleMotion(solved.orbit))
     if kind == SpecialKind.torus:
         function = TorusFunction(bordered_matrix_of(solved))
         correct_until_converged(function, solved.orbit)
@@ -112,7 +112,7 @@ def special_point_between(
             if not mesh.is_allowed:
                 break
         if point is None or np.isnan(point.error):
-            raise mesh_limit()
+            raise mesh_limit_error()
     except Unsolvable as reason:
         return _unlocated_point(kind, start, end, f"the special point ({kind.name}) is not located: {reason}")
     return point
@@ -155,7 +155,7 @@ def _with_mesh_errors(
 def _special_point_at(kind: SpecialKind, orbit: Orbit, name: str) -> SpecialPoint:
     """The special point of a kind at the solved cycle `orbit`, without errors. name: continuation
     parameter."""
-    path = CyclePath(orbit)
+    path = CycleMotion(orbit)
     return SpecialPoint(
         kind=kind,
         parameter_value=getattr(orbit.form.rod, name),
@@ -217,9 +217,9 @@ def _zero_by_secants(
     function), by the secant method on `segment`; raises Unsolvable. slope: approximate slope, for the first
     step."""
     linear = (
-        SPECIAL_POINT_SETTINGS.max_linear_step_at_fold
+        SPECIAL_POINT_SETTINGS.max_linear_step_ratio_at_fold
         if kind == SpecialKind.fold
-        else SPECIAL_POINT_SETTINGS.max_linear_step
+        else SPECIAL_POINT_SETTINGS.max_linear_step_ratio
     )
     tolerance = segment.length * linear
     length = guess
@@ -238,7 +238,7 @@ def _zero_by_secants(
             abs(step) <= tolerance
             or SPECIAL_POINT_SETTINGS.converging_step_ratio * last_step_length
             < abs(step)
-            <= SPECIAL_POINT_SETTINGS.max_stalled_step * segment.length
+            <= SPECIAL_POINT_SETTINGS.max_stalled_step_ratio * segment.length
         ):
             _, orbit, tangent = segment.last_solved_cycle
             change = step * tangent

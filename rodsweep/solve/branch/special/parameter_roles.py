@@ -30,7 +30,7 @@ class ParameterRoleSettings:
     """The parameters exchange their roles where the relative change of the row parameter along the curve is
     at most this number times the relative change of the parameter along a row. With larger slopes the errors
     of the parameter along a row are smaller without the exchange."""
-    min_coordinate_unit: float = 0.01
+    min_coordinate_unit_ratio: float = 0.01
     """Smallest unit of a parameter coordinate, divided by the length of its axis: parameters may be 0."""
 
 
@@ -141,4 +141,4 @@ class ParameterRoles:
         """Smallest unit of the coordinate of the parameter of `axis`."""
         parameter = PARAMETERS[axis.name]
         length = abs(parameter.coordinate(axis.stop) - parameter.coordinate(axis.start))
-        return PARAMETER_ROLE_SETTINGS.min_coordinate_unit * float(length)
+        return PARAMETER_ROLE_SETTINGS.min_coordinate_unit_ratio * float(length)

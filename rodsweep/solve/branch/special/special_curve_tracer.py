@@ -89,7 +89,7 @@ class SpecialCurveTracer:
         curves = tuple(traced.curve for traced_search in traced_searches for traced in traced_search.curves)
         return TracedCurves(
             curves,
-            max(traced_search.largest_seed_distance for traced_search in traced_searches),
+            max(traced_search.max_seed_distance for traced_search in traced_searches),
             sum(traced_search.untraced_count for traced_search in traced_searches),
         )
 
@@ -101,7 +101,7 @@ class SpecialCurveTracer:
         for kind in FOLLOWED_KINDS:
             curves = _CurvesOfKind(kind, self.line_axis, self.row_axis, self.special_points, own_results)
             seeds = (i for i, point in enumerate(self.special_points) if point.kind == kind)
-            yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance)
+            yield curves, trace_all_curves(curves, seeds, CURVE_IDENTITY_SETTINGS.max_row_distance_fraction)
 
     def solve(
         self, item: int, located: Callable[[int], Iterable[SpecialPoint]], workspace: NewtonWorkspace
@@ -202,7 +202,7 @@ class _CurvesOfKind:
         """Distance of the special point `seed` from a curve along the row, in row lengths; inf if the point
         is not near, 0 if the point lies on the curve's extrapolation to a Hopf point."""
         distance = curve.distances.get(seed, math.inf)
-        is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_row_distance
+        is_off_curve = distance > CURVE_IDENTITY_SETTINGS.max_row_distance_fraction
         # Between its last cycle and the Hopf point a curve is extrapolated: no cycle is solved there.
         return (
             0.0

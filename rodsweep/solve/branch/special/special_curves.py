@@ -21,7 +21,7 @@ class CurveIdentitySettings:
     """Settings of two tests: whether a special point lies on a curve, and whether two curves are
     identical."""
 
-    max_row_distance: float = 1e-6
+    max_row_distance_fraction: float = 1e-6
     """A special point of a row lies on a curve if its distance from the curve is at most this fraction of the
     length of a row."""
     max_chord_distance: float = 0.1

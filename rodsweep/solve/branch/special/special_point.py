@@ -30,14 +30,14 @@ class SpecialPointSettings:
     converging_step_ratio: float = 0.5
     """A small secant step, or a small change of a test function, of more than this number times its
     predecessor is rounding error."""
-    max_stalled_step: float = 1e-6
+    max_stalled_step_ratio: float = 1e-6
     """The secant method stops if its step, divided by the step of the branch, is at most this number and more
     than `converging_step_ratio` times the previous step."""
-    max_linear_step: float = 1e-6
+    max_linear_step_ratio: float = 1e-6
     """Longest last secant step, divided by the step of the branch. After the last step the cycle is moved
     along its tangent, not solved again. The relative error 1e-3 of the slope causes the error `secant_error`.
     """
-    max_linear_step_at_fold: float = 1e-5
+    max_linear_step_ratio_at_fold: float = 1e-5
     """Longest last secant step at a fold, divided by the step of the branch; longer than elsewhere, because
     the parameter is quadratic in arc length."""
     secant_error: float = 1e-9

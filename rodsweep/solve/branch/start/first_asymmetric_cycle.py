@@ -14,7 +14,7 @@ from ....arrays import Array
 from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
@@ -79,7 +79,7 @@ def first_asymmetric_cycle(
     # depend on the sign of the null vector.
     directions = [_AsymmetricCycles(full_orbit, matrix, sign * null_vector, accuracy) for sign in (1, -1)]
     cycles = max(
-        directions, key=lambda one: CyclePath(one.predicted_orbit(first_distance)).extrema["tip_y_max"]
+        directions, key=lambda one: CycleMotion(one.predicted_orbit(first_distance)).extrema["tip_y_max"]
     )
     for distance in ASYMMETRIC_START_SETTINGS.first_cycle_distances:
         try:

@@ -36,12 +36,12 @@ class ArmCrossingSettings:
     frequency_tolerance: float = 1e-6
     """Two crossings that may be equal by `max_distance_in_errors` are equal if the relative difference of
     their frequencies is at most this number."""
-    smallest_interval: float = 1e-6
+    min_interval_fraction: float = 1e-6
     """Intervals shorter than this fraction of the path are not divided, but stored as gaps."""
-    smallest_step: float = 1e-12
+    min_step_ratio: float = 1e-12
     """The search fails at an interval without located crossings whose length, divided by the larger modulus
     of its ends, is at most this number: some thousand rounding errors."""
-    count_distance: float = 1e-5
+    count_distance_fraction: float = 1e-5
     """Distance from a crossing, as a fraction of the path, at which the modes are counted on both sides."""
     max_steps: int = 20
     """Maximum number of Newton steps for one crossing."""
@@ -72,7 +72,7 @@ class CrossingSearch:
         further crossing takes longer than all earlier ones. Raises Unsolvable if the search ends at the first
         edge."""
         intervals = IntervalQueue(edges)
-        margin = ARM_CROSSING_SETTINGS.count_distance * intervals.length
+        margin = ARM_CROSSING_SETTINGS.count_distance_fraction * intervals.length
         self.axis_modes.outside_p_by_end = {edges[0]: edges[0] - margin, edges[-1]: edges[-1] + margin}
         self.axis_modes.modes_at(edges[0])
         for a, b in intervals:
@@ -114,7 +114,7 @@ class CrossingSearch:
             fraction = next_count_position(left_modes, right_modes)
             if fraction == 0.0:
                 return
-            if b - a <= ARM_CROSSING_SETTINGS.smallest_interval * intervals.length:
+            if b - a <= ARM_CROSSING_SETTINGS.min_interval_fraction * intervals.length:
                 self.gaps.append((a, b))
                 return
         else:
@@ -128,7 +128,7 @@ class CrossingSearch:
                 )
                 intervals.add_subintervals(*parts)
                 return
-            if b - a <= ARM_CROSSING_SETTINGS.smallest_step * max(abs(a), abs(b)):
+            if b - a <= ARM_CROSSING_SETTINGS.min_step_ratio * max(abs(a), abs(b)):
                 place = self.problem.path.text_at(a)
                 raise Unsolvable(f"the crossing of the imaginary axis near {place} could not be located")
         middle = a + fraction * (b - a)
@@ -146,8 +146,8 @@ class CrossingSearch:
         )
         for crossing in crossings:
             p = self.problem.path.coordinate(crossing.value)
-            p_before = max(start, p - ARM_CROSSING_SETTINGS.count_distance * length)
-            p_after = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance * length)
+            p_before = max(start, p - ARM_CROSSING_SETTINGS.count_distance_fraction * length)
+            p_after = min(right.p, p + ARM_CROSSING_SETTINGS.count_distance_fraction * length)
             guesses = None
             if self.axis_modes.has_many_modes(p_before):
                 guesses = self.axis_modes.eigenvalues_near_axis(
@@ -211,7 +211,7 @@ class CrossingSearch:
             w, slope, error = self.problem.eigenvalue(guess, p)
             p_error = error / abs(slope.real) + settings.rounding_error * abs(p)
             if abs(w.real / slope.real) <= settings.converged_step_in_errors * p_error:
-                max_error = settings.count_distance * (p_ends[1] - p_ends[0])
+                max_error = settings.count_distance_fraction * (p_ends[1] - p_ends[0])
                 if self.axis_modes.has_many_modes(p) and not p_error <= max_error:
                     return None  # no root of D is resolved
                 return self._crossing_at(p, w, slope, p_error, grows)

@@ -29,7 +29,7 @@ class ArmPathSettings:
 
     first_interval_count: int = 12
     """Number of intervals into which a path of arms is first divided."""
-    edge_shift: float = 0.0618
+    edge_shift_fraction: float = 0.0618
     """All edges but the first and the last are shifted by this fraction of an interval. With equal intervals,
     an edge would lie on a Hopf point, where no count succeeds, if the range ends at twice its force."""
     steps_per_interval: int = 4
@@ -95,7 +95,9 @@ class ArmPath(PathProblem):
 
     def interval_edges(self, low: float, high: float) -> list[float]:
         edges = np.linspace(low, high, ARM_PATH_SETTINGS.first_interval_count + 1)
-        edges[1:-1] -= ARM_PATH_SETTINGS.edge_shift * (high - low) / ARM_PATH_SETTINGS.first_interval_count
+        edges[1:-1] -= (
+            ARM_PATH_SETTINGS.edge_shift_fraction * (high - low) / ARM_PATH_SETTINGS.first_interval_count
+        )
         if self._followed_arms is None and low < high:
             steps = (
                 np.arange(ARM_PATH_SETTINGS.first_interval_count * ARM_PATH_SETTINGS.steps_per_interval + 1)
@@ -109,12 +111,13 @@ class ArmPath(PathProblem):
         """Estimate of the number of unstable modes at p."""
         return expected_unstable_count(self.path.rod_at(p))
 
-    def followed_spectrum(self, p: float, modes: int) -> Spectrum | None:
-        """The `modes` leading eigenvalues at p, proved complete, if they can be followed to p; else None."""
+    def followed_spectrum(self, p: float, mode_count: int) -> Spectrum | None:
+        """The `mode_count` leading eigenvalues at p, proved complete, if they can be followed to p; else
+        None."""
         settings = ARM_PATH_SETTINGS
         if self._followed_arms is None or self.expected_unstable_count(p) > settings.max_growing_modes:
             return None
-        spectrum = self._followed_arms.spectrum(p, modes)
+        spectrum = self._followed_arms.spectrum(p, mode_count)
         if spectrum is not None:
             self._unstable_counts[p] = spectrum.unstable_count
         return spectrum

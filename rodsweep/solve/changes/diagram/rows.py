@@ -94,7 +94,7 @@ def _search_row(rod: Rod, request: RowRequest) -> DiagramRow:
     values = request.values
     F = values if name == "F" else np.full(len(values), rod.F)
     k1 = values if name == "k1" else np.full(len(values), rod.k1)
-    fraction = rod.build.relative_crushing_force(rod.taper)
+    fraction = rod.material.relative_crushing_force(rod.taper)
     crushing = k1 * fraction
     is_uncrushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_margin) > F
     crushed = crushing * (1 - CRUSHING_END_SETTINGS.crushing_tolerance) <= F

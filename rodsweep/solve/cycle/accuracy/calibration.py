@@ -193,6 +193,6 @@ def _measured_time_order(
 
 def _log_ratio(first_errors: Array, second_errors: Array) -> Array:
     """Natural logarithm of before/after, for errors of a common shape; 0 is replaced by a tiny number."""
-    min_error = EXPONENT_SETTINGS.least_divisor
+    min_error = EXPONENT_SETTINGS.min_divisor
     quotient: Array = np.log(np.maximum(first_errors, min_error) / np.maximum(second_errors, min_error))
     return quotient

@@ -13,7 +13,7 @@ from math import nan
 import numpy as np
 
 from ....arrays import Array
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from ..integration_settings import INTEGRATION_SETTINGS
 from .calibration_settings import CALIBRATION_SETTINGS
@@ -101,7 +101,7 @@ def errors_with_safety_factors(space: Array, time: Array, accuracy: float) -> Ar
 UNKNOWN_ERRORS = CycleErrors(nan, nan, nan, nan)
 
 
-def errors_of_two_integrations(first: CyclePath, second: CyclePath, distance: float) -> CycleErrors:
+def errors_of_two_integrations(first: CycleMotion, second: CycleMotion, distance: float) -> CycleErrors:
     """Error estimates from the differences between the cycles `first` and `second` of two time integrations,
     relative to the largest y and the period of `second`; NaN for the multiplier. distance: relative distance
     of the settled motions from the cycle, which is added to the error estimates."""

@@ -11,7 +11,7 @@ by comparison with a finer mesh may vanish.
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ...orbit.tails import smooth_tails
@@ -25,7 +25,7 @@ LAST_HARMONIC_COUNT = 3
 and theta; only the slopes determine the very last harmonic."""
 
 
-def error_indicators(solved: ConvergedOrbit, path: CyclePath) -> Array:
+def error_indicators(solved: ConvergedOrbit, path: CycleMotion) -> Array:
     """Indicators, (3,), of the errors due to the time intervals: w/(2 E), the estimated relative error of the
     amplitude, and the 2-norm of the last harmonics of the tip's path, divided by the largest y; not below
     `CYCLE_ERROR_SETTINGS.rounding_error`. path: path of the orbit `solved`.

@@ -11,7 +11,7 @@ from math import ceil
 import numpy as np
 
 from ....arrays import Array, Complex
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.newton import (
     ConvergedOrbit,
     largest_multiplier_difference,
@@ -99,7 +99,7 @@ class ComparedCycle:
     def __init__(self, solved: ConvergedOrbit) -> None:
         self._converged_orbit = solved
         self.orbit = solved.orbit
-        self.path = CyclePath(solved.orbit)
+        self.path = CycleMotion(solved.orbit)
 
     @cached_property
     def multipliers(self) -> Complex:

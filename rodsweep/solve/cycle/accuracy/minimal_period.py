@@ -13,7 +13,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.orbit import Orbit, node_times
 from ...orbit.time_grading import UNIFORM_TIME
 
@@ -36,7 +36,7 @@ class MinimalPeriodSettings:
 MINIMAL_PERIOD_SETTINGS = MinimalPeriodSettings()
 
 
-def common_harmonic_divisor(path: CyclePath, min_ratio: float) -> int:
+def common_harmonic_divisor(path: CycleMotion, min_ratio: float) -> int:
     """Greatest common divisor of the numbers of all harmonics of the bending strain larger than `min_ratio`
     times the largest harmonic; 0 if all harmonics are 0. If the tip's angle alone gives 1, the harmonics of
     the strain are not computed: a motion whose tip does not repeat within the period does not repeat."""
@@ -58,7 +58,7 @@ def _divisor_from_harmonic_sizes(sizes: Array, min_ratio: float) -> int:
     return divisor
 
 
-def possible_period_divisor(path: CyclePath, error: float) -> int:
+def possible_period_divisor(path: CycleMotion, error: float) -> int:
     """Number g such that the minimal period may be 1/g of the period of `path`; g = 1 proves the period
     minimal, and g = 0 means that all harmonics are 0.
 
@@ -76,7 +76,7 @@ def possible_period_divisor(path: CyclePath, error: float) -> int:
 def restricted_to_minimal_period(orbit: Orbit) -> Orbit:
     """The orbit over the minimal period that its large harmonics show, as a start for Newton's method; the
     orbit itself if its period is minimal."""
-    g = common_harmonic_divisor(CyclePath(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
+    g = common_harmonic_divisor(CycleMotion(orbit), MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio)
     if g == 1:
         return orbit
     times = node_times(orbit.interval_count, orbit.stage_count)

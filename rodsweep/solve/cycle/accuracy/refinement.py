@@ -11,7 +11,7 @@ from math import inf
 import numpy as np
 
 from ...orbit.matrix.workspace import NewtonWorkspace
-from ...orbit.measures import CyclePath
+from ...orbit.measures import CycleMotion
 from ...orbit.mesh_choice import cheapest_stage_count, finer_mesh, mesh_from_tails, regraded
 from ...orbit.newton import (
     ORBIT_NEWTON_SETTINGS,
@@ -22,28 +22,28 @@ from ...orbit.newton import (
     with_matrix_within_distance,
 )
 from ...orbit.orbit import Orbit
-from ...orbit.orbit_mesh import OrbitMesh, mesh_limit
+from ...orbit.orbit_mesh import OrbitMesh, mesh_limit_error
 from ...unsolvable import Unsolvable
 from .amplitude_errors import multiplier_per_relative_exponent, with_amplitude_rounding
 from .calibration import Calibration
 from .cheapest_mesh import cheapest_mesh
 from .coarser_meshes import CoarserMeshes
-from .cycle_verdict import RefinedCycle
 from .error_indicators import error_indicators
 from .finer_meshes import measured_calibration, with_indicators
 from .minimal_period import MINIMAL_PERIOD_SETTINGS, common_harmonic_divisor, restricted_to_minimal_period
+from .refined_cycle import RefinedCycle
 from .refinement_settings import REFINEMENT_SETTINGS
 
 
 def cycle_with_calibrated_errors(
-    calibration: Calibration, solved: ConvergedOrbit, accuracy: float, path: CyclePath | None = None
+    calibration: Calibration, solved: ConvergedOrbit, accuracy: float, path: CycleMotion | None = None
 ) -> RefinedCycle:
     """The solved orbit `solved` as a cycle, with measures, multipliers and the errors of a calibration that
     is scaled to this orbit. The error of the largest multiplier includes the effects of the matrix, assembled
     at a nearby orbit, and of the amplitude error. The errors of the extrema include rounding near a Hopf
     point or a fold. accuracy: requested relative accuracy. path: path of the orbit, if known."""
 
-    path = path or CyclePath(solved.orbit)
+    path = path or CycleMotion(solved.orbit)
     measures = path.measures
     errors = with_amplitude_rounding(calibration.errors(accuracy), solved, measures)
     multipliers, trivial_error = multipliers_and_trivial_error(solved)
@@ -58,12 +58,12 @@ def cycle_with_calibrated_errors(
 
 
 def refined_cycle_of_any_period(
-    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
+    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter_name: str | None = None
 ) -> RefinedCycle:
     """The cycle near an approximate orbit, over one or more minimal periods, to a relative accuracy or on the
     finest allowed mesh; raises Unsolvable.
 
-    workspace: memory of Newton's matrices. parameter: parameter along which the tangent of the cycle is
+    workspace: memory of Newton's matrices. parameter_name: parameter along which the tangent of the cycle is
     computed; None for a single cycle, whose errors are predicted from coarser meshes if possible.
 
     Near a Hopf point a coarse mesh may have no cycle, because the mesh displaces the Hopf point. Finer meshes
@@ -78,7 +78,7 @@ def refined_cycle_of_any_period(
             )
             near_orbit = rough_orbit.orbit
             stages = cheapest_stage_count(accuracy)
-            if parameter is None:
+            if parameter_name is None:
                 first = mesh_from_tails(
                     near_orbit, REFINEMENT_SETTINGS.first_mesh_accuracy_ratio * mesh_accuracy, stages
                 )
@@ -87,15 +87,15 @@ def refined_cycle_of_any_period(
                 with suppress(Unsolvable):
                     return _predicted_cycle(first, near_orbit, accuracy, workspace)
             solved = _solve_on_mesh(
-                mesh_from_tails(near_orbit, mesh_accuracy, stages), rough_orbit, mesh_accuracy, parameter
+                mesh_from_tails(near_orbit, mesh_accuracy, stages), rough_orbit, mesh_accuracy, parameter_name
             )
-            return cycle_with_measured_errors(solved, None, accuracy, parameter)
+            return cycle_with_measured_errors(solved, None, accuracy, parameter_name)
         except Unsolvable:
             # Only symmetric cycles are born at Hopf points.
-            if mesh_accuracy <= REFINEMENT_SETTINGS.finest_accuracy or not orbit.is_symmetric:
+            if mesh_accuracy <= REFINEMENT_SETTINGS.min_accuracy or not orbit.is_symmetric:
                 raise
             mesh_accuracy = max(
-                REFINEMENT_SETTINGS.retry_accuracy_factor * mesh_accuracy, REFINEMENT_SETTINGS.finest_accuracy
+                REFINEMENT_SETTINGS.retry_accuracy_factor * mesh_accuracy, REFINEMENT_SETTINGS.min_accuracy
             )
             mesh = mesh_from_tails(orbit, mesh_accuracy, orbit.stage_count)
             if mesh.interval_count * mesh.unknown_count**3 > REFINEMENT_SETTINGS.max_retry_cost:
@@ -141,7 +141,7 @@ def _predicted_cycle(
     ):
         raise Unsolvable("coarser meshes do not predict the cycle")
     solved = with_matrix_within_distance(solved, min(accuracy, REFINEMENT_SETTINGS.max_matrix_distance))
-    path = CyclePath(solved.orbit)
+    path = CycleMotion(solved.orbit)
     calibration = with_indicators(best[1], error_indicators(solved, path))
     if calibration.errors(accuracy).largest_weighted_error > accuracy >= error:
         raise Unsolvable("coarser meshes do not predict the error of the amplitude")
@@ -149,13 +149,14 @@ def _predicted_cycle(
 
 
 def cycle_with_measured_errors(
-    solved: ConvergedOrbit, calibration: Calibration | None, accuracy: float, parameter: str | None
+    solved: ConvergedOrbit, calibration: Calibration | None, accuracy: float, parameter_name: str | None
 ) -> RefinedCycle:
     """The solved orbit `solved` as a cycle with measured errors, solved again on finer meshes if necessary;
     raises Unsolvable.
 
-    calibration: calibration at a nearby cycle, or None. parameter: parameter along which the tangent of the
-    cycle is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the accuracy.
+    calibration: calibration at a nearby cycle, or None. parameter_name: parameter along which the tangent of
+    the cycle is computed, or None. The most accurate cycle is returned if no allowed mesh reaches the
+    accuracy.
     """
     best_cycle = None
     max_error = inf
@@ -174,22 +175,22 @@ def cycle_with_measured_errors(
         finer = finer_mesh(calibration.mesh, target)
         if not finer.is_allowed:
             break
-        solved = _solve_on_mesh(finer, solved, accuracy, parameter)
+        solved = _solve_on_mesh(finer, solved, accuracy, parameter_name)
     if best_cycle is None:
-        raise mesh_limit()
+        raise mesh_limit_error()
     return best_cycle
 
 
 def _solve_on_mesh(
-    mesh: OrbitMesh, solved: ConvergedOrbit, accuracy: float, parameter: str | None
+    mesh: OrbitMesh, solved: ConvergedOrbit, accuracy: float, parameter_name: str | None
 ) -> ConvergedOrbit:
     """The orbit `solved` solved again on the mesh `mesh`, with a matrix assembled at the solution, so that
     its multipliers are exact to rounding error; raises Unsolvable. accuracy: requested relative accuracy.
-    parameter: parameter along which the tangent of the orbit is computed, or None."""
+    parameter_name: parameter along which the tangent of the orbit is computed, or None."""
     # `newton_step` makes one more, quadratically convergent step, so half of the digits suffice here.
     first_change = (newton_tolerance(accuracy) / ORBIT_NEWTON_SETTINGS.quadratic_error_factor) ** 0.5
     solution = newton(mesh.interpolated_orbit(solved.orbit), first_change, solved.workspace)
-    return newton_step(require_similar_size(solution, solved.orbit.max_energy_norm), parameter)
+    return newton_step(require_similar_size(solution, solved.orbit.max_energy_norm), parameter_name)
 
 
 def require_similar_size(solved: ConvergedOrbit, size: float) -> ConvergedOrbit:
@@ -205,28 +206,28 @@ def require_similar_size(solved: ConvergedOrbit, size: float) -> ConvergedOrbit:
 
 
 def refined_cycle(
-    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter: str | None = None
+    orbit: Orbit, accuracy: float, workspace: NewtonWorkspace, parameter_name: str | None = None
 ) -> RefinedCycle:
     """The cycle near an orbit, over its minimal period, to a relative accuracy; raises Unsolvable.
 
-    workspace: memory of Newton's matrices. parameter: parameter along which the tangent of the cycle is
+    workspace: memory of Newton's matrices. parameter_name: parameter along which the tangent of the cycle is
     computed, or None. If the stability is undecided, the cycle is solved again for a hundredth of the
     accuracy.
     """
-    cycle = refined_cycle_of_any_period(restricted_to_minimal_period(orbit), accuracy, workspace, parameter)
+    cycle = refined_cycle_of_any_period(
+        restricted_to_minimal_period(orbit), accuracy, workspace, parameter_name
+    )
     if common_harmonic_divisor(cycle.path, MINIMAL_PERIOD_SETTINGS.min_harmonic_ratio) > 1:
         cycle = refined_cycle_of_any_period(
-            restricted_to_minimal_period(cycle.orbit), accuracy, workspace, parameter
+            restricted_to_minimal_period(cycle.orbit), accuracy, workspace, parameter_name
         )
     # The largest multiplier is 1 within its error; a hundredth of the error may show the stability.
     if cycle.stable is None:
         cycle = refined_cycle_of_any_period(
             cycle.orbit,
-            max(
-                accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.finest_accuracy
-            ),
+            max(accuracy / REFINEMENT_SETTINGS.undecided_accuracy_divisor, REFINEMENT_SETTINGS.min_accuracy),
             workspace,
-            parameter,
+            parameter_name,
         )
     return cycle
 

@@ -25,7 +25,7 @@ class RefinementSettings:
     multiplier_error_factor: float = 10.0
     """Relative error of the multipliers divided by the sum of two numbers: the relative distance between the
     cycle and the orbit at which the matrix was assembled, and the error of the trivial multiplier."""
-    finest_accuracy: float = 1e-12
+    min_accuracy: float = 1e-12
     """Smallest relative accuracy for which a mesh is chosen; smaller errors are rounding errors."""
     min_first_mesh_accuracy: float = 1e-7
     """Smallest relative accuracy for which a first mesh is chosen from the coefficient tails of a nearby

@@ -118,15 +118,15 @@ def integrable_rod(rod: Rod) -> Rod:
     MOTION_MESH_SETTINGS.min_drag at the base, and with gamma1 of at least MOTION_MESH_SETTINGS.min_axial_drag
     everywhere; a limiting rod (k1 = inf, k2 = inf or gamma3 = 0) cannot be integrated in time."""
     gamma1 = max(rod.gamma1, MOTION_MESH_SETTINGS.min_axial_drag)
-    build = rod.build
+    material = rod.material
     least_factor = MOTION_MESH_SETTINGS.min_axial_drag / gamma1
-    if build.profile is not None and build.relative_least_axial_drag < least_factor:
-        build = replace(build, profile=build.profile.with_factors_above("gamma1", least_factor))
+    if material.profile is not None and material.relative_least_axial_drag < least_factor:
+        material = replace(material, profile=material.profile.with_factors_above("gamma1", least_factor))
     return replace(
         rod,
         k1=min(rod.k1, MOTION_MESH_SETTINGS.max_stiffness),
         k2=min(rod.k2, MOTION_MESH_SETTINGS.max_stiffness),
         gamma3=max(rod.gamma3, MOTION_MESH_SETTINGS.min_drag),
         gamma1=gamma1,
-        build=build,
+        material=material,
     )

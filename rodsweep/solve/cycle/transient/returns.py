@@ -51,8 +51,8 @@ def tip_angle_row(system: ExplicitSystem) -> Array:
     )
 
 
-def return_limit(row: Array, z: Array, returns: int) -> RunLimit:
-    """Limit that ends a run from the state z, (unknowns,), after `returns` returns of the tip or after
+def return_limit(row: Array, z: Array, return_count: int) -> RunLimit:
+    """Limit that ends a run from the state z, (unknowns,), after `return_count` returns of the tip or after
     RETURN_SETTINGS.max_steps_per_run time steps. row: `tip_angle_row` of the system, (unknowns,)."""
     count = 0
     last_angle = float(row @ z)
@@ -62,7 +62,7 @@ def return_limit(row: Array, z: Array, returns: int) -> RunLimit:
         angle = float(row @ state)
         count += int(last_angle < 0 <= angle)
         last_angle = angle
-        return count >= returns
+        return count >= return_count
 
     return RunLimit(enough, RETURN_SETTINGS.max_steps_per_run)
 
@@ -74,18 +74,19 @@ class RunFailure(NamedTuple):
     message: str
 
 
-def run_failure(system: ExplicitSystem, run: Trajectory, returns: int) -> RunFailure | None:
-    """The failure of a run, with a message; None if the run is complete. returns: number of returns of the
-    tip before the run."""
+def run_failure(system: ExplicitSystem, run: Trajectory, return_count: int) -> RunFailure | None:
+    """The failure of a run, with a message; None if the run is complete. return_count: number of returns of
+    the tip before the run."""
     if run.ending in (EndReason.reached, EndReason.stopped):
         return None
     if run.ending == EndReason.left_the_model:
         h1 = system.least_stretch(run.states[-1])
-        place = f"at a point of the rod after {counted(returns, 'return')} of the tip"
+        place = f"at a point of the rod after {counted(return_count, 'return')} of the tip"
         return RunFailure(True, f"the axial stretch h1 is {h1:.3g} {place}")
     if not run.message and _loses_convexity(system, run.states[-RETURN_SETTINGS.searched_last_states :]):
         reason = (
-            f"after {counted(returns, 'return')} of the tip a section has lost its stiffness: its strain "
+            f"after {counted(return_count, 'return')} of the tip a section has lost its stiffness: its "
+            "strain "
             "energy is not convex"
         )
         return RunFailure(True, reason)
@@ -156,11 +157,11 @@ def repetition(moments: Sequence[Array]) -> tuple[int, float]:
     return next((m, distance) for distance, m in distances if distance <= tolerance)
 
 
-def not_settled_text(waited: int, returns: int, return_distance: float) -> str:
+def not_settled_text(waited: int, return_count: int, return_distance: float) -> str:
     """Message that explains why a motion has not settled after the time of `waited` returns.
 
-    returns: number of returns with a known state. return_distance: relative distance of the last return from
-    an earlier return; NaN for too few returns, inf for a decayed motion.
+    return_count: number of returns with a known state. return_distance: relative distance of the last return
+    from an earlier return; NaN for too few returns, inf for a decayed motion.
     """
     if isfinite(return_distance):
         return (
@@ -168,5 +169,5 @@ def not_settled_text(waited: int, returns: int, return_distance: float) -> str:
             f"relative {return_distance:.1e} from that at an earlier return"
         )
     if isnan(return_distance):
-        return f"the tip returned to theta = 0 only {counted(returns, 'time')}, so no period is known"
+        return f"the tip returned to theta = 0 only {counted(return_count, 'time')}, so no period is known"
     return "the deflection has decayed to rounding error, but the straight rod is not stable"

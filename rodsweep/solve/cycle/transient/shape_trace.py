@@ -71,9 +71,11 @@ class ShapeTrace:
             self.run_states.append(states)
             self.step_count += len(times)
 
-    def motion_shapes(self, returns: Sequence[float], period: float, frames: int, nodes: int) -> MotionShapes:
-        """Shapes on `nodes` Lobatto nodes, `frames` shapes per return of the tip, until the arm is at rest,
-        at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
+    def motion_shapes(
+        self, returns: Sequence[float], period: float, frame_count: int, node_count: int
+    ) -> MotionShapes:
+        """Shapes on `node_count` Lobatto nodes, `frame_count` shapes per return of the tip, until the arm is
+        at rest, at most SHAPE_TRACE_SETTINGS.max_stored_shapes.
 
         returns: times of the last returns of the tip, in tau2. period: period of the leading mode, in tau2,
         used if there are fewer than SHAPE_TRACE_SETTINGS.min_returns returns.
@@ -82,7 +84,7 @@ class ShapeTrace:
 
         step = (
             float(np.median(np.diff(returns))) if len(returns) >= SHAPE_TRACE_SETTINGS.min_returns else period
-        ) / frames
+        ) / frame_count
         shape_times = step * np.arange(
             min(int(self.run_times[-1][-1] / step) + 1, SHAPE_TRACE_SETTINGS.max_stored_shapes)
         )
@@ -94,7 +96,9 @@ class ShapeTrace:
                 states[is_in_run] = (
                     CubicSpline(times, steps)(shape_times[is_in_run]) if len(times) > 1 else steps[:1]
                 )
-        shapes = self.system.shape(states)[:2] @ self.system.mesh.evaluation_matrix(lobatto_points(nodes)).T
+        shapes = (
+            self.system.shape(states)[:2] @ self.system.mesh.evaluation_matrix(lobatto_points(node_count)).T
+        )
         is_complete = not self.is_full and len(shape_times) < SHAPE_TRACE_SETTINGS.max_stored_shapes
         moving_shapes = np.flatnonzero(np.abs(shapes[1, :, -1]) > SHAPE_TRACE_SETTINGS.max_rest_deflection)
         return MotionShapes(step, shapes[:, : int(moving_shapes.max(initial=0)) + 2], is_complete)

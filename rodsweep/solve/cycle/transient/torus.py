@@ -16,7 +16,7 @@ import numpy as np
 
 from ....arrays import Array
 from ...unsolvable import Unsolvable
-from ..accuracy.cycle_verdict import RefinedCycle
+from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..hopf_start import hopf_point_below, orbit_from_hopf
 from ..status import CycleStatus
@@ -35,7 +35,7 @@ class TorusTestSettings:
     """Smallest number of returns after which a motion on a torus may close: the returns must leave no gap
     larger than 1/`min_distinct_returns` of the closed curve. The returns then determine the 13 terms of the
     Fourier series."""
-    max_prediction_error: float = 0.05
+    max_prediction_error_ratio: float = 0.05
     """Largest rms error of the predicted returns on a torus, divided by the rms modulation. Errors of 7e-4 to
     0.03 were measured on tori, and 0.11 for a growing modulation."""
     skipped_fraction: float = 1 / 3
@@ -89,7 +89,7 @@ def classify_quasiperiodic(end: TransientOutcome, transient: TransientIntegratio
         )
         angle = unstable_pair_angle(cycle)
         modulation = torus_frequency_of(moments, angle) if is_near and angle else None
-        if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error:
+        if modulation and modulation.prediction_error <= TORUS_TEST_SETTINGS.max_prediction_error_ratio:
             ratio = modulation.angle_per_return / (2 * np.pi)
             message = (
                 f"the motion is modulated at {ratio:.3f} times the frequency of its oscillation; the "
@@ -164,8 +164,8 @@ def fitted_angle(returns: Array, angle: float) -> float:
 
     numbers = np.arange(len(returns))
 
-    def residual(trial_angle: float, harmonics: int) -> float:
-        basis = fourier_basis(trial_angle * numbers, harmonics)
+    def residual(trial_angle: float, harmonic_count: int) -> float:
+        basis = fourier_basis(trial_angle * numbers, harmonic_count)
         return float(np.linalg.norm(returns - basis @ np.linalg.lstsq(basis, returns, rcond=None)[0]))
 
     # With one harmonic the minimum is 2 pi/k wide, with m harmonics 2 pi/(k m); k: number of returns.
@@ -194,10 +194,10 @@ def fitted_angle(returns: Array, angle: float) -> float:
     return best_angle
 
 
-def fourier_basis(phases: Array, harmonics: int) -> Array:
+def fourier_basis(phases: Array, harmonic_count: int) -> Array:
     """Matrix of Fourier terms at phases, (k,), in rad: 1, cosines and sines of the multiples up to
-    `harmonics`, (k, 2 harmonics + 1)."""
-    multiples = np.outer(phases, np.arange(1, harmonics + 1))
+    `harmonic_count`, (k, 2 harmonics + 1)."""
+    multiples = np.outer(phases, np.arange(1, harmonic_count + 1))
     return np.hstack([np.ones((len(phases), 1)), np.cos(multiples), np.sin(multiples)])
 
 

@@ -20,7 +20,7 @@ from ...motion.integrator import INTEGRATOR_SETTINGS, EndReason, Trajectory, int
 from ...motion.leading_mode import leading_mode
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...unsolvable import Unsolvable
-from ..accuracy.cycle_verdict import RefinedCycle
+from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle import CycleRequest
 from ..status import CycleStatus
@@ -50,14 +50,14 @@ class TransientIntegration:
         form: StressForm,
         straight: StraightRodStability,
         request: CycleRequest,
-        parameter: str | None,
+        parameter_name: str | None,
         unstable: RefinedCycle | None,
         workspace: NewtonWorkspace,
     ) -> None:
         self.system = ExplicitSystem(integrable_rod(form.rod), form.mesh)
         self.form = form
         self.straight = straight
-        self.tangent_parameter = parameter
+        self.tangent_parameter = parameter_name
         self.workspace = workspace
         self.accuracy = request.accuracy
         self.max_returns = request.most_periods

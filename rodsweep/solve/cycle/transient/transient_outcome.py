@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from math import nan
 
-from ..accuracy.cycle_verdict import RefinedCycle
+from ..accuracy.refined_cycle import RefinedCycle
 from ..status import CycleStatus
 
 

@@ -34,7 +34,7 @@ class Linearisation:
     coordinate of the parameter `parameter`, (N,); None if no parameter was given.
     """
 
-    def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter: str | None = None) -> None:
+    def __init__(self, orbit: Orbit, workspace: NewtonWorkspace, parameter_name: str | None = None) -> None:
         self.orbit = orbit
         self.workspace = workspace
         self._memory = FactorStorage(
@@ -44,13 +44,13 @@ class Linearisation:
         factors = self._memory.factors
         derivatives = (
             ParameterDerivatives(NO_PARAMETER_CHANGE, p.mass)
-            if parameter is None
-            else parameter_derivatives(orbit.form, parameter)
+            if parameter_name is None
+            else parameter_derivatives(orbit.form, parameter_name)
         )
-        count = 2 if parameter is None else 3
+        count = 2 if parameter_name is None else 3
         steps, self._period_derivative = eliminate_at_orbit(orbit.values, count, derivatives, p, factors)
         self.step = steps[0]
-        self.tangent = None if parameter is None else steps[1]
+        self.tangent = None if parameter_name is None else steps[1]
 
     def correction(self, orbit: Orbit) -> Array:
         """Newton's step, (N,), at the nearby `orbit`; raises RuntimeError if the factors were overwritten."""

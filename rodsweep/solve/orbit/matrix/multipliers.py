@@ -22,7 +22,7 @@ from ..orbit import Orbit
 class FloquetMultiplierSettings:
     """Settings for the factorisation of the derivative of a flow."""
 
-    negligible_column: float = 1e-17
+    negligible_column_ratio: float = 1e-17
     """A remaining column is neglected if its norm is at most this number times the largest column norm of the
     derivative."""
 
@@ -37,7 +37,7 @@ def nonzero_eigenvalues(A: Array) -> Complex:
     Raises LinAlgError if A has entries that are not finite.
     """
     values: Complex = _eigenvalues_by_rank(
-        np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column
+        np.ascontiguousarray(A), FLOQUET_MULTIPLIER_SETTINGS.negligible_column_ratio
     )
     if not len(values):
         raise np.linalg.LinAlgError("the flow derivative of the cycle is not finite")
@@ -92,9 +92,9 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
             break
         q = Q[rank]
         r = R[rank]
-        # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; `least_divisor`
+        # Gram-Schmidt with the largest remaining column as pivot, which reveals the rank; `min_divisor`
         # avoids a division by 0 for a zero matrix.
-        q[:] = columns[p] / max(size, EXPONENT_SETTINGS.least_divisor)
+        q[:] = columns[p] / max(size, EXPONENT_SETTINGS.min_divisor)
         for j in range(n):
             if norms[j] > least:
                 norms[j] = _subtract_projection(columns[j], q, r, j)

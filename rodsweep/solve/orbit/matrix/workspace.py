@@ -59,9 +59,9 @@ def stage_block(i: int, j: int, s: int) -> int:
     return s + (i - 2) * (s - 2) + j - 2
 
 
-def factors_size(intervals: int, stages: int, unknowns: int) -> int:
+def factors_size(interval_count: int, stage_count: int, unknown_count: int) -> int:
     """Size of the factors of a Newton matrix, in double-precision numbers."""
-    return intervals * block_count(stages) * unknowns**2
+    return interval_count * block_count(stage_count) * unknown_count**2
 
 
 class NewtonFactors(NamedTuple):
@@ -158,15 +158,17 @@ class FactorStorage:
     """Memory of the factors of one Newton matrix: the blocks are in a workspace, propagator and inverse in
     separate arrays."""
 
-    def __init__(self, workspace: NewtonWorkspace, intervals: int, stages: int, unknowns: int) -> None:
+    def __init__(
+        self, workspace: NewtonWorkspace, interval_count: int, stage_count: int, unknown_count: int
+    ) -> None:
         self.workspace = workspace
-        self._shape = (intervals, block_count(stages), unknowns, unknowns)
-        self._size = factors_size(intervals, stages, unknowns)
-        workspace.add_work(float(intervals * stages**2) * float(unknowns) ** 3)
+        self._shape = (interval_count, block_count(stage_count), unknown_count, unknown_count)
+        self._size = factors_size(interval_count, stage_count, unknown_count)
+        workspace.add_work(float(interval_count * stage_count**2) * float(unknown_count) ** 3)
         self._reservation = workspace.reserve(self._size)
-        self.propagator = np.zeros((unknowns, unknowns))
+        self.propagator = np.zeros((unknown_count, unknown_count))
         """P, (n, n), which stays valid when the workspace is used again."""
-        self._inverse = np.zeros((unknowns + 1, unknowns + 1))
+        self._inverse = np.zeros((unknown_count + 1, unknown_count + 1))
 
     @property
     def factors(self) -> NewtonFactors:

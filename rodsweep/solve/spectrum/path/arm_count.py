@@ -17,13 +17,13 @@ from .prediction import FollowedEigenvalues
 
 
 def confirmed_count_at(
-    path: ParameterPath, interval: ArmInterval, p: float, modes: int, point_track: FollowedEigenvalues
+    path: ParameterPath, interval: ArmInterval, p: float, mode_count: int, point_track: FollowedEigenvalues
 ) -> int:
     """Number of eigenvalues at path variable p that are confirmed by a count to be all eigenvalues to the
     right of a line; 0 if no count confirms this. interval: an interval that contains p. point_track: a track
     with the eigenvalues at p only."""
     w, error = leading_eigenvalues(point_track, point_track.w.shape[1])
-    line = confirmed_line(path, interval, p, (w[0], error[0]), modes)
+    line = confirmed_line(path, interval, p, (w[0], error[0]), mode_count)
     return 0 if line is None else int((w[0].real > line).sum())
 
 
@@ -32,21 +32,21 @@ def confirmed_line(
     interval: ArmInterval,
     p: float,
     followed: tuple[Complex, Array],
-    modes: int,
+    mode_count: int,
     rightmost: float = math.inf,
 ) -> float | None:
     """Real part, at most `rightmost`, of a line for which a count at path variable p confirms that all
     eigenvalues to its right are followed; None if no count confirms this.
 
     interval: an interval that contains p. followed: eigenvalues at p by descending real part, and their
-    errors, (m,) each. modes: number of requested modes, which lie to the right of the line.
+    errors, (m,) each. mode_count: number of requested modes, which lie to the right of the line.
     """
     w, error = followed
     if w[-1].real > 0:  # more modes grow, and the count would include them
         return None
     determinant = ArmDeterminant(path.rod_at(p), propagators_at(interval.family, p))
     hull = hull_at(interval.hulls, p)
-    lines = [line for line in lines_for_count(w.tolist(), modes) if line <= rightmost]
+    lines = [line for line in lines_for_count(w.tolist(), mode_count) if line <= rightmost]
     for line in [*lines, rightmost] if rightmost < math.inf else lines:
         number = count_right_of(line, determinant, hull, w, error).number
         if number is not None:

@@ -21,7 +21,7 @@ from ....determinant.arm.completeness import (
 from ....determinant.arm.family_values import write_propagators
 from ....determinant.arm.hull.region import EigenvalueHull, PathHulls, hull_at
 from ....determinant.arm.rounding import error_of_interpolated_chain
-from ....determinant.arm.value import determinant_along_chain, path_value_by_chain
+from ....determinant.arm.value import determinant_from_propagators, path_value_from_propagators
 from ....determinant.roots.roots import roots_of_parabola, sort_descending
 from ....determinant.value import DETERMINANT_SETTINGS, second_difference
 from ....model.compiled.compilation import compiled
@@ -47,8 +47,8 @@ variable p, sizes of their entries); the first two arrays: (elements, terms, PAD
 def correct_eigenvalue_of_arm(w: complex, level: PropagatorsWithSlopes) -> CorrectedEigenvalue:
     """One Newton step for a root of D from w, for an arm with propagators `level`; a real w stays real. The
     error estimate contains only the rounding errors of the products of propagators; it is no bound of the
-    rounding error of D, see `rounding_error_by_chain`."""
-    value = path_value_by_chain(w, level[0], level[1], level[2])
+    rounding error of D, see `rounding_error_from_propagators`."""
+    value = path_value_from_propagators(w, level[0], level[1], level[2])
     return newton_step(w, value, value.rounding_error)
 
 
@@ -77,10 +77,10 @@ def _converged_step_and_error(
 @compiled
 def taylor_parabola_roots_of_arm(middle: complex, level: PropagatorsWithSlopes) -> tuple[complex, complex]:
     """The two roots of D near a real `middle`, from the quadratic Taylor polynomial of D about `middle`."""
-    D, D_w, S, _ = determinant_along_chain(middle, level[0], level[1])
-    h = DETERMINANT_SETTINGS.second_difference_step * abs(middle)
-    value_after = determinant_along_chain(middle + h, level[0], level[1])
-    value_before = determinant_along_chain(middle - h, level[0], level[1])
+    D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
+    h = DETERMINANT_SETTINGS.second_difference_step_ratio * abs(middle)
+    value_after = determinant_from_propagators(middle + h, level[0], level[1])
+    value_before = determinant_from_propagators(middle - h, level[0], level[1])
     D_ww = second_difference(value_after, value_before, S, h)
     return roots_of_parabola(middle, complex(D.real, 0.0), complex(D_w.real, 0.0), complex(D_ww.real, 0.0))
 
@@ -132,7 +132,7 @@ def proved_count_right_of_line(
     line = min(
         w[k].real
         - CANDIDATE_SETTINGS.proof_line_distance_in_errors * error[k]
-        - CANDIDATE_SETTINGS.proof_line_distance * abs(w[k]),
+        - CANDIDATE_SETTINGS.proof_line_distance_ratio * abs(w[k]),
         0.0,
     )
     count = 0

@@ -52,9 +52,9 @@ class ArmInterval(NamedTuple):
     arm_count: int
     further_modes: int
 
-    def proved_points(self, modes: int) -> int:
-        """Number of points at which at least `modes` leading modes are proved complete."""
-        return int((self.proved_modes >= modes).sum())
+    def proved_points(self, mode_count: int) -> int:
+        """Number of points at which at least `mode_count` leading modes are proved complete."""
+        return int((self.proved_modes >= mode_count).sum())
 
 
 def follow_interval(
@@ -98,10 +98,10 @@ def _follows_too_few_modes(interval: ArmInterval) -> bool:
     return bool(growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing > interval.track.w.shape[1])
 
 
-def _is_better_interval(interval: ArmInterval, other: ArmInterval, modes: int) -> bool:
+def _is_better_interval(interval: ArmInterval, other: ArmInterval, mode_count: int) -> bool:
     """Whether `interval` has more proved points than `other`, or as many while `other` follows too few."""
-    proved = interval.proved_points(modes)
-    other_proved = other.proved_points(modes)
+    proved = interval.proved_points(mode_count)
+    other_proved = other.proved_points(mode_count)
     return proved > other_proved or (proved == other_proved and _follows_too_few_modes(other))
 
 
@@ -122,13 +122,17 @@ def _proves_middle(path: ParameterPath, interval: ArmInterval, request: Spectrum
 
 
 def _follow_with_further_modes(
-    path: ParameterPath, p: Array, request: SpectrumRequest, added_modes: int, previous: ArmInterval | None
+    path: ParameterPath,
+    p: Array,
+    request: SpectrumRequest,
+    added_mode_count: int,
+    previous: ArmInterval | None,
 ) -> ArmInterval | None:
-    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_modes` modes
-    followed in addition to the wanted modes; None if the first point fails or no family is found."""
-    first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_modes)
+    """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_mode_count`
+    modes followed in addition to the wanted modes; None if the first point fails or no family is found."""
+    first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_mode_count)
     if first is None:
-        roots = _leading_roots(path, float(p[0]), request, added_modes)
+        roots = _leading_roots(path, float(p[0]), request, added_mode_count)
         # Following takes no unpaired complex eigenvalues.
         first = None if roots is None else roots.w[has_conjugate(roots.w)]
     n = len(p)
@@ -158,16 +162,22 @@ def _follow_with_further_modes(
         return None
     arms = previous.arm_count if previous is not None and family is previous.family else n
     return ArmInterval(
-        p[:reached], slice_track(track, 0, reached), proved_counts[:reached], family, hulls, arms, added_modes
+        p[:reached],
+        slice_track(track, 0, reached),
+        proved_counts[:reached],
+        family,
+        hulls,
+        arms,
+        added_mode_count,
     )
 
 
 def family_and_hulls(
-    path: ParameterPath, p: Array, first_eigenvalues: Complex, modes: int
+    path: ParameterPath, p: Array, first_eigenvalues: Complex, mode_count: int
 ) -> tuple[ArmFamily, PathHulls] | None:
     """(family of the arms at all p, (n,); hulls that contain the spectra of these arms); None if all p are
     equal, if the arms are not smooth in p, or if no elements resolve an arm. first_eigenvalues: eigenvalues
-    at the first point, (m,), in descending order. modes: requested number."""
+    at the first point, (m,), in descending order. mode_count: requested number."""
     low = float(p.min())
     high = float(p.max())
     if not low < high:
@@ -177,7 +187,7 @@ def family_and_hulls(
             return None
         hulls = hulls_along(path, low, high, ARM_FOLLOWING_SETTINGS.hulls_per_interval)
         W = ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(np.abs(first_eigenvalues).max())
-        line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[modes - 1].real), 0.0)
+        line = min(ARM_FOLLOWING_SETTINGS.w_bound_ratio * float(first_eigenvalues[mode_count - 1].real), 0.0)
         hull = max(zip(hulls.a.tolist(), hulls.c.tolist(), strict=True))
         ends = [
             points[-1]
@@ -192,22 +202,24 @@ def family_and_hulls(
 
 
 def _eigenvalues_of_previous_interval(
-    previous: ArmInterval | None, p: float, request: SpectrumRequest, added_modes: int
+    previous: ArmInterval | None, p: float, request: SpectrumRequest, added_mode_count: int
 ) -> Complex | None:
     """Eigenvalues, (m,), at p, from the previous interval `previous`; None unless p is the last point of this
-    interval, `added_modes` modes were followed there, and all its points are proved complete."""
-    if previous is None or previous.further_modes != added_modes or previous.p[-1] != p:
+    interval, `added_mode_count` modes were followed there, and all its points are proved complete."""
+    if previous is None or previous.further_modes != added_mode_count or previous.p[-1] != p:
         return None
     if previous.proved_points(request.modes) < len(previous.p):
         return None
     return previous.track.w[-1][previous.track.descending_order[-1]]
 
 
-def _leading_roots(path: ParameterPath, p: float, request: SpectrumRequest, added_modes: int) -> Roots | None:
-    """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_modes` more
-    modes; None if the solve fails."""
+def _leading_roots(
+    path: ParameterPath, p: float, request: SpectrumRequest, added_mode_count: int
+) -> Roots | None:
+    """The leading eigenvalues at path variable p, without a proof: the wanted modes and `added_mode_count`
+    more modes; None if the solve fails."""
     try:
-        modes = request.modes + added_modes
+        modes = request.modes + added_mode_count
         search = SpectrumSearch(path.rod_at(p), replace(request, modes=modes, certify=False), requested=modes)
         with np.errstate(all="ignore"):
             search.outcome()

@@ -22,13 +22,13 @@ class ArmCountCarrier:
     number of requested modes. w, error: followed eigenvalues by descending real part, (points, m). lines:
     real part of the rightmost line left of all requested eigenvalues, (points,)."""
 
-    def __init__(self, path: ParameterPath, interval: ArmInterval, modes: int):
+    def __init__(self, path: ParameterPath, interval: ArmInterval, mode_count: int):
         self.path = path
         self.interval = interval
-        self.modes = modes
+        self.modes = mode_count
         self.w, self.error = leading_eigenvalues(interval.track, interval.track.w.shape[1])
-        last = self.w[:, modes - 1]
-        self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance * np.abs(last)
+        last = self.w[:, mode_count - 1]
+        self.lines = np.minimum(last.real, 0.0) - NO_CROSSING_SETTINGS.line_distance_ratio * np.abs(last)
 
     def carry_counts(self) -> None:
         """Fills `interval.proved_modes` wherever a count can be carried."""

@@ -26,11 +26,11 @@ class FollowedArms:
     a point, a new interval starts at a later point. intervals: the intervals followed so far.
     """
 
-    def __init__(self, path: ParameterPath, p: Array, modes: int):
-        """p: path variable of the points, monotone, (n,). modes: number of leading eigenvalues to be proved
-        complete at each point."""
+    def __init__(self, path: ParameterPath, p: Array, mode_count: int):
+        """p: path variable of the points, monotone, (n,). mode_count: number of leading eigenvalues to be
+        proved complete at each point."""
         self.path = path
-        self.request = SpectrumRequest(modes, ARM_FOLLOWING_SETTINGS.accuracy, certify=True)
+        self.request = SpectrumRequest(mode_count, ARM_FOLLOWING_SETTINGS.accuracy, certify=True)
         self.intervals: list[ArmInterval] = []
         self._proved_by_p: dict[float, list[ProvedEigenvalues]] = {}
         self._p = p
@@ -91,12 +91,12 @@ class FollowedArms:
                     return KnownRoots(track.w[0], track.error[0])
         return None
 
-    def _proved_eigenvalues_at(self, p: float, modes: int) -> Iterator["ProvedEigenvalues"]:
+    def _proved_eigenvalues_at(self, p: float, mode_count: int) -> Iterator["ProvedEigenvalues"]:
         """Yields the eigenvalues at p of each interval that contains p, up to the first interval with a proof
-        for `modes`. All growing modes and two more modes are proved at once, for the next requests."""
+        for `mode_count`. All growing modes and two more modes are proved at once, for the next requests."""
         for interval in self.intervals:
             followed_count = interval.track.w.shape[1]
-            if not interval.p.min() <= p <= interval.p.max() or followed_count < modes:
+            if not interval.p.min() <= p <= interval.p.max() or followed_count < mode_count:
                 continue
             track = None
             proved_count = 0
@@ -105,7 +105,8 @@ class FollowedArms:
             # More modes may grow at p than at the nearest point.
             while requested < (
                 needed_modes := min(
-                    max(modes, growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing), followed_count
+                    max(mode_count, growing_count + ARM_FOLLOWING_SETTINGS.modes_beyond_growing),
+                    followed_count,
                 )
             ):
                 requested = needed_modes
@@ -113,24 +114,24 @@ class FollowedArms:
                 growing_count = 0 if track is None else int((track.w.real > 0).sum())
             if track is None:
                 continue
-            for number in sorted({requested, modes}, reverse=True):
+            for number in sorted({requested, mode_count}, reverse=True):
                 if proved_count < number:
                     proved_count = max(
                         proved_count, confirmed_count_at(self.path, interval, p, number, track)
                     )
-            yield ProvedEigenvalues(max(modes, min(proved_count, requested)), track, proved_count)
-            if proved_count >= modes:
+            yield ProvedEigenvalues(max(mode_count, min(proved_count, requested)), track, proved_count)
+            if proved_count >= mode_count:
                 return
 
     def _track_from_nearest_point(
-        self, interval: ArmInterval, p: float, modes: int
+        self, interval: ArmInterval, p: float, mode_count: int
     ) -> tuple[FollowedEigenvalues | None, int]:
         """Returns (track with the eigenvalues at p only, number of modes proved complete), followed from the
-        point nearest to p. interval: an interval that contains p. modes: number of leading modes to be
+        point nearest to p. interval: an interval that contains p. mode_count: number of leading modes to be
         proved. The track is None if following fails."""
         i = int(np.argmin(np.abs(interval.p - p)))
         start = float(interval.p[i])
-        if p == start and modes <= self.request.modes:
+        if p == start and mode_count <= self.request.modes:
             return slice_track(interval.track, i, i + 1), int(interval.proved_modes[i])
         for steps in ARM_FOLLOWING_SETTINGS.steps_from_nearest:
             grid = np.array([start]) if p == start else start + (p - start) * np.arange(steps + 1) / steps
@@ -138,7 +139,7 @@ class FollowedArms:
             proved_counts = np.zeros(len(grid), np.int64)
             track.descending_order[0] = interval.track.descending_order[i]
             if follow_eigenvalues_of_arms(
-                track, interval.family, interval.hulls, grid, modes, proved_counts
+                track, interval.family, interval.hulls, grid, mode_count, proved_counts
             ) == len(grid):
                 return slice_track(track, len(grid) - 1, len(grid)), int(proved_counts[-1])
         return None, 0

@@ -116,5 +116,8 @@ def _lines_for_count(w: complex) -> Iterator[float]:
     """Real parts of two lines to the left of a leading eigenvalue w, for the count; the cheaper first."""
     return (
         w.real - distance * abs(w)
-        for distance in (CANDIDATE_SETTINGS.leader_line_distance, CANDIDATE_SETTINGS.last_line_distance)
+        for distance in (
+            CANDIDATE_SETTINGS.leader_line_distance_ratio,
+            CANDIDATE_SETTINGS.last_line_distance_ratio,
+        )
     )

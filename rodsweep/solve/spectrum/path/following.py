@@ -150,14 +150,14 @@ def _iterate_to_convergence(
 def are_distinct_roots(w: Complex, error: Array) -> bool:
     """Whether all eigenvalues w and their absolute errors `error`, (m,) each, are finite, and no two
     eigenvalues can be the same root. A residual may be small by chance, and the error with it: eigenvalues
-    within `double_root_correction` times |w| can be the same root, too."""
+    within `double_root_correction_ratio` times |w| can be the same root, too."""
     for k in range(len(w)):
         if not (abs(w[k]) < math.inf and error[k] < math.inf):
             return False
-        min_distance = ROOT_SETTINGS.double_root_correction * abs(w[k])
+        min_distance = ROOT_SETTINGS.double_root_correction_ratio * abs(w[k])
         for j in range(k):
             if not abs(w[k] - w[j]) > max(
-                ROOT_SETTINGS.same_root_distance * (error[k] + error[j]), min_distance
+                ROOT_SETTINGS.same_root_distance_in_errors * (error[k] + error[j]), min_distance
             ):
                 return False
     return True

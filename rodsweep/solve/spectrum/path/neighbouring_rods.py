@@ -112,12 +112,12 @@ def follow_spectra(rods: NeighbouringRods, request: SpectrumRequest) -> Followed
     return FollowedSpectra(Spectrum(seconds=seconds, **columns), is_solved)
 
 
-def _unsolved_fields(n: int, modes: int) -> dict[str, Any]:
+def _unsolved_fields(n: int, mode_count: int) -> dict[str, Any]:
     """Arrays for the fields of a `Spectrum` of n rods, filled with the values of an unsolved rod."""
     zeros = np.zeros(n, np.int64)
     return {
-        "eigenvalues": np.full((n, modes), COMPLEX_NAN),
-        "error_estimate": np.full((n, modes), np.nan),
+        "eigenvalues": np.full((n, mode_count), COMPLEX_NAN),
+        "error_estimate": np.full((n, mode_count), np.nan),
         "unstable_count": zeros - 1,
         "certified": np.zeros(n, np.bool_),
         "elements": zeros.copy(),
@@ -181,13 +181,13 @@ def follow_spectra_of_arms(path: ParameterPath, p: Array, request: SpectrumReque
 
 
 def _proved_counts_along(
-    rods: NeighbouringRods, track: FollowedEigenvalues, modes: int, first_count: int
+    rods: NeighbouringRods, track: FollowedEigenvalues, mode_count: int, first_count: int
 ) -> NDArray[np.int64]:
     """Number of leading eigenvalues proved complete at each point of a track, up to the last point with a
     proof, (points,).
 
-    modes: number of requested eigenvalues. first_count: number of eigenvalues proved complete at the first
-    point. If a proof does not carry the number to the next point, a new count there is tried.
+    mode_count: number of requested eigenvalues. first_count: number of eigenvalues proved complete at the
+    first point. If a proof does not carry the number to the next point, a new count there is tried.
     """
     n = len(track.w)
     coefficients = rods.coefficients[:n]
@@ -198,11 +198,16 @@ def _proved_counts_along(
     while True:
         rest_track = slice_track(track, index, n)
         index += carry_count(
-            rest_track, coefficients[index:], p[index:], rods.path.direction, modes, proved_counts[index:]
+            rest_track,
+            coefficients[index:],
+            p[index:],
+            rods.path.direction,
+            mode_count,
+            proved_counts[index:],
         )
         if index == n - 1:
             break
-        gap = widest_gap(track, index + 1, modes)
+        gap = widest_gap(track, index + 1, mode_count)
         line = float(line_in_gap(track, index + 1, gap)[0]) if gap else 0.0
         if not gap or count_right_of(line, rods.rod_at(index + 1)).number != gap:
             break

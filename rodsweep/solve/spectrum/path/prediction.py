@@ -51,9 +51,9 @@ class KnownRoots(NamedTuple):
     error: Array
 
 
-def start_track(first: Complex, points: int) -> FollowedEigenvalues:
-    """A track of `points` points; only the first is filled, with `first`, (m,), in descending order."""
-    shape = (points, len(first))
+def start_track(first: Complex, point_count: int) -> FollowedEigenvalues:
+    """A track of `point_count` points; only the first is filled, with `first`, (m,), in descending order."""
+    shape = (point_count, len(first))
     order = np.zeros(shape, np.int64)
     order[0] = np.arange(len(first))
     track = FollowedEigenvalues(np.empty(shape, complex), np.empty(shape, complex), np.empty(shape), order)

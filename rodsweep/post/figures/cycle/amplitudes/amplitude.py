@@ -62,7 +62,7 @@ def draw_amplitude(views: Sequence[ResultView], is_narrow: bool = False) -> tupl
     for panel in panels:
         style.scale_axis(panel, "x", np.unique(branches[0].x))
     if legend := [handle for handle in handles if handle.get_label()]:
-        style.legend_below(figure, legend, columns=min(2, len(legend)))
+        style.legend_below(figure, legend, column_count=min(2, len(legend)))
     figure.suptitle(style.heading_text(first_view, common_text))
     omissions = [left_out_clause(view.point_columns, [name]) for view in views]
     return figure, f"amplitudes of the tip, period and power against {name}{max(omissions, key=len)}"

@@ -42,9 +42,9 @@ class SquareRootLaw:
     """Error estimate of a, in L: ERROR_SAFETY_FACTOR times the change of a if a third cycle is used; if only
     two cycles exist, times the change of a by the extrapolation to F**."""
 
-    def curve(self, points: int = 100) -> tuple[Array, Array]:
+    def curve(self, point_count: int = 100) -> tuple[Array, Array]:
         """Returns (F, amplitude) on the law from F** to `end`, (points,) each, dense near F**."""
-        step = np.linspace(0, 1, points, dtype=np.float64) ** 2
+        step = np.linspace(0, 1, point_count, dtype=np.float64) ** 2
         F = self.hopf + (self.end - self.hopf) * step
         return F, self.coefficient * np.sqrt(np.abs(F - self.hopf) / abs(self.hopf))
 

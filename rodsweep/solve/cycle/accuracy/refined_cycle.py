@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Complex
-from ...orbit.measures import CycleMeasures, CyclePath
+from ...orbit.measures import CycleMeasures, CycleMotion
 from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from ..status import CycleStatus
@@ -25,7 +25,7 @@ class RefinedCycle:
 
     converged_orbit: ConvergedOrbit
     calibration: Calibration
-    path: CyclePath
+    path: CycleMotion
     measures: CycleMeasures
     multipliers: Complex
     trivial_multiplier_error: float

@@ -1,4 +1,4 @@
-"""Build of an arm: constitutive law and profile, and the resulting coefficients as functions of u."""
+"""Material of a rod: constitutive law and profile, and the resulting coefficients as functions of u."""
 
 import json
 from collections.abc import Mapping
@@ -38,10 +38,10 @@ class CrossSections(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Build:
-    """Constitutive law and profile of an arm, together called its build; compared and hashed by value. (law,
-    section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for constant
-    stiffnesses and drags. Raises ValueError for an unknown law."""
+class RodMaterial:
+    """Constitutive law, section and profile of a rod; compared and hashed by value.
+    (law, section): a key of `LAWS`. profile: factors of stiffnesses and drags along the arm; None for
+    constant stiffnesses and drags. Raises ValueError for an unknown law."""
 
     law: str = LINEAR.law
     section: str = LINEAR.section
@@ -62,13 +62,13 @@ class Build:
 
     @property
     def json_text(self) -> str:
-        """The build as JSON text, the input of `from_json_text`."""
+        """The material as JSON text, the input of `from_json_text`."""
         profile = None if self.profile is None else [self.profile.u, self.profile.rows]
         return json.dumps([self.law, self.section, profile])
 
     @classmethod
-    def from_json_text(cls, text: str) -> "Build":
-        """The build from a JSON text of the property `json_text`."""
+    def from_json_text(cls, text: str) -> "RodMaterial":
+        """The material from a JSON text of the property `json_text`."""
         law, section, profile = json.loads(text)
         if profile is None:
             return cls(law, section)
@@ -168,5 +168,5 @@ class Build:
         return CrossSections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))
 
 
-DEFAULT_BUILD = Build()
-"""Build of a uniform arm of linear material."""
+DEFAULT_MATERIAL = RodMaterial()
+"""Material of a uniform rod with a linear constitutive law."""
