@@ -92,14 +92,12 @@ class SoftRod:
             name: _parameter_value(name, value) for name, value in values.items() if value is not None
         }
         self._material = _material_section(material)
-        rod_material = DEFAULT_MATERIAL if self._material is None else self._material.rod_material
-        if arm is not None and rod_material.section == "swelling":
-            replace(
-                arm, law=rod_material.law, section=rod_material.section
-            )  # refuses a Poisson's ratio that contradicts
-        refuse_invalid_axes(
-            {name: np.array([value]) for name, value in self._values.items()}, material=rod_material
-        )
+        material_of_rod = DEFAULT_MATERIAL if self._material is None else self._material.rod_material
+        if arm is not None and material_of_rod.section == "swelling":
+            # The replacement refuses a Poisson's ratio that contradicts the section.
+            replace(arm, law=material_of_rod.law, section=material_of_rod.section)
+        axes = {name: np.array([value]) for name, value in self._values.items()}
+        refuse_invalid_axes(axes, material=material_of_rod)
 
     @property
     def parameters(self) -> dict[str, float]:

@@ -152,6 +152,7 @@ def proves_no_crossing(
     top = box_from_sqrt_bound(a, depth)[1]
     width = last.p - first.p
     slope = (last.line - first.line) / width
+    enlargement = 1 + MOVING_LINE_SETTINGS.overlap_fraction
     count = 0
     stack = [UnprovedStrip(0.0, 1.0, 0.0, MOVING_LINE_SETTINGS.first_half_height_ratio * depth)]
     while len(stack) > 0:
@@ -165,10 +166,7 @@ def proves_no_crossing(
             count += 1
             # The first rectangle is centred on the real axis: the lower half plane mirrors the upper.
             centre_y = y + half_y if y > 0 else 0.0
-            half = (
-                (1 + MOVING_LINE_SETTINGS.overlap_fraction) * half_y,
-                (1 + MOVING_LINE_SETTINGS.overlap_fraction) * half_p,
-            )
+            half = (enlargement * half_y, enlargement * half_p)
             proved, cost_y, cost_p = examine_rectangle(middle, centre_y, direction, half, slope)
             if proved:
                 y = centre_y + half_y

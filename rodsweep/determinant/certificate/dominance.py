@@ -169,9 +169,8 @@ def phase_over_dominated_segment(
         for _ in range(DOMINANCE_SETTINGS.max_halvings + 1):
             disc_count += 1
             # The disc is a little wider than the step, so that rounding leaves no gap between discs.
-            if is_dominated(
-                w + direction * rho, (1 + DOMINANCE_SETTINGS.overlap_fraction) * rho, coefficients
-            ):
+            radius = (1 + DOMINANCE_SETTINGS.overlap_fraction) * rho
+            if is_dominated(w + direction * rho, radius, coefficients):
                 proved = True
                 break
             rho /= 2

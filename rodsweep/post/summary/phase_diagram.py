@@ -118,10 +118,23 @@ def lines_about_rows(
     """Lines about the rows in the mask `computed`, (...,): states at their starts, crossings by kind,
     undecided ranges, rows with and without flutter."""
     v = view.variables
-    row_values = view.point_columns[row_parameter].reshape(computed.shape)
-    lines = row_start_lines(view, computed, line_parameter)
     stored = (v["crossing_kind"] > 0).sum(axis=-1)
-    unknown = computed & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))  # of incomplete rows
+    is_incomplete = computed & ((v["crossing_count"] != stored) | np.isfinite(v["open_from"]))
+    return [
+        *row_start_lines(view, computed, line_parameter),
+        *_crossing_lines(view, computed, is_incomplete, line_parameter, row_parameter),
+        *_lines_about_flutter(view, computed, is_incomplete, line_parameter, row_parameter),
+    ]
+
+
+def _crossing_lines(
+    view: ResultView, computed: np.ndarray, unknown: np.ndarray, line_parameter: str, row_parameter: str
+) -> list[str]:
+    """Lines about the crossings of each kind on the rows in the mask `computed`; `unknown`: mask of rows with
+    further crossings that are not known."""
+    v = view.variables
+    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    lines = []
     for number, word in enumerate(CROSSING_KINDS):
         of_kind = (v["crossing_kind"] == number) & computed[..., np.newaxis]
         has_kind = of_kind.any(axis=-1)
@@ -138,6 +151,17 @@ def lines_about_rows(
                 rows = f"{bound}{int(is_later.any(axis=-1).sum())} of these rows"
                 text += f"; again further along the row on {rows}, at {line_parameter} = {later_text}"
             lines.append(text)
+    return lines
+
+
+def _lines_about_flutter(
+    view: ResultView, computed: np.ndarray, unknown: np.ndarray, line_parameter: str, row_parameter: str
+) -> list[str]:
+    """Lines about undecided ranges, and about the rows with and without flutter. The masks as in
+    `_crossing_lines`."""
+    v = view.variables
+    row_values = view.point_columns[row_parameter].reshape(computed.shape)
+    lines = []
     flutter, unknown_class = (flag_number(word, STABILITY_CLASSES) for word in ("flutter", "undecided"))
     undecided = (v["class"] == unknown_class) & computed[..., np.newaxis]
     if undecided.any():

@@ -114,6 +114,7 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
     cycles."""
     unit = PARAMETERS[line_parameter].unit
     place_clause = "at the special point"
+    absolute_error = "estimate of the absolute error of cycle_special_"
     error = "estimate of the relative error of cycle_special_"
     return (
         word("stable_states", "stable states of the rod", STABLE_STATES, line_parameter),
@@ -123,11 +124,7 @@ def cycle_variables(line_parameter: str) -> tuple[Variable, ...]:
             CYCLE_SPECIAL_DIMENSION,
             word("cycle_special_kind", "kind of the special point of a branch", SPECIAL_KINDS),
             real(f"cycle_special_{line_parameter}", unit, f"{line_parameter} {place_clause}"),
-            real(
-                "cycle_special_error",
-                unit,
-                f"estimate of the absolute error of cycle_special_{line_parameter}",
-            ),
+            real("cycle_special_error", unit, f"{absolute_error}{line_parameter}"),
             real("cycle_special_period", "tau2", f"period of the cycle {place_clause}"),
             real("cycle_special_tip_y_max", "L", f"largest y of the tip {place_clause}; 0 at a Hopf point"),
             real("cycle_special_period_error", "1", f"{error}period"),
@@ -234,11 +231,9 @@ def criticality_variables(line_parameter: str, row_parameter: str) -> dict[str, 
 
 
 def bautin_curve_variables(line_parameter: str, row_parameter: str, third: str) -> dict[str, Variable]:
-    """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`.
-
-    line_parameter, row_parameter: names of the diagram's two parameters. third: name of the third parameter,
-    which varies along the curves.
-    """
+    """Variables of the curves of generalised Hopf points, by name, for `phase_diagram.bautin_along`. The
+    curves run through the space of three parameters with the names line_parameter, row_parameter and
+    third."""
     names = (line_parameter, row_parameter, third)
     step = "bautin_step"
     unit = {name: PARAMETERS[name].unit for name in names}

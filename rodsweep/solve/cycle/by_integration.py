@@ -28,7 +28,7 @@ from ..orbit.orbit import Orbit, node_times
 from ..orbit.symmetry import NO_SYMMETRY
 from ..point_outcome import outcome_or_failure
 from .accuracy.cycle_errors import CycleErrors, errors_of_two_integrations
-from .cycle import CycleOutcome, CycleRequest, with_measures
+from .cycle_outcome import CycleOutcome, CycleRequest, with_measures
 from .integration_settings import INTEGRATION_SETTINGS
 from .settled_motion import NoCycleFound, ReturnDistances, ReturnTimes, SettledMotion, max_settled_distance
 from .status import IntegrationStatus

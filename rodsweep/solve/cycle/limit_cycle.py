@@ -10,10 +10,7 @@ agree although no cycle exists.
 """
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from math import nan
-
-import numpy as np
+from dataclasses import replace
 
 from ...discretization.stress.form import StressForm
 from ...model.rod import Rod
@@ -24,7 +21,13 @@ from ..point_outcome import outcome_or_failure
 from ..unsolvable import Unsolvable
 from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
-from .cycle import CycleOutcome, CycleRequest, MotionShapes, padded_or_cut, with_measures
+from .cycle_outcome import (
+    CycleOutcome,
+    CycleRequest,
+    MotionShapes,
+    with_cycle_quantities,
+    with_multipliers,
+)
 from .hopf_start import hopf_point_below, orbit_from_hopf
 from .neighbour import CycleStart, cycle_from_neighbour
 from .second_state import second_state
@@ -41,23 +44,6 @@ from .transient.transient_outcome import TransientOutcome
 __all__ = ["CycleOutcome", "CycleRequest", "CycleStatus", "CycleStart", "solve_cycle"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MultiplierListSettings:
-    """Settings for the list of stored Floquet multipliers of a cycle."""
-
-    length: int = 6
-    """Number of nontrivial Floquet multipliers per cycle in a result file."""
-    min_modulus: float = 1e-6
-    """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
-    period."""
-
-
-MULTIPLIER_LIST_SETTINGS = MultiplierListSettings()
-NO_MULTIPLIER = complex(nan, nan)
-"""Entry of the list for a missing multiplier, or for a multiplier whose modulus is less than
-`MULTIPLIER_LIST_SETTINGS.min_modulus`."""
-
-
 def solve_cycle(
     rod: Rod,
     request: CycleRequest,
@@ -69,8 +55,7 @@ def solve_cycle(
     point; a failure becomes a status, never an exception.
 
     start: `CycleOutcome.neighbour` of the previous rod of a chain, or None. parameter_name: name of the
-    parameter that varies along the chain. workspace: memory of Newton's matrices, shared by many rods; None:
-    new.
+    parameter that varies along the chain. workspace: memory of Newton's matrices, or None for new memory.
     """
     memory = workspace or NewtonWorkspace()
 
@@ -95,9 +80,7 @@ def _solve_cycle_or_raise(
     workspace: NewtonWorkspace,
 ) -> CycleOutcome:
     w = stability.w
-    straight = CycleOutcome(
-        status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag)
-    )
+    straight = _straight_outcome(w)
     if request.start == "hopf":
         return _cycle_from_hopf(_form_on_motion_mesh(rod), request, straight, stability, workspace)
     refined = None
@@ -108,7 +91,7 @@ def _solve_cycle_or_raise(
     elif neighbour is None and not request.is_recorded:
         refined = stable_cycle_near_hopf(_form_on_motion_mesh(rod), w, request, parameter_name, workspace)
     if refined is not None and refined.verdict(request.accuracy)[0] == CycleStatus.cycle:
-        cycle = _with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
+        cycle = with_cycle_quantities(replace(straight, status=CycleStatus.cycle), refined, request)
         return _with_neighbour(cycle, refined, neighbour, parameter_name, request.accuracy, stability)
     is_from_mode = neighbour is None and request.tip is None
     decay_reason = reason_for_decay(rod, w, request.amplitude) if is_from_mode else ""
@@ -126,9 +109,14 @@ def _solve_cycle_or_raise(
         return replace(cycle, message=decay_reason)
     cycle = replace(cycle, status=end.status, message=end.message, modulation_ratio=end.modulation_ratio)
     if end.cycle is None:
-        return cycle if end.unstable_cycle is None else _with_multipliers(cycle, end.unstable_cycle)
-    cycle = _with_cycle_quantities(cycle, end.cycle, request)
+        return cycle if end.unstable_cycle is None else with_multipliers(cycle, end.unstable_cycle)
+    cycle = with_cycle_quantities(cycle, end.cycle, request)
     return _with_neighbour(cycle, end.cycle, None, parameter_name, request.accuracy, stability)
+
+
+def _straight_outcome(w: complex) -> CycleOutcome:
+    """Outcome of a motion that ends at the straight rod, whose leading eigenvalue is w."""
+    return CycleOutcome(status=CycleStatus.straight, linear_growth_rate=w.real, linear_frequency=abs(w.imag))
 
 
 def _form_on_motion_mesh(rod: Rod) -> StressForm:
@@ -173,9 +161,8 @@ def _with_neighbour(
     if parameter_name is None:
         return cycle
     followed = eigenvalues_to_follow(refined.orbit.form.rod, stability)
-    return replace(
-        cycle, neighbour=CycleStart.from_cycle(refined, previous, parameter_name, accuracy, followed)
-    )
+    start = CycleStart.from_cycle(refined, previous, parameter_name, accuracy, followed)
+    return replace(cycle, neighbour=start)
 
 
 def _with_status_by_spectrum(cycle: CycleOutcome, stability: StraightRodStability) -> CycleOutcome:
@@ -215,7 +202,7 @@ def _cycle_from_hopf(
     except Unsolvable as reason:
         return replace(outcome, status=CycleStatus.not_settled, message=str(reason))
     status, message = refined.verdict(request.accuracy)
-    return _with_cycle_quantities(replace(outcome, status=status, message=message), refined, request)
+    return with_cycle_quantities(replace(outcome, status=status, message=message), refined, request)
 
 
 def _outcome_of_motion(
@@ -232,24 +219,3 @@ def _outcome_of_motion(
         orbit = neighbour.predictor.orbit
         start = system.state_of_stresses(orbit.form.stresses_on_mesh(system.mesh, orbit.start_state))
     return classify_quasiperiodic(transient.follow(start), transient)
-
-
-def _with_cycle_quantities(cycle: CycleOutcome, refined: RefinedCycle, request: CycleRequest) -> CycleOutcome:
-    """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
-    `refined`."""
-    cycle = with_measures(cycle, request, refined.path, refined.measures, refined.errors)
-    return _with_multipliers(cycle, refined)
-
-
-def _with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome:
-    """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
-    list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
-    mu = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
-    mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
-    return replace(
-        cycle,
-        multiplier=refined.largest_multiplier,
-        multipliers=mu,
-        trivial_multiplier_error=refined.trivial_multiplier_error,
-        errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
-    )

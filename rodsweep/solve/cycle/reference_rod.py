@@ -6,7 +6,7 @@ from ...errors import EnvironmentIncomplete
 from ...model.rod import Rod
 from ..backend.petsc import user_options_text
 from ..motion.time_scheme import CYCLE_OPTIONS_PREFIX
-from .cycle import CycleRequest
+from .cycle_outcome import CycleRequest
 from .limit_cycle import solve_cycle
 from .status import CycleStatus
 

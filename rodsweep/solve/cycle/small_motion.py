@@ -15,7 +15,7 @@ from ..orbit.matrix.workspace import NewtonWorkspace
 from ..unsolvable import Unsolvable
 from .accuracy.refined_cycle import RefinedCycle
 from .accuracy.refinement import refined_cycle
-from .cycle import CycleRequest
+from .cycle_outcome import CycleRequest
 from .hopf_start import orbit_near_hopf
 from .status import CycleStatus
 from .transient.transient_settings import TRANSIENT_SETTINGS

@@ -59,9 +59,7 @@ def grid_of_arms(
         if section.load_key in LOAD_OF_RATIO:
             units[section.load] = table["F"] * units[SCALE_NAME[section.load]]
     table |= {name: _along_dimension(2, column.ravel()) for name, column in crossed.items()}
-    materials = (
-        tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms) if section.is_nonuniform else ()
-    )
+    materials = _materials_of(arms) if section.is_nonuniform else ()
     if "F" in table:
         ratios = material.relative_crushing_forces(table.get("taper", np.ones(1)))
         if materials:
@@ -76,9 +74,12 @@ def grid_of_arms(
     units = {name: np.broadcast_to(column, shape).ravel() for name, column in units.items()}
     failures = _search_failures(codes, forces)
     stored = codes.astype(np.int8).ravel()
-    return Points(
-        names, columns, False, values, units, materials=materials, arm_statuses=stored, failures=failures
-    )
+    return Points(names, columns, False, values, units, DEFAULT_MATERIAL, materials, stored, failures)
+
+
+def _materials_of(arms: Sequence[SlenderArm | None]) -> tuple[RodMaterial, ...]:
+    """Materials of arms; the default material for an arm to which the rod model does not apply."""
+    return tuple(arm.material if arm else DEFAULT_MATERIAL for arm in arms)
 
 
 def _quantity_of_arms(arms: Sequence[SlenderArm | None], quantity: Callable[[SlenderArm], float]) -> Array:

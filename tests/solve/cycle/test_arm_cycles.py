@@ -27,7 +27,7 @@ from rodsweep.solve.changes.threshold_kinds import ThresholdKind
 from rodsweep.solve.changes.thresholds import ThresholdsRequest, solve_thresholds
 from rodsweep.solve.cycle.accuracy.refinement import refined_cycle
 from rodsweep.solve.cycle.by_integration import solve_by_integration
-from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.cycle_outcome import CycleRequest
 from rodsweep.solve.cycle.hopf_start import hopf_point_below, orbit_from_hopf
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.neighbour import CycleStart

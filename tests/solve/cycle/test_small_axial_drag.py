@@ -14,7 +14,7 @@ from rodsweep.solve.branch.branch_request import BranchRequest
 from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.special.special_point import SpecialKind
 from rodsweep.solve.branch.status import BranchStatus
-from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.cycle_outcome import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, integrable_rod

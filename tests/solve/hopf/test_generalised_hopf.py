@@ -13,7 +13,7 @@ import rodsweep as rs
 from rodsweep.determinant.parameter_plane import ParameterPlane, PlaneAxis
 from rodsweep.errors import InputError
 from rodsweep.model.rod import Rod
-from rodsweep.post.figures.stability.diagram_curves import parts_of_equal_criticality
+from rodsweep.post.figures.stability.criticality_curves import parts_of_equal_criticality
 from rodsweep.results.file.view import read_view
 from rodsweep.solve.changes.diagram.boundary_curves import trace_boundary
 from rodsweep.solve.hopf import bautin_curves, bautin_points

@@ -7,7 +7,7 @@ from rodsweep.discretization.explicit_system import ExplicitSystem
 from rodsweep.model.material.profile import Profile
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
-from rodsweep.solve.cycle.cycle import CycleRequest
+from rodsweep.solve.cycle.cycle_outcome import CycleRequest
 from rodsweep.solve.cycle.limit_cycle import solve_cycle
 from rodsweep.solve.cycle.status import CycleStatus
 from rodsweep.solve.cycle.transient.motion_mesh import MOTION_MESH_SETTINGS, motion_mesh

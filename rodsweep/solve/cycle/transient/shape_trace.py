@@ -9,7 +9,7 @@ from ....arrays import Array
 from ....discretization.elements.quadrature import lobatto_points
 from ....discretization.explicit_system import ExplicitSystem
 from ...motion.integrator import Trajectory
-from ..cycle import MotionShapes
+from ..cycle_outcome import MotionShapes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

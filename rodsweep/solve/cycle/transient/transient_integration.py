@@ -22,7 +22,7 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...unsolvable import Unsolvable
 from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
-from ..cycle import CycleRequest
+from ..cycle_outcome import CycleRequest
 from ..status import CycleStatus
 from ..straight_rod import StraightRodStability, straight_rod_stability
 from .amplitude_equation import AmplitudeEquation

@@ -130,6 +130,7 @@ def _follow_with_further_modes(
 ) -> ArmInterval | None:
     """The first points of p, (n,), that are reached as in `follow_interval`, with exactly `added_mode_count`
     modes followed in addition to the wanted modes; None if the first point fails or no family is found."""
+    settings = ARM_FOLLOWING_SETTINGS
     first = _eigenvalues_of_previous_interval(previous, float(p[0]), request, added_mode_count)
     if first is None:
         roots = _leading_roots(path, float(p[0]), request, added_mode_count)
@@ -140,15 +141,14 @@ def _follow_with_further_modes(
     if first is not None and previous is not None:
         inside_count = int(((p >= previous.family.p_low) & (p <= previous.family.p_high)).sum())
         if (
-            inside_count >= ARM_FOLLOWING_SETTINGS.min_points
-            and ARM_FOLLOWING_SETTINGS.min_reused_W_factor * np.abs(first).max() <= previous.family.largest_w
+            inside_count >= settings.min_points
+            and settings.min_reused_W_factor * np.abs(first).max() <= previous.family.largest_w
         ):
             family_data = (previous.family, previous.hulls)
             n = inside_count
         else:
-            max_points = ARM_FOLLOWING_SETTINGS.max_points_growth * len(previous.p)
-            n = min(n, max(max_points, ARM_FOLLOWING_SETTINGS.min_points))
-    while first is not None and family_data is None and n >= ARM_FOLLOWING_SETTINGS.min_points:
+            n = min(n, max(settings.max_points_growth * len(previous.p), settings.min_points))
+    while first is not None and family_data is None and n >= settings.min_points:
         family_data = family_and_hulls(path, p[:n], first, request.modes)
         # On half the interval the propagators need a lower degree.
         n = n if family_data is not None else n // 2
@@ -161,15 +161,8 @@ def _follow_with_further_modes(
     if reached == 0:
         return None
     arms = previous.arm_count if previous is not None and family is previous.family else n
-    return ArmInterval(
-        p[:reached],
-        slice_track(track, 0, reached),
-        proved_counts[:reached],
-        family,
-        hulls,
-        arms,
-        added_mode_count,
-    )
+    reached_track, counts = slice_track(track, 0, reached), proved_counts[:reached]
+    return ArmInterval(p[:reached], reached_track, counts, family, hulls, arms, added_mode_count)
 
 
 def family_and_hulls(

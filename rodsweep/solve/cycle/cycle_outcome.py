@@ -10,8 +10,26 @@ from ...arrays import Array, Complex
 from ..orbit.measures import CycleMeasures, CycleMotion
 from ..status import PointStatus
 from .accuracy.cycle_errors import UNKNOWN_ERRORS, CycleErrors
+from .accuracy.refined_cycle import RefinedCycle
 from .neighbour import CycleStart
 from .second_state import SecondState
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MultiplierListSettings:
+    """Settings for the list of stored Floquet multipliers of a cycle."""
+
+    length: int = 6
+    """Number of nontrivial Floquet multipliers per cycle in a result file."""
+    min_modulus: float = 1e-6
+    """Smallest modulus of a stored multiplier; a perturbation with a smaller multiplier has decayed after one
+    period."""
+
+
+MULTIPLIER_LIST_SETTINGS = MultiplierListSettings()
+NO_MULTIPLIER = complex(nan, nan)
+"""Entry of the list for a missing multiplier, or for a multiplier whose modulus is less than
+`MULTIPLIER_LIST_SETTINGS.min_modulus`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,3 +166,24 @@ def padded_or_cut(values: Array | Complex, count: int, fill_value: complex) -> A
     first = np.full(count, fill_value, values.dtype)
     first[: len(values)] = values[:count]
     return first
+
+
+def with_cycle_quantities(cycle: CycleOutcome, refined: RefinedCycle, request: CycleRequest) -> CycleOutcome:
+    """The outcome `cycle` with the measures, errors, time series and multipliers of the solved cycle
+    `refined`."""
+    cycle = with_measures(cycle, request, refined.path, refined.measures, refined.errors)
+    return with_multipliers(cycle, refined)
+
+
+def with_multipliers(cycle: CycleOutcome, refined: RefinedCycle) -> CycleOutcome:
+    """The outcome `cycle` with multipliers of the solved cycle `refined`: the largest modulus, the stored
+    list (cut or padded; NO_MULTIPLIER replaces small multipliers), and their errors."""
+    mu = padded_or_cut(refined.multipliers, MULTIPLIER_LIST_SETTINGS.length, NO_MULTIPLIER)
+    mu[np.abs(mu) < MULTIPLIER_LIST_SETTINGS.min_modulus] = NO_MULTIPLIER
+    return replace(
+        cycle,
+        multiplier=refined.largest_multiplier,
+        multipliers=mu,
+        trivial_multiplier_error=refined.trivial_multiplier_error,
+        errors=replace(cycle.errors, multiplier_error=refined.errors.multiplier_error),
+    )

@@ -1,0 +1,82 @@
+"""Hopf curves of a phase diagram with styles by criticality, and generalised Hopf points. line_parameter,
+row_parameter: parameters along a row, and constant on a row."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from ....model.parameters import LINEAR_PARAMETERS
+from ....results.file.view import ResultView
+from ..style import SYMBOLS
+from ..style import number_in_tex as number_text
+
+CRITICALITY_LOOKS = {
+    -1: ("supercritical Hopf points", 1.4, "-"),
+    1: ("subcritical Hopf points", 1.4, "--"),
+    0: ("Hopf points, criticality undecided", 0.6, "-"),
+}
+"""(legend entry, width, style) of parts of a Hopf curve, by sign of Re c."""
+
+
+def draw_criticality(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+    """Draws Hopf curves with line styles by criticality, and generalised Hopf points; returns legend
+    entries."""
+    v = view.variables
+    drawn_criticalities = set()
+    for curve in np.unique(v["curve_number"][v["curve_kind"] == 1]):
+        for criticality, points in parts_of_equal_criticality(
+            view, int(curve), line_parameter, row_parameter
+        ):
+            _, width, style = CRITICALITY_LOOKS[criticality]
+            axes.plot(*points.T, style, color="k", lw=width)
+            drawn_criticalities.add(criticality)
+    handles = [
+        Line2D([], [], color="k", lw=width, ls=style, label=word)
+        for criticality, (word, width, style) in CRITICALITY_LOOKS.items()
+        if criticality in drawn_criticalities
+    ]
+    for i in range(len(v["bautin_curve"])):
+        x = v[f"bautin_{line_parameter}"][i]
+        y = v[f"bautin_{row_parameter}"][i]
+        symbols = SYMBOLS[line_parameter], SYMBOLS[row_parameter]
+        label = rf"generalised Hopf point: ${symbols[0]}$ = {x:.6g}, ${symbols[1]}$ = {y:.6g}"
+        handles += axes.plot(x, y, "kD", mfc="white", ls="", ms=5, label=label)
+    return handles + (
+        _bautin_curves(axes, view, line_parameter, row_parameter) if "bautin_along_curve" in v else []
+    )
+
+
+def _bautin_curves(axes: Axes, view: ResultView, line_parameter: str, row_parameter: str) -> list[Line2D]:
+    """Draws curves of generalised Hopf points; returns legend entries. line_parameter, row_parameter: see the
+    module."""
+    v = view.variables
+    curves = []
+    third = next(
+        n for n in LINEAR_PARAMETERS if f"bautin_along_{n}" in v and n not in (line_parameter, row_parameter)
+    )
+    for number in np.unique(v["bautin_along_curve"]):
+        mask = v["bautin_along_curve"] == number
+        third_values = v[f"bautin_along_{third}"][mask]
+        low, high = (number_text(float(end), 3) for end in (third_values.min(), third_values.max()))
+        label = rf"generalised Hopf points, ${SYMBOLS[third]}$ = ${low}$ to ${high}$"
+        x, y = (v[f"bautin_along_{name}"][mask] for name in (line_parameter, row_parameter))
+        curves += axes.plot(x, y, "-.", color="tab:red", lw=1.2, label=label)
+    return curves
+
+
+def parts_of_equal_criticality(
+    view: ResultView, curve: int, line_parameter: str, row_parameter: str
+) -> list[tuple[int, np.ndarray]]:
+    """(sign of Re c, points, (n, 2)) of parts of a Hopf curve between generalised Hopf points."""
+    v = view.variables
+    indices = np.flatnonzero(v["curve_number"] == curve)
+    bautin = np.flatnonzero(v["bautin_curve"] == curve)
+    places = np.searchsorted(indices, v["bautin_curve_point"][bautin] - 1, side="right")
+    names = ((f"curve_{name}", f"bautin_{name}") for name in (line_parameter, row_parameter))
+    points = np.column_stack([np.insert(v[a][indices], places, v[b][bautin]) for a, b in names])
+    criticality = np.insert(np.nan_to_num(v["curve_criticality"][indices]), places, 0)
+    # A segment has the sign of its ends; if the sign at one end is undecided, the sign of the other end.
+    ends = criticality[:-1], criticality[1:]
+    signs = np.where(ends[0] * ends[1] < 0, 0, np.sign(ends[0] + ends[1])).astype(int)
+    cuts = [0, *(np.flatnonzero(np.diff(signs)) + 1), len(signs)]
+    return [(int(signs[a]), points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b > a]
