@@ -33,7 +33,7 @@ def test_profile_of_a_file_is_part_of_the_config(tmp_path):
     table = "material: {profile: {u: [0, 0.4, 0.4, 1], k3: [1, 1, 0.2, 0.2], gamma3: [1, 1, 0.5, 0.5]}}"
     assert read.material == config(tmp_path, table).material
     assert read.settings_of_results == config(tmp_path, table).settings_of_results
-    assert read.material.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
+    assert read.rod_material.profile.rows[2] == (1.0, 1.0, 0.2, 1.0, 1.0, 0.5)
     assert not read.is_uniform_and_linear
 
 

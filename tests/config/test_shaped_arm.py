@@ -146,4 +146,4 @@ def test_profiles_that_differ_along_an_axis_of_one_parameter_are_refused(tmp_pat
     tube = CAST.replace("radius 6 mm", "radius 6 mm, inner_radius 3 mm")
     with pytest.raises(InputError, match=r"parameters\.arm\.poisson has several values, and the ratios"):
         config(tmp_path, f"{tube}, poisson: [0.4, 0.5]")
-    assert config(tmp_path, f"{CAST}, poisson: [0.4, 0.5]").material.profile
+    assert config(tmp_path, f"{CAST}, poisson: [0.4, 0.5]").rod_material.profile

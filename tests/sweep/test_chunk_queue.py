@@ -51,19 +51,19 @@ def test_every_unit_is_done_once_whatever_ranks_give_back_and_none_ends_before(s
 
 
 def test_chunks_follow_the_pace_and_shrink_towards_the_end():
-    handout = ChunkQueue([(0, 100_000)], ranks=4)
+    handout = ChunkQueue([(0, 100_000)], rank_count=4)
     start, stop = handout.next_chunk(1)
     assert stop - start == 1
     handout.add_report(1, RankReport(1, 1e-3))
     start, stop = handout.next_chunk(1)
     assert stop - start == pytest.approx(CHUNK_SECONDS / 1e-3, abs=1)
-    handout = ChunkQueue([(0, 16)], ranks=4)
+    handout = ChunkQueue([(0, 16)], rank_count=4)
     handout.add_report(1, RankReport(1, 1e-6))
     assert handout.next_chunk(1) == (0, 2)
 
 
 def test_rest_that_is_given_back_goes_to_the_next():
-    handout = ChunkQueue([(0, 3)], ranks=1)
+    handout = ChunkQueue([(0, 3)], rank_count=1)
     handout.add_report(0, RankReport(1, 1e-6))
     assert handout.next_chunk(0) == (0, 1)
     handout.add_report(0, RankReport(0, 1.0, (0, 1)))
@@ -71,7 +71,7 @@ def test_rest_that_is_given_back_goes_to_the_next():
 
 
 def test_idle_rank_waits_while_another_may_give_back():
-    handout = ChunkQueue([(0, 1)], ranks=2)
+    handout = ChunkQueue([(0, 1)], rank_count=2)
     assert handout.next_chunk(0) == (0, 1)
     assert handout.next_chunk(1) is None
     handout.add_report(0, RankReport(0, 9.0, (0, 1)))
@@ -82,7 +82,7 @@ def test_idle_rank_waits_while_another_may_give_back():
 
 
 def test_two_threads_share_the_work_without_losing_any():
-    handout = ChunkQueue([(0, 5000)], ranks=2)
+    handout = ChunkQueue([(0, 5000)], rank_count=2)
     seen: list[list[int]] = [[], []]
 
     def work(rank):
@@ -105,14 +105,14 @@ def test_two_threads_share_the_work_without_losing_any():
 
 
 def test_points_that_all_ranks_have_kept_are_counted():
-    handout = ChunkQueue([(0, 9)], ranks=2)
+    handout = ChunkQueue([(0, 9)], rank_count=2)
     for rank, points in ((0, 2), (1, 3), (0, 1)):
         handout.add_report(rank, RankReport(stored_points=points))
     assert handout.stored_points == 6
 
 
 def test_after_a_stop_nobody_gets_more_and_nobody_waits():
-    handout = ChunkQueue([(0, 100)], ranks=2)
+    handout = ChunkQueue([(0, 100)], rank_count=2)
     assert handout.next_chunk(0) == (0, 1)
     handout.stop()
     assert handout.next_chunk(1) == NO_WORK_LEFT
@@ -130,7 +130,7 @@ def test_many_ranks_ask_the_first_no_more_than_a_thousand_times_a_second():
 
 
 def test_next_chunk_is_given_ahead_while_plenty_is_left():
-    handout = ChunkQueue([(0, 9)], ranks=2)
+    handout = ChunkQueue([(0, 9)], rank_count=2)
     assert handout.next_chunk(1) == (0, 1)
     assert handout.next_chunk_in_advance(1) == (1, 2)
     assert handout.next_chunk_in_advance(0) is None  # seven units left, fewer than four a rank
