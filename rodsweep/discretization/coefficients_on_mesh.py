@@ -9,11 +9,13 @@ mean strain for a given stress; for another law the strain of each side must be 
 """
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 
 from ..arrays import Array
 from ..model.balance import BalanceCoefficients
+from ..model.material.jump import SHEAR_COLUMN
 from ..model.material.laws import LINEAR
 from ..model.material.rod_material import CrossSections, RodMaterial
 from ..model.rod import Rod
@@ -29,7 +31,7 @@ def balance_coefficients_at_nodes(rod: Rod, mesh: Mesh) -> BalanceCoefficients:
     the mesh must end at the breaks of the arm's profile."""
     if rod.is_uniform_and_linear:
         return rod.balance_coefficients
-    compliance, drag, rest_strain = _mean_coefficients_at_nodes(rod.sections(mesh.one_sided_nodes), mesh)
+    compliance, drag, rest_strain = _mean_coefficients_at_nodes(_sections_inside_elements(rod, mesh), mesh)
     return BalanceCoefficients(compliance, drag, rod.F, rest_strain)
 
 
@@ -38,9 +40,9 @@ def balance_coefficient_derivatives_at_nodes(rod: Rod, name: str, mesh: Mesh) ->
     `name`: 1/k for a stiffness k, else the parameter itself."""
     if rod.is_uniform_and_linear and name != "taper":
         return rod.balance_coefficient_derivative(name)
-    compliance, drag, rest = _mean_coefficients_at_nodes(
-        rod.section_derivatives(name, mesh.one_sided_nodes), mesh
-    )
+    sections = _sections_inside_elements(rod, mesh)
+    changes = rod.section_derivatives(name, mesh.one_sided_nodes, sections)
+    compliance, drag, rest = _mean_coefficients_at_nodes(changes, mesh)
     return BalanceCoefficients(compliance, drag, 1.0 if name == "F" else 0.0, rest)
 
 
@@ -58,20 +60,32 @@ def jumps_on_mesh(rod: Rod, mesh: Mesh) -> Jumps:
     indices, nodes = _indices_beside_jumps(rod.material, mesh)
     if not len(nodes):
         return NO_JUMPS
+    sections = _sections_inside_elements(rod, mesh)
+    c1, c2, c3 = sections.compliance
+    sides = _shares_of_sides(rod.material, rod.taper, mesh).copy()
+    for column, values in enumerate((sections.nu, c1, c3)):
+        sides[..., column] = values[indices]
+    sides[..., SHEAR_COLUMN] = c2[indices]
+    return Jumps(nodes, sides)
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _shares_of_sides(material: RodMaterial, taper: float, mesh: Mesh) -> Array:
+    """The `jump_sides` of an arm, (k, 2, 7), with the weights of both sides in the means, and 0 in the
+    columns of the coefficients. Cached, because the weights are independent of all parameters but the
+    taper."""
+    indices, _ = _indices_beside_jumps(material, mesh)
     points = mesh.one_sided_nodes[indices]
-    weights = _nodes_and_weights_of_points(mesh)[1][indices]
-    sections = rod.sections(points.ravel())
-    c1, c2, c3 = sections.compliance.reshape(3, *points.shape)
-    relative_compliances = rod.material.relative_compliances(rod.taper, points.ravel()).reshape(
-        3, *points.shape
-    )
+    weights = _points_of_nodes(mesh).weights[indices]
+    relative_compliances = material.relative_compliances(taper, points.ravel()).reshape(3, *points.shape)
     fractions = [
         values / values.sum(axis=1, keepdims=True)
         for values in (weights * relative_compliances[0], weights * relative_compliances[2])
     ]
     mean = weights / weights.sum(axis=1, keepdims=True)
-    sides = np.stack([sections.nu.reshape(points.shape), c1, c3, *fractions, mean, c2], axis=-1)
-    return Jumps(nodes, np.ascontiguousarray(sides))
+    coefficients = np.zeros(points.shape)
+    shares = [coefficients, coefficients, coefficients, *fractions, mean, coefficients]
+    return np.ascontiguousarray(np.stack(shares, axis=-1))
 
 
 def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
@@ -84,6 +98,13 @@ def jump_derivatives(rod: Rod, name: str, mesh: Mesh) -> Array:
     changes = rod.section_derivatives(name, mesh.one_sided_nodes[indices].ravel())
     c1, _, c3 = changes.compliance
     return np.ascontiguousarray(np.stack([changes.nu, c1, c3], axis=-1).reshape(*indices.shape, 3))
+
+
+@lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
+def _sections_inside_elements(rod: Rod, mesh: Mesh) -> CrossSections:
+    """Properties of the cross-sections of a rod at the `one_sided_nodes` of a mesh. Cached for the
+    material, its jumps and its derivatives."""
+    return rod.sections(mesh.one_sided_nodes)
 
 
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
@@ -100,26 +121,32 @@ def _indices_beside_jumps(material: RodMaterial, mesh: Mesh) -> tuple[IntegerArr
 def _mean_coefficients_at_nodes(sections: CrossSections, mesh: Mesh) -> tuple[Array, Array, Array]:
     """Returns (compliance, drag, strain at rest) at all nodes, (3, nodes + 1) each. sections: the
     coefficients at the `one_sided_nodes` of the mesh, or derivatives of the coefficients."""
-    rest_strain = np.zeros_like(sections.drag)
-    rest_strain[0] = sections.nu
-    compliance, drag, rest_strain = (
-        _mean_at_nodes(values, mesh) for values in (sections.compliance, sections.drag, rest_strain)
-    )
-    return compliance, drag, rest_strain
+    mean = _mean_at_nodes(np.concatenate([sections.compliance, sections.drag, sections.nu[None]]), mesh)
+    rest_strain = np.zeros((3, mesh.node_count + 1))
+    rest_strain[0] = mean[6]
+    return mean[:3], mean[3:6], rest_strain
 
 
 def _mean_at_nodes(values: Array, mesh: Mesh) -> Array:
     """Means over both sides of each node, (m, nodes + 1). values: m fields at the `one_sided_nodes`,
     (m, points)."""
-    element, weights = _nodes_and_weights_of_points(mesh)
-    mean: Array = np.array([np.bincount(element, weights * row) for row in values]) / mesh.quadrature
+    points = _points_of_nodes(mesh)
+    mean: Array = np.add.reduceat(points.weights * values, points.first_indices, axis=1) / mesh.quadrature
     return mean
 
 
+class NodePoints(NamedTuple):
+    """The `one_sided_nodes` of a mesh, sorted by the node to which they belong. first_indices: index
+    of the first point of each node, (nodes + 1,). weights: quadrature weight of each point within its
+    element, (nodes + elements,)."""
+
+    first_indices: IntegerArray
+    weights: Array
+
+
 @lru_cache(maxsize=ELEMENT_SETTINGS.max_cached_meshes)
-def _nodes_and_weights_of_points(mesh: Mesh) -> tuple[IntegerArray, Array]:
-    """Returns (nodes, weights) of all `one_sided_nodes`, (nodes + elements,) each: node of the mesh,
-    and quadrature weight within the element."""
+def _points_of_nodes(mesh: Mesh) -> NodePoints:
+    """The `NodePoints` of a mesh, cached."""
     parts = zip(mesh.lengths, mesh.orders, strict=True)
     weights = np.concatenate([length / 2 * gauss_lobatto_rule(order)[1] for length, order in parts])
-    return mesh.element_nodes, weights
+    return NodePoints(np.unique(mesh.element_nodes, return_index=True)[1], weights)

@@ -221,10 +221,14 @@ class Rod:
         """Compliances, drags and stretch at points u, (points,); no point may be a break of the profile."""
         return self.material.sections(self.F, stiffnesses_and_drags_at_base(self.values), u)
 
-    def section_derivatives(self, name: str, u: Array) -> CrossSections:
-        """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,)."""
+    def section_derivatives(
+        self, name: str, u: Array, sections: CrossSections | None = None
+    ) -> CrossSections:
+        """Derivatives of `sections(u)` with respect to the coordinate of parameter `name`; u: (points,).
+        sections: `sections(u)`, if known."""
         slopes = {"taper": 1.0} if name == "taper" else self._derivatives_by_coordinate(name)
-        return self.material.section_derivatives(self.sections(u), self.F, self.taper, slopes, u)
+        known = self.sections(u) if sections is None else sections
+        return self.material.section_derivatives(known, self.F, self.taper, slopes, u)
 
     def balance_coefficient_derivative(self, name: str) -> BalanceCoefficients:
         """Derivative of `balance_coefficients` with respect to the coordinate of the parameter `name`."""

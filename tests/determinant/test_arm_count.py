@@ -9,6 +9,7 @@ from surveyed import RODS
 from rodsweep.determinant.arm.count.count import count_right_of
 from rodsweep.determinant.arm.count.modes_near_axis import modes_near_axis
 from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.hull.averaged_weight import averaged_regions
 from rodsweep.determinant.arm.hull.hull import hull_of
 from rodsweep.determinant.arm.hull.region import EigenvalueHull, distance_and_normal
 from rodsweep.determinant.arm.newton import refine_eigenvalue_and_error, root_error
@@ -170,3 +171,18 @@ def test_eigenvalues_that_are_no_roots_are_left_out():
     found = refine_mesh_eigenvalues(raw, ArmDeterminant(rod), hull_of(rod), 100.0)
     assert sorted(found.mesh_indices.tolist()) == [0, 1, 2, 3]
     np.testing.assert_allclose(found.w, w[found.mesh_indices], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("profile", "F"), [(STEP, 2.0), (STEP, 30.0), (SOFT_STEP, 30.0)])
+def test_weights_given_up_for_the_smallest_hull_have_larger_hulls(profile, F):
+    rod = Rod(F=F, k1=1e4, k2=1e3, gamma3=1e-3, material=RodMaterial(profile=profile))
+    side = 1e-9
+    u = np.concatenate([np.linspace(side, 0.4 - side, 40), np.linspace(0.4 + side, 1 - side, 60)])
+    coefficients = np.array(rod.local_coefficients(u))
+    every, smallest = (averaged_regions(u, coefficients, F, only) for only in (False, True))
+    given_up = np.isinf(smallest[:, 0])
+    without_c = every[every[:, 1] == 0.0]
+    assert given_up.any() and np.isfinite(every).all()
+    assert (smallest[~given_up] == every[~given_up]).all()
+    # Some weights have equal hulls but for rounding.
+    assert every[given_up, 0].min() >= (1 - 1e-15) * without_c[:, 0].min() > 0

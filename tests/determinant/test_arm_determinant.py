@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from rodsweep.determinant.arm.determinant import ArmDeterminant
+from rodsweep.determinant.arm.determinant import ArmDeterminant, coefficient_samples, elements_for
+from rodsweep.determinant.arm.elements.different_elements import numbers_of_different_elements
 from rodsweep.determinant.arm.elements.evaluation import fill_propagator, powers_and_derivatives
 from rodsweep.determinant.arm.elements.minor_rates import PADDED
+from rodsweep.determinant.arm.elements.propagators import element_propagators
 from rodsweep.determinant.value import scaled_determinant
 from rodsweep.model.material.profile import FACTOR_NAMES, Profile
 from rodsweep.model.material.rod_material import RodMaterial
@@ -166,3 +168,25 @@ def test_values_at_real_w_are_real_and_those_beside_the_axis(w):
         D, D_w = (value * np.exp(beside.log_scale - real.log_scale) for value in (beside.D, beside.D_w))
         assert abs(real.D - D) <= real.rounding_error
         assert abs(real.D_w - D_w) <= 1e-13 * abs(D_w) + real.rounding_error / abs(w)
+
+
+STEPS = Profile((0.0, 0.4, 0.4, 1.0), tuple((r**2, r**2, r**4, 1.0, 1.0, r**2) for r in (1.0, 1.0, 0.6, 0.6)))
+
+
+@pytest.mark.parametrize(
+    ("taper", "profile", "different"), [(1.0, STEPS, 2), (0.5, STEPS, None), (1.0, JUMP, None)]
+)
+def test_only_equal_elements_share_a_propagator(taper, profile, different):
+    rod = Rod(F=14.0, k1=1e4, k2=1e2, gamma3=1e-2, taper=taper, material=RodMaterial(profile=profile))
+    W = 3e4
+    elements = elements_for([rod], coefficient_samples([rod]), W)
+    numbers = numbers_of_different_elements(elements.local, elements.lengths)
+    assert numbers[-1] + 1 == (different or len(numbers)) and len(numbers) > 8
+    shared = element_propagators([rod.F], elements.local, elements.lengths, W)[0]
+    for e in range(len(numbers)):
+        part = slice(e, e + 1)
+        alone = element_propagators([rod.F], elements.local[:, :, part], elements.lengths[part], W)[0, 0]
+        # The lengths of elements are rounded, relative to a length of about 0.1, by up to 2e-15.
+        bound = 1e-13 * np.abs(alone).max()
+        assert np.abs(shared[e, : len(alone)] - alone).max() <= bound
+        assert np.abs(shared[e, len(alone) :]).max(initial=0.0) <= bound

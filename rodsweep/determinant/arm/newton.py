@@ -5,8 +5,12 @@ the public functions choose the level by |w|.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from ...arrays import Array, Complex
 from ...model.compiled.compilation import compiled
 from ...model.compiled.kernel_constants import KernelConstants
 from ..exponents import EXPONENT_SETTINGS, ROUND_OFF
@@ -90,6 +94,30 @@ def _newton_from_guess(guess: complex, level: PropagatorsUpToW, last: float) -> 
 
 
 @compiled
+def _newton_from_guesses(
+    guesses: Complex, level: PropagatorsUpToW, last: Array
+) -> tuple[Complex, Array, Array]:
+    """Results of `_newton_from_guess` for all guesses, (n,) each. last: length of the previous step, (n,)."""
+    w = np.empty(len(guesses), np.complex128)
+    errors = np.empty(len(guesses))
+    steps = np.empty(len(guesses))
+    for k in range(len(guesses)):
+        w[k], errors[k], steps[k] = _newton_from_guess(guesses[k], level, last[k])
+    return w, errors, steps
+
+
+@compiled
+def _root_errors_by_propagators(w: Complex, level: PropagatorsUpToW) -> Array:
+    """`root_error` at all w, (n,), from the propagators of `level`."""
+    errors = np.empty(len(w))
+    for k in range(len(w)):
+        # Conjugates, which stand next to each other, have the same error.
+        is_conjugate = k > 0 and w[k] == w[k - 1].conjugate()
+        errors[k] = errors[k - 1] if is_conjugate else _root_error_by_propagators(w[k], level)
+    return errors
+
+
+@compiled
 def _parabola_roots_by_propagators(middle: complex, level: PropagatorsUpToW) -> tuple[complex, complex]:
     """`taylor_parabola_roots` about `middle`, with the propagators of `level`."""
     D, D_w, S, _ = determinant_from_propagators(middle, level[0], level[1])
@@ -114,6 +142,14 @@ def root_error(w: complex, determinant: ArmDeterminant) -> float:
     return _root_error_by_propagators(complex(w), _propagators_up_to(w, determinant))
 
 
+def root_errors(w: Sequence[complex], determinant: ArmDeterminant) -> Array:
+    """`root_error` at all w, (n,), by one call of compiled code if the same elements serve all w."""
+    level = _common_propagators(w, determinant)
+    if level is None:
+        return np.array([root_error(value, determinant) for value in w])
+    return _root_errors_by_propagators(np.array(w, complex), level)
+
+
 def refine_eigenvalue_and_error(
     w: complex, determinant: ArmDeterminant, max_first_step: float = math.inf
 ) -> tuple[complex, float]:
@@ -125,6 +161,27 @@ def refine_eigenvalue_and_error(
     while error < 0:
         w, error, last = _newton_from_guess(complex(w), _propagators_up_to(w, determinant), last)
     return w, error
+
+
+def refine_eigenvalues_and_errors(
+    w: Sequence[complex], determinant: ArmDeterminant, max_first_steps: Sequence[float]
+) -> list[tuple[complex, float]]:
+    """Results of `refine_eigenvalue_and_error` for all guesses w and their `max_first_steps`, (n,) each, by
+    one call of compiled code if the same elements serve all w."""
+    level = _common_propagators(w, determinant)
+    if level is not None:
+        last = np.array([2 * step for step in max_first_steps], float)
+        roots, errors, _ = _newton_from_guesses(np.array(w, complex), level, last)
+        if (errors >= 0).all():
+            return list(zip(roots.tolist(), errors.tolist(), strict=True))
+    steps = zip(w, max_first_steps, strict=True)
+    return [refine_eigenvalue_and_error(value, determinant, step) for value, step in steps]
+
+
+def _common_propagators(w: Sequence[complex], determinant: ArmDeterminant) -> PropagatorsUpToW | None:
+    """The propagators that `_propagators_up_to` gives for every w; None if they differ or there is no w."""
+    levels = [_propagators_up_to(value, determinant) for value in w]
+    return levels[0] if levels and all(level is levels[0] for level in levels) else None
 
 
 def taylor_parabola_roots(middle: complex, determinant: ArmDeterminant) -> tuple[complex, complex]:

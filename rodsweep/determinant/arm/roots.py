@@ -20,8 +20,8 @@ from .hull.region import EigenvalueHull
 from .local_waves import mean_wave_numbers_and_w_scales
 from .newton import (
     ARM_ROOT_SETTINGS,
-    refine_eigenvalue_and_error,
-    root_error,
+    refine_eigenvalues_and_errors,
+    root_errors,
     second_derivative,
     taylor_parabola_roots,
 )
@@ -47,10 +47,7 @@ def refine_mesh_eigenvalues(
     resolved = [i for i, number in zip(in_box, waves.tolist(), strict=True) if number <= max_q]
     starts = [guesses[i] for i in resolved]
     _prepare_elements(determinant, max(map(abs, starts), default=0.0), largest_w)
-    errors: dict[int, float] = {}
-    for k, i in enumerate(resolved):
-        is_conjugate = k > 0 and starts[k] == starts[k - 1].conjugate()
-        errors[i] = errors[resolved[k - 1]] if is_conjugate else root_error(starts[k], determinant)
+    errors = dict(zip(resolved, root_errors(starts, determinant).tolist(), strict=True))
     near = [i for i in resolved if errors[i] <= ROOT_SETTINGS.max_pair_correction_ratio * scale[i]]
     near_errors = [errors[i] for i in near]
     # From two close guesses Newton's method may find one root twice, so these are moved apart first.
@@ -133,12 +130,19 @@ class _LocatedRoot(NamedTuple):
 def _refine_guesses(guesses: list[tuple[complex, float]], determinant: ArmDeterminant) -> list[_LocatedRoot]:
     """The root of D near each guess (w, half_distance), a pair of results of `_separate_close_roots`. For
     conjugate guesses only the first is refined."""
+    is_conjugate = [
+        k > 0 and w.imag != 0 and w == guesses[k - 1][0].conjugate() for k, (w, _) in enumerate(guesses)
+    ]
+    refined = [guess for guess, skipped in zip(guesses, is_conjugate, strict=True) if not skipped]
+    results = iter(
+        refine_eigenvalues_and_errors([w for w, _ in refined], determinant, [step for _, step in refined])
+    )
     roots: list[_LocatedRoot] = []
-    for index, (w, radius) in enumerate(guesses):
-        if index > 0 and w.imag != 0 and w == guesses[index - 1][0].conjugate():
-            roots.append(_LocatedRoot(roots[-1].w.conjugate(), roots[-1].error, index))
+    for k, skipped in enumerate(is_conjugate):
+        if skipped:
+            roots.append(_LocatedRoot(roots[-1].w.conjugate(), roots[-1].error, k))
         else:
-            roots.append(_LocatedRoot(*refine_eigenvalue_and_error(w, determinant, radius), index))
+            roots.append(_LocatedRoot(*next(results), k))
     return roots
 
 

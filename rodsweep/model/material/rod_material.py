@@ -153,16 +153,21 @@ class RodMaterial:
         slopes: derivatives of F, of the taper, and of compliances and drags at the base with respect to the
         parameter, by name; the derivative of a missing name is 0."""
         factors = factors_along(self.profile, taper, u)
-        # d log(radius)/d taper.
-        growth = slopes.get("taper", 0.0) * u / (1 - (1 - taper) * u)
         compliance = np.zeros((3, *u.shape))
         drag = np.zeros((3, *u.shape))
         for i, name in enumerate(("k1", "k2", "k3")):
-            derivative = slopes.get(name, 0.0) / factors[name]
-            compliance[i] = derivative - sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
+            if name in slopes:
+                compliance[i] = slopes[name] / factors[name]
         for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
-            derivative = slopes.get(name, 0.0) * factors[name]
-            drag[i] = derivative + sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
+            if name in slopes:
+                drag[i] = slopes[name] * factors[name]
+        if "taper" in slopes:
+            # Derivative of log(radius).
+            growth = slopes["taper"] * u / (1 - (1 - taper) * u)
+            for i, name in enumerate(("k1", "k2", "k3")):
+                compliance[i] -= sections.compliance[i] * RADIUS_POWERS.get(name, 0) * growth
+            for i, name in enumerate(("gamma1", "gamma2", "gamma3")):
+                drag[i] += sections.drag[i] * RADIUS_POWERS.get(name, 0) * growth
         load = slopes.get("F", 0.0) * sections.compliance[0] + F * compliance[0]
         # W'(nu) = -F c1, so the change of nu is minus the change of F c1, divided by W''(nu).
         return CrossSections(compliance, drag, -load / self.constitutive_law.stiffness(sections.nu))

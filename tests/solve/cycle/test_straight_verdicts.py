@@ -7,6 +7,7 @@ import pytest
 from rods import rod_of
 from surveyed import few
 
+from rodsweep.bench.limit_cycle.swept_rods import TWO_SEGMENT_PROFILE
 from rodsweep.model.material.rod_material import RodMaterial
 from rodsweep.model.rod import Rod
 from rodsweep.solve.cycle import limit_cycle
@@ -19,6 +20,7 @@ from rodsweep.solve.cycle.straight_rod import (
     straight_rod_stability,
 )
 from rodsweep.solve.hopf.normal_form import normal_form_by_mesh_rule
+from rodsweep.solve.spectrum.path import followed_leader
 from rodsweep.solve.spectrum.path.followed_leader import follow_leading_eigenvalue
 from rodsweep.solve.spectrum.search import SpectrumRequest, solve_spectrum
 
@@ -105,6 +107,26 @@ def test_eigenvalues_followed_along_a_chain_of_arms_lead(rod, end, followed):
         count += len(found.followed_eigenvalues) > 0
         near = eigenvalues_to_follow(here, found)
     assert count >= followed * steps
+
+
+def test_a_chain_of_arms_follows_as_many_eigenvalues_as_a_proof_without_a_count_needs(monkeypatch):
+    """Six eigenvalues prove nothing at the first force, where seven do. Between the forces 16.9 and 17.1 the
+    second pair becomes two real eigenvalues: the eigenvalues are then searched again."""
+    rod = Rod(F=18.3, k1=1e4, k2=1e2, gamma3=1e-2, material=RodMaterial(profile=TWO_SEGMENT_PROFILE))
+    near = eigenvalues_to_follow(rod, straight_rod_stability(rod))
+    assert len(near) == 5 and (near.imag > 0).sum() == 2
+    searched = []
+    for F in (18.3 * 0.99 ** np.arange(1, 20)).tolist():
+        here = rod.with_values(F=F)
+        with monkeypatch.context() as patch:
+            patch.setattr(followed_leader, "count_of_arm", None)
+            found = straight_rod_stability(here, near)
+        w = solve_spectrum(here, SpectrumRequest(1, 1e-9, True)).eigenvalues[0]
+        assert found.w == pytest.approx(complex(w.real, abs(w.imag)), rel=1e-12)
+        if not len(found.followed_eigenvalues):
+            searched.append(F)
+        near = eigenvalues_to_follow(here, found)
+    assert len(searched) == 1 and 16.5 < searched[0] < 17.5 and (near.imag > 0).sum() == 1
 
 
 @pytest.mark.parametrize("taper", [0.5, 1.0])

@@ -29,6 +29,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....model.compiled.compilation import compiled, compiled_for_vectors
+from .different_elements import numbers_of_different_elements
 from .elimination import elimination_matrix
 from .minor_rates import (
     C3,
@@ -64,19 +65,24 @@ def propagator_terms(F: Array, W: float, local: Array, lengths: Array, method: I
     terms = 0, if MAX_TERMS powers do not suffice. F: forces, (n,). W: bound of |w|. local:
     `LocalCoefficients`, (6, n, elements, STAGES). lengths: lengths of the elements, in L, (elements,)."""
     n, elements = local.shape[1:3]
-    batches = -(-elements // ARM_ELEMENT_SETTINGS.lane_count)
+    numbers = numbers_of_different_elements(local, lengths)
+    different = numbers[-1] + 1
+    batches = -(-different // ARM_ELEMENT_SETTINGS.lane_count)
     coefficients = np.empty((n, batches, 6, ARM_ELEMENT_SETTINGS.stages, ARM_ELEMENT_SETTINGS.lane_count))
     for b in range(batches):
         for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
             # The last batch is filled up with the last element.
-            e = min(b * ARM_ELEMENT_SETTINGS.lane_count + lane, elements - 1)
+            number = min(b * ARM_ELEMENT_SETTINGS.lane_count + lane, different - 1)
+            equal_elements = np.flatnonzero(numbers == number)
+            # The lengths of equal elements differ by rounding; their mean keeps the sum of all lengths.
+            length = lengths[equal_elements].mean()
             for arm in range(n):
-                coefficients[arm, b, :, :, lane] = local[:, arm, e] * lengths[e]
+                coefficients[arm, b, :, :, lane] = local[:, arm, equal_elements[0]] * length
     terms = np.zeros((n, batches * ARM_ELEMENT_SETTINGS.lane_count, ARM_ELEMENT_SETTINGS.max_terms, PADDED))
     term_count = fill_propagator_terms(F, W, coefficients, method, terms)
     if term_count > ARM_ELEMENT_SETTINGS.max_terms:
         return terms[:, :, :0].copy()
-    return terms[:, :elements, :term_count].copy()
+    return terms[:, numbers, :term_count]
 
 
 @compiled
@@ -181,14 +187,10 @@ def _integrate(Q: Array, rates: Array, out: Array) -> None:
     """out = the integrals of rates, both (STAGES, WIDTH), to each stage; Q: integrals, (STAGES, STAGES)."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            out[i, c] = 0.0
-        for j in range(0, ARM_ELEMENT_SETTINGS.stages, 4):  # four products at a time save passes over `out`
-            p = Q[i, j]
-            q = Q[i, j + 1]
-            r = Q[i, j + 2]
-            s = Q[i, j + 3]
-            for c in range(ARM_ELEMENT_SETTINGS.width):
-                out[i, c] += p * rates[j, c] + q * rates[j + 1, c] + r * rates[j + 2, c] + s * rates[j + 3, c]
+            total = 0.0
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                total += Q[i, j] * rates[j, c]
+            out[i, c] = total
 
 
 @compiled_for_vectors
@@ -197,19 +199,18 @@ def _integrate_eliminated(matrices: Array, rates: Array, out: Array) -> None:
     matrices: `elimination_matrix` of each lane's element, with M Q, (STAGES, 1 + STAGES, WIDTH)."""
     for i in range(ARM_ELEMENT_SETTINGS.stages):
         for c in range(ARM_ELEMENT_SETTINGS.width):
-            out[i, c] = 0.0
-        for j in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
-            for c in range(ARM_ELEMENT_SETTINGS.width):
-                out[i, c] += matrices[i, j + 1, c] * rates[j, c] + matrices[i, j + 2, c] * rates[j + 1, c]
-                out[i, c] += matrices[i, j + 3, c] * rates[j + 2, c] + matrices[i, j + 4, c] * rates[j + 3, c]
+            total = 0.0
+            for j in range(ARM_ELEMENT_SETTINGS.stages):
+                total += matrices[i, j + 1, c] * rates[j, c]
+            out[i, c] = total
 
 
 @compiled
 def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool:
     """Writes the propagators' coefficients of w^n into terms[:, n]; returns whether all are negligible.
     terms: (LANES, MAX_TERMS, PADDED). rates: rates of minors, (MINORS, STAGES, WIDTH). weights: (STAGES,)."""
-    integrals = np.zeros((MINORS, ARM_ELEMENT_SETTINGS.width))
-    _add_end_integrals(weights, rates, integrals)
+    integrals = np.empty((MINORS, ARM_ELEMENT_SETTINGS.width))
+    _integrate_to_end(weights, rates, integrals)
     is_negligible = True
     for lane in range(ARM_ELEMENT_SETTINGS.lane_count):
         size = 0.0
@@ -226,15 +227,12 @@ def _write_end_terms(weights: Array, rates: Array, n: int, terms: Array) -> bool
 
 
 @compiled_for_vectors
-def _add_end_integrals(weights: Array, rates: Array, integrals: Array) -> None:
-    """Adds integrals of rates, (MINORS, STAGES, WIDTH), to `integrals`, (MINORS, WIDTH); weights,
+def _integrate_to_end(weights: Array, rates: Array, integrals: Array) -> None:
+    """Writes integrals of rates, (MINORS, STAGES, WIDTH), into `integrals`, (MINORS, WIDTH); weights,
     (STAGES,)."""
     for row in range(MINORS):
-        for i in range(0, ARM_ELEMENT_SETTINGS.stages, 4):
-            p = weights[i]
-            q = weights[i + 1]
-            r = weights[i + 2]
-            s = weights[i + 3]
-            for c in range(ARM_ELEMENT_SETTINGS.width):
-                integrals[row, c] += p * rates[row, i, c] + q * rates[row, i + 1, c]
-                integrals[row, c] += r * rates[row, i + 2, c] + s * rates[row, i + 3, c]
+        for c in range(ARM_ELEMENT_SETTINGS.width):
+            total = 0.0
+            for i in range(ARM_ELEMENT_SETTINGS.stages):
+                total += weights[i] * rates[row, i, c]
+            integrals[row, c] = total

@@ -39,7 +39,7 @@ class ArmElementSettings(KernelConstants):
     """Maximum number of elements of an arm. An arm that needs more elements is not resolved."""
     stages: int = 12
     """Number of Gauss points of an element. Eleven integrate exp(3.2) to 3e-17, twelve to 1e-19: the twelfth
-    allows for coefficients that vary. A multiple of 4, as sums take four terms at a time."""
+    allows for coefficients that vary. A multiple of 4, so that rows are whole vector instructions."""
     lane_count: int = 4
     """Number of elements that are solved together by vector instructions."""
     max_terms: int = 28

@@ -53,21 +53,28 @@ class GridPositions(NamedTuple):
 
 
 @compiled
-def averaged_regions(u: Array, coefficients: Array, F: float) -> Array:
+def averaged_regions(u: Array, coefficients: Array, F: float, only_smallest: bool) -> Array:
     """Constants (a, c) of the region of each trial weight, (trials, 2); inf if a trial gives no bound. u:
     points of an arm from clamp to tip, (points,), two at a jump. coefficients: `LocalCoefficients` at the
-    points, (6, points), with c2 > 0 and g > 0. F: force."""
+    points, (6, points), with c2 > 0 and g > 0. F: force. only_smallest: whether a trial may end, with inf, as
+    soon as its a exceeds the smallest a of a region with c = 0."""
     regions = np.full((AVERAGED_WEIGHT_SETTINGS.trial_count, 2), math.inf)
     row = 0
+    max_a2 = math.inf
     for h in AVERAGED_WEIGHT_SETTINGS.half_widths:
         points = _with_points_where_window_ends_jump(u, h)
         positions = _grid_positions(points, u)
         coefficients_at_points = np.empty((6, len(points)))
         for k in range(6):
             coefficients_at_points[k] = _interpolate_at_positions(positions, coefficients[k])
+        _, c2, c3, gamma2, gamma3, _ = coefficients_at_points
+        loads = abs(F) * np.sqrt(c2 * c3 * gamma3 / gamma2)
         window = (_grid_positions(points - h, points), _grid_positions(points + h, points))
         for f in AVERAGED_WEIGHT_SETTINGS.factors:
-            _write_regions_of_trial(regions[row : row + 2], points, coefficients_at_points, window, (F, f, h))
+            arm = (points, coefficients_at_points, f * loads)
+            _write_regions_of_trial(regions[row : row + 2], arm, window, (F, h, max_a2))
+            if only_smallest:
+                max_a2 = min(max_a2, regions[row + 1, 0] ** 2)
             row += 2
     return regions
 
@@ -120,51 +127,59 @@ def _interpolate_at_positions(positions: GridPositions, values: Array) -> Array:
 @compiled
 def _write_regions_of_trial(
     regions: Array,
-    u: Array,
-    coefficients: Array,
+    arm: tuple[Array, Array, Array],
     window: tuple[GridPositions, GridPositions],
     trial: tuple[float, float, float],
 ) -> None:
-    """Writes the two regions (a, c) of a trial (F, f, h) into `regions`, (2, 2). In the first region (t -
-    alpha) nu is bounded by theta(0) = 0, in the second by the rotational drag.
+    """Writes the two regions (a, c) of a trial weight into `regions`, (2, 2). In the first region (t - alpha)
+    nu is bounded by theta(0) = 0, in the second by the rotational drag.
 
-    u: points of the arm, (points,). coefficients: `LocalCoefficients` at u, (6, points). window:
-    positions of u - h and of u + h in u.
+    arm: points u, (points,); `LocalCoefficients` there, (6, points); l there, (points,). window: positions
+    of u - h and of u + h in u. trial: force F, half-width h, and the a^2 above which both regions are left
+    unchanged.
     """
-    F, f, h = trial
-    count = len(u)
-    log_t = np.empty(count)
-    integral = np.zeros(count)
-    for i in range(count):
-        nu, c2, c3, gamma2, gamma3, g = coefficients[:, i]
-        log_t[i] = math.log(g / (nu + f * abs(F) * math.sqrt(c2 * c3 * gamma3 / gamma2)))
-        if i > 0:
-            integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
-    log_t_left, log_t_right, log_t_integrals = _averaged_log_weight(u, log_t, integral, window, h)
+    u, coefficients, loads = arm
+    F, h, max_a2 = trial
+    t, alpha, slopes = _trial_weights(arm, window, h)
     a2_clamp = 0.0
     a2_drag = 0.0
     bending = 0.0
     c2_clamp = 0.0
     previous = 0.0
-    for i in range(count):
+    for i in range(len(u)):
         nu, c2, c3, gamma2, gamma3, g = coefficients[:, i]
-        alpha = math.exp(log_t_integrals[i] / (2 * h))
-        t = math.exp(log_t[i])
-        A2 = ((log_t_right[i] - log_t_left[i]) / (2 * h)) ** 2 / (gamma2 * c2)
-        B2 = F * F * alpha * c3 / gamma2
-        a2_clamp = max(
-            a2_clamp, squared_block_norm(A2, B2, g - t * nu if f > 0 else 0.0, gamma3 * alpha * c2)
-        )
-        a2_drag = max(a2_drag, squared_block_norm(A2, B2, g - alpha * nu, gamma3 * alpha * c2))
+        A2 = slopes[i] ** 2 / (gamma2 * c2)
+        B2 = F * F * alpha[i] * c3 / gamma2
+        drag = gamma3 * alpha[i] * c2
+        a2_clamp = max(a2_clamp, squared_block_norm(A2, B2, g - t[i] * nu if loads[i] > 0 else 0.0, drag))
+        a2_drag = max(a2_drag, squared_block_norm(A2, B2, g - alpha[i] * nu, drag))
+        if min(a2_clamp, a2_drag) > max_a2:
+            return
         if i > 0:
             # As theta(0) = 0, |theta(u)|^2 is at most int_0^u c3 du times int c3 |m|^2 du.
             bending += (u[i] - u[i - 1]) * (c3 + coefficients[2, i - 1]) / 2
-        density = ((t - alpha) * nu) ** 2 / (alpha * c2) * bending
+        density = ((t[i] - alpha[i]) * nu) ** 2 / (alpha[i] * c2) * bending
         if i > 0:
             c2_clamp += (u[i] - u[i - 1]) * (density + previous) / 2
         previous = density
     regions[0] = math.sqrt(a2_clamp), math.sqrt(c2_clamp) / 2
     regions[1] = math.sqrt(a2_drag), 0.0
+
+
+@compiled
+def _trial_weights(
+    arm: tuple[Array, Array, Array], window: tuple[GridPositions, GridPositions], h: float
+) -> tuple[Array, Array, Array]:
+    """Returns (t, alpha, derivative of log alpha) at all points of an arm, (points,) each. Arguments: as for
+    `_write_regions_of_trial`. h: half-width of the window."""
+    u, coefficients, loads = arm
+    t = coefficients[5] / (coefficients[0] + loads)
+    log_t = np.log(t)
+    integral = np.zeros(len(u))
+    for i in range(1, len(u)):
+        integral[i] = integral[i - 1] + (u[i] - u[i - 1]) * (log_t[i] + log_t[i - 1]) / 2
+    log_t_left, log_t_right, log_t_integrals = _averaged_log_weight(u, log_t, integral, window, h)
+    return t, np.exp(log_t_integrals / (2 * h)), (log_t_right - log_t_left) / (2 * h)
 
 
 @compiled

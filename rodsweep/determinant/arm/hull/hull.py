@@ -111,7 +111,9 @@ def _averaged_regions_by_arm(F: Array, lengths: Array, coefficients: Array) -> A
     flat_coefficients = coefficients.reshape(6, len(F), -1)
     regions = np.full((len(F), AVERAGED_WEIGHT_SETTINGS.trial_count, 2), inf)
     for i in np.flatnonzero(((flat_coefficients[5] > 0) & (flat_coefficients[1] > 0)).all(axis=1)).tolist():
-        regions[i] = averaged_regions(u, np.ascontiguousarray(flat_coefficients[:, i]), float(F[i]))
+        coefficients_of_arm = np.ascontiguousarray(flat_coefficients[:, i])
+        # The smallest region of several arms need not have the smallest region of any of them.
+        regions[i] = averaged_regions(u, coefficients_of_arm, float(F[i]), len(F) == 1)
     return regions
 
 

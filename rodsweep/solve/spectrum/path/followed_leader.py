@@ -5,18 +5,18 @@ eigenvalues, or for an arm a proof without a count, shows that the refined eigen
 """
 
 from collections.abc import Iterator
-from math import isfinite
+from math import inf, isfinite
 from typing import NamedTuple
 
 import numpy as np
 
-from ....arrays import Complex
+from ....arrays import Array, Complex
 from ....determinant.arm.completeness import largest_w_of_proof, prove_complete
 from ....determinant.arm.count.count import count_right_of as count_of_arm
 from ....determinant.arm.count.count import largest_w_of_count
 from ....determinant.arm.determinant import arm_determinant
 from ....determinant.arm.hull.hull import hull_of
-from ....determinant.arm.newton import refine_eigenvalue_and_error
+from ....determinant.arm.newton import refine_eigenvalues_and_errors
 from ....determinant.certificate.winding_number import count_right_of
 from ....determinant.roots.newton import refine_eigenvalue
 from ....determinant.roots.roots import root_error_and_scales
@@ -37,7 +37,8 @@ class LeadingEigenvalue(NamedTuple):
 
 def follow_leading_eigenvalue(rod: Rod, guesses: Complex, accuracy: float) -> LeadingEigenvalue | None:
     """The leading eigenvalue of `rod`, followed from a neighbouring rod; None unless the eigenvalue is
-    accurate, real or complex as for the neighbouring rod, and proved to lead.
+    accurate and proved to lead, and unless all followed eigenvalues are real or complex as for the
+    neighbouring rod.
 
     guesses: eigenvalues of the neighbouring rod with Im w >= 0, (n,), the leading eigenvalue first. For a
     uniform rod only the first eigenvalue is used; the proof for an arm that varies along its length needs
@@ -83,9 +84,12 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
     if not isfinite(largest_w):
         largest_w = largest_w_of_count(next(_lines_for_count(guess)), determinant, hull)
     determinant.propagators_for(largest_w)  # the elements for the proof also serve the eigenvalues
-    roots = [refine_eigenvalue_and_error(value, determinant) for value in guesses.tolist()]
+    roots = refine_eigenvalues_and_errors(guesses.tolist(), determinant, [inf] * len(guesses))
     w = np.array([root for root, _ in roots])
     error = np.array([error for _, error in roots])
+    if ((w.imag != 0) != (guesses.imag != 0)).any():
+        # Of a pair that has become two real eigenvalues, Newton's method finds only one.
+        return None
     order = np.argsort(-w.real, kind="stable")
     w = w[order]
     error = error[order]
@@ -94,8 +98,7 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
         w, error
     ):
         return None
-    pairs = w.imag != 0
-    known_roots = KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
+    known_roots = _with_conjugates(w, error)
     is_complete, _ = prove_complete(
         line_for_proof(leading_w, float(error[0])), *known_roots, determinant, hull
     )
@@ -104,6 +107,22 @@ def _follow_leader_of_arm(rod: Rod, guesses: Complex, accuracy: float) -> Leadin
         for line in _lines_for_count(leading_w)
     )
     return LeadingEigenvalue(leading_w, float(error[0]), w) if is_leading else None
+
+
+def proves_leader(rod: Rod, w: Complex, error: Array) -> bool:
+    """Whether eigenvalues of a nonuniform arm prove without a count which of them leads. w, error:
+    eigenvalues with Im w >= 0 and their absolute errors, (n,) each, the leading eigenvalue first."""
+    line = line_for_proof(complex(w[0]), float(error[0]))
+    try:
+        return prove_complete(line, *_with_conjugates(w, error), arm_determinant(rod), hull_of(rod))[0]
+    except FloatingPointError:  # D needs too many elements
+        return False
+
+
+def _with_conjugates(w: Complex, error: Array) -> KnownRoots:
+    """The eigenvalues w with Im w >= 0, (n,), their conjugates, and the errors of all."""
+    pairs = w.imag != 0
+    return KnownRoots(np.append(w, w[pairs].conj()), np.append(error, error[pairs]))
 
 
 def _matches_neighbour(w: complex, error: float, neighbour_w: complex, accuracy: float) -> bool:
