@@ -1055,9 +1055,11 @@ def _state_sentences(view, page, fine, row):
     found += counts(page, pattern, len(detached), len(rows))
     if detached:
         found += ranges(page, rf"^branches that .*: on \d+ of \d+ rows?, {row} = RANGE", detached)
-    name = "cycle_curves_lost_beyond"
-    lost = int(view.variables[name]) if name in view.variables else 0
-    found += counts(page, "^ends of curves of folds lost beyond the range: NUMBER;", lost)
+    for name, pattern in (
+        ("cycle_curves_lost_beyond", "ends of curves of folds lost beyond the range: NUMBER;"),
+        ("cycle_extrema_unlocated", f"extrema of {row} along curves .* that could not be located: NUMBER;"),
+    ):
+        found += counts(page, f"^{pattern}", int(view.variables.get(name, 0)))
     for line, match in read(
         page, rf"^this curve crosses the row {row} = NUMBER between F = NUMBER and NUMBER, but no branch"
     ):

@@ -398,6 +398,11 @@ def test_an_extremum_of_the_row_parameter_along_a_curve_of_folds_is_stored_and_s
         "F = 79.004070 (+- 1e-06); "
     )
     assert curve_extremum_values(replace(traced, curves=(curves[0],)), ("F", "k1")) == []
+    unlocated = replace(curves[0], points=(points[0], replace(points[2], row_extremum_error=np.nan)))
+    ((variable, count),) = curve_extremum_values(replace(traced, curves=(unlocated,) * 2), ("F", "k1"))
+    assert (variable.name, int(count)) == ("cycle_extrema_unlocated", 2)
+    (line,) = curve_extremum_lines(SimpleNamespace(variables={variable.name: count}), "F", "k1")
+    assert line.startswith("extrema of k1 along curves of folds of cycles that could not be located: 2;")
     assert curve_extremum_lines(SimpleNamespace(variables={}), "F", "k1") == []
 
 

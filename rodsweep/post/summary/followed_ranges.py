@@ -11,8 +11,8 @@ from .summary_lines import proof_clause
 
 MISSED_CYCLES_TEXT = (
     "cycles are missed if their branch comes from farther away, moves away from the range stable or with "
-    "several multipliers outside the unit circle and comes back, begins at a symmetry breaking beyond the "
-    "range, or is connected to no Hopf point"
+    "several multipliers outside the unit circle and comes back, begins at a symmetry breaking on such a "
+    "branch, or is connected to no Hopf point"
 )
 """Clause on the cycles within the range that are not found."""
 

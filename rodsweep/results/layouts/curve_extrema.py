@@ -3,6 +3,12 @@
 from ...model.parameters import PARAMETERS
 from .variables import Variable, along_dimension, integer, real
 
+EXTREMA_UNLOCATED = integer(
+    "cycle_extrema_unlocated",
+    "number of extrema of the row parameter along curves of folds that could not be located",
+)
+"""A file without such extrema does not have this variable."""
+
 
 def curve_extremum_variables(line_parameter: str, row_parameter: str) -> dict[str, Variable]:
     """Variables, by name, of the extrema of the row parameter `row_parameter` along curves of folds of

@@ -6,7 +6,7 @@ from typing import Any
 from ...model.parameters import PARAMETERS, TRANSVERSE_PARAMETERS, parameter_names_except
 from .branch import SPECIAL_KINDS, followed_range_variables
 from .criticality import LANDAU_UNIT, SLOPE_UNIT, criticality_variable
-from .curve_extrema import curve_extremum_variables
+from .curve_extrema import EXTREMA_UNLOCATED, curve_extremum_variables
 from .detached_branches import CURVES_LOST_BEYOND, DETACHED_BRANCH_VARIABLES, DETACHED_ROW
 from .rods import with_certified_meaning
 from .spectrum import UNSTABLE_COUNT
@@ -83,7 +83,8 @@ def sweep_wide_variables(config: dict[str, Any], is_grid: bool) -> tuple[Variabl
     `phase_diagram.bautin_along` only. is_grid: not used."""
     (line, row), _ = plane_of(config)
     variables = curve_variables(line, row) | criticality_variables(line, row)
-    variables |= curve_extremum_variables(line, row) | {CURVES_LOST_BEYOND.name: CURVES_LOST_BEYOND}
+    variables |= curve_extremum_variables(line, row)
+    variables |= {variable.name: variable for variable in (EXTREMA_UNLOCATED, CURVES_LOST_BEYOND)}
     variables |= cycle_curve_variables(line, row) | DETACHED_BRANCH_VARIABLES
     for third in config["phase_diagram"].get("bautin_along") or ():
         variables |= bautin_curve_variables(line, row, third)

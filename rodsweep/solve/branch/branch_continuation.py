@@ -9,7 +9,7 @@ from ...model.parameters import PARAMETERS
 from ...solve_progress import SolvePosition, report
 from ...wording import counted
 from ..unsolvable import Unsolvable
-from .arc_length_step import BranchCycle, arc_length_between, cycle_at_length, next_cycle
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, arc_length_between, cycle_at_length, next_cycle
 from .branch_curve import BranchCurve, BranchEnd, RangePassage
 from .branch_end_reason import BranchEndReason, reason_of_failure
 from .branch_end_settings import BRANCH_END_SETTINGS
@@ -19,7 +19,7 @@ from .branch_record import BranchRecord, branch_end_point
 from .computing_time import fraction_done
 from .mirror_image_end import end_at_mirror_image, reaches_mirror_image
 from .range_end import cycle_at_zero_coordinate, cycle_within_range, range_end_condition
-from .special.detection import special_points_between
+from .special.detection import fold_and_breaking_between, lie_on_one_branch, special_points_between
 from .special.locating import special_point_between
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS, first_asymmetric_cycle
@@ -98,11 +98,15 @@ def follow_from_range_end(entry: RangePassage, limits: BranchLimits) -> BranchCu
     """The branch that enters the range at `entry`, followed to its end."""
     limits = replace(limits, accuracy=entry.accuracy)
     curve = BranchCurve(start_hopf=-1, start_passage=entry)
-    errors = entry.cycle.cycle.errors
-    start = range_end_point(entry.cycle, limits.end_reasons[entry.index])
-    curve.add_special_point(
-        replace(start, period_error=errors.period_error, tip_y_max_error=errors.amplitude_error)
-    )
+    start = entry.end_point
+    if start is None:
+        errors = entry.cycle.cycle.errors
+        start = replace(
+            range_end_point(entry.cycle, limits.end_reasons[entry.index]),
+            period_error=errors.period_error,
+            tip_y_max_error=errors.amplitude_error,
+        )
+    curve.add_special_point(start)
     return follow_from_cycle(curve, entry.cycle, limits)
 
 
@@ -158,9 +162,8 @@ def _append_next_cycle(
         cycle_at_zero = cycle_at_zero_coordinate(start, limits.coordinate_range[0], limits.accuracy)
         end = cycle_at_zero or next_cycle(start, limits.accuracy)
         next_length = end.next_arc_length
-        if reaches_mirror_image(start, end, limits):
-            # Beyond this point the branch continues through the mirror images of its cycles.
-            return end_at_mirror_image(start, end, limits)
+        if (replacement := _end_or_shorter_step(start, end, limits)) is not None:
+            return replacement
         end, passed_end = cycle_within_range(start, end, limits.coordinate_range, limits.accuracy)
         range_end = (
             range_end_condition(start, limits.coordinate_range[passed_end]) if passed_end >= 0 else None
@@ -180,6 +183,23 @@ def _append_next_cycle(
     passage = RangePassage(replace(last, next_arc_length=next_length), passed_end, limits.accuracy)
     end_point = range_end_point(last, limits.end_reasons[passed_end])
     return BranchEnd(end_point, complete=True, range_passage=passage)
+
+
+def _end_or_shorter_step(
+    start: BranchCycle, end: BranchCycle, limits: BranchLimits
+) -> BranchCycle | BranchEnd | None:
+    """The end of the branch at its mirror image, or `start` with a shorter step, if the step from `start` to
+    `end` leads to the mirror image or to another branch; None if both lie on one branch. Raises Unsolvable
+    if no shorter step is allowed."""
+    if reaches_mirror_image(start, end, limits):
+        # Beyond this point the branch continues through the mirror images of its cycles.
+        return end_at_mirror_image(start, end, limits)
+    if lie_on_one_branch(start, end):
+        return None
+    half_length = arc_length_between(start, end) / 2
+    if half_length < ARC_STEP_CONTROL.min_length:
+        raise Unsolvable("two branches touch within the shortest allowed step")
+    return replace(start, next_arc_length=half_length)
 
 
 def range_end_point(point: BranchCycle, reason: BranchEndReason) -> SpecialPoint:
@@ -203,8 +223,7 @@ def _add_special_points(
         cycle_at = partial(cycle_at_length, accuracy=limits.accuracy)
         special_points, explained = special_points_between(start, end, cycle_at, limits.accuracy)
     else:
-        has_fold = start.parameter_rate * end.parameter_rate < 0
-        kinds = [SpecialKind.fold] if has_fold else []
+        kinds = fold_and_breaking_between(start, end)
         special_points = [special_point_between(kind, start, end, limits.accuracy) for kind in kinds]
         explained = True
     closing_index = curve.index_of_first_special_point(special_points)

@@ -12,6 +12,7 @@ from ..cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ..orbit.measures import CycleMeasures
 from .arc_length_step import BranchCycle
 from .special.special_point import SPECIAL_POINT_SETTINGS, SpecialPoint
+from .start.hopf_point import HopfBranchStart
 from .symmetry_breaking import SymmetryBreaking
 
 
@@ -80,6 +81,11 @@ class RangePassage:
     cycle: BranchCycle
     index: int
     accuracy: float
+    hopf: HopfBranchStart | None = None
+    """Hopf point just beyond the end of the range where the branch ends, or None. `cycle` is then the cycle
+    of the branch nearest to the end of the range, within the range."""
+    end_point: SpecialPoint | None = None
+    """The cycle at the end of the range by the normal form of `hopf`; None without `hopf`."""
 
     def is_same_as(self, other: "RangePassage") -> bool:
         """Whether a branch passes the end of the range at the same cycle, or its mirror image, as another
@@ -87,15 +93,33 @@ class RangePassage:
         within their errors."""
         if self.index != other.index:
             return False
-        one, two = self.cycle.cycle, other.cycle.cycle
+        if self.hopf is not None and other.hopf is not None:
+            return self.hopf is other.hopf
+        (period, period_error, height, height_error) = self._period_and_height
+        (other_period, other_period_error, other_height, other_height_error) = other._period_and_height
         factor = SPECIAL_POINT_SETTINGS.error_factor
-        period_error = factor * (one.errors.period_error + two.errors.period_error)
-        height_error = factor * (one.errors.amplitude_error + two.errors.amplitude_error)
-        heights = [max(cycle.measures.tip_y_max, -cycle.measures.tip_y_min) for cycle in (one, two)]
-        return (
-            abs(one.measures.period / two.measures.period - 1) <= period_error
-            and abs(heights[0] / heights[1] - 1) <= height_error
-        )
+        return abs(period / other_period - 1) <= factor * (period_error + other_period_error) and abs(
+            height / other_height - 1
+        ) <= factor * (height_error + other_height_error)
+
+    def has_same_cycle_as(self, other: "RangePassage") -> bool:
+        """Whether both places have the same cycle, with the same number of multipliers outside the unit
+        circle: this number differs between the two cycles beside a fold, however near they are."""
+        counts = [unstable_count_bounds(passage.cycle) for passage in (self, other)]
+        is_certain = all(least == largest for least, largest in counts)
+        return is_certain and counts[0] == counts[1] and self.is_same_as(other)
+
+    @property
+    def _period_and_height(self) -> tuple[float, float, float, float]:
+        """(period, its relative error, largest |y| of the tip, its relative error) at the end of the
+        range."""
+        point = self.end_point
+        if point is not None:
+            return point.period, point.period_error, point.tip_y_max, point.tip_y_max_error
+        measures = self.cycle.cycle.measures
+        errors = self.cycle.cycle.errors
+        height = max(measures.tip_y_max, -measures.tip_y_min)
+        return measures.period, errors.period_error, height, errors.amplitude_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -30,6 +30,8 @@ class BranchLimits:
     """Whether the angular velocity Omega is an unknown for all cycles, see `StressForm`."""
     breakings: Sequence[SymmetryBreaking] = ()
     """Symmetry breakings found so far on the branches of the rod."""
+    hopfs_beyond: Sequence[HopfBranchStart] = ()
+    """Hopf points of the rod beyond the ends of the range; a branch may end just beyond."""
     locates_special_points: bool = True
     """Whether all special points between the ends of a branch are located; on parts beyond the range only
-    folds are."""
+    folds and symmetry breakings are."""

@@ -4,6 +4,7 @@ has two starting points."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 from ...model.parameters import PARAMETERS
 from ...solve_progress import solve_part
@@ -13,7 +14,7 @@ from .branch_continuation import follow_asymmetric_branch, follow_branch, follow
 from .branch_curve import BranchCurve, RangePassage
 from .branch_limits import BranchLimits
 from .computing_time import fractions_before_branches
-from .detached_branch import follow_detached_branch, lies_on_any
+from .detached_branch import branch_through, lies_on_any
 from .region_beyond import RegionBeyond
 from .special.special_point import SpecialKind, SpecialPoint
 from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
@@ -48,21 +49,46 @@ class BranchSearch:
     @property
     def folds_beyond(self) -> list[SpecialPoint]:
         """Folds of the branches followed beyond the range."""
-        return [fold for region in self.regions for fold in region.folds]
+        return [fold for region in self.regions for fold in region.folds if region.has(fold)]
+
+    def __post_init__(self) -> None:
+        hopfs = [hopf for region in self.regions for hopf in region.limits.hopfs]
+        self.limits = replace(self.limits, hopfs_beyond=hopfs)
+
+    def follow_all(self, starts: Iterable[SpecialPoint]) -> None:
+        """Follows the branches within the range, then those from beyond the range, then those through the
+        special points `starts`."""
+        self.follow_within_range()
+        self.follow_into_range()
+        self.follow_through(self._folds_passed_into_range())
+        self.follow_through(starts)
+        self._add_failures_at_range_ends()
 
     def follow_within_range(self) -> None:
         """Follows the branches from all Hopf points and symmetry breakings of the range, within the range."""
         self.follow_from_hopf_points()
         self.follow_from_symmetry_breakings()
 
-    def follow_into_range(self, regions: Sequence[RegionBeyond]) -> None:
+    def follow_into_range(self) -> None:
         """Follows branches beyond the range, in `regions`, and those that enter the range from there."""
-        self.regions = regions
+        for region in self.regions:
+            region.begin()
         self.follow_beyond()
-        for region in regions:
+        for region in self.regions:
             for entry in region.entries_from_hopf_points():
                 self._follow_entering(entry, region)
+        self._follow_from_breakings_beyond()
         self.follow_beyond()
+
+    def _add_failures_at_range_ends(self) -> None:
+        """Adds a message for every two branches that leave the range at the same cycle: a step led from one
+        branch to another, which nearly touches it."""
+        ends = [(i, place) for i, curve in enumerate(self.curves, 1) for place in _passages_of(curve)]
+        for (i, place), (j, other) in combinations(ends, 2):
+            if i != j and place.has_same_cycle_as(other):
+                value = PARAMETERS[self.name].value(self.limits.coordinate_range[place.index])
+                same = f"branches {i} and {j} have the same cycle at {self.name} = {value:.9g}"
+                self.failures.append(f"{same}: two branches nearly touch")
 
     def _limits_left(self) -> BranchLimits:
         cycles_left = self.limits.max_cycles - sum(len(curve.points) for curve in self.curves)
@@ -95,6 +121,13 @@ class BranchSearch:
             self.followed_breakings += filter(None, [breaking, curve.end_breaking])
             self.curves.append(curve)
 
+    def _folds_passed_into_range(self) -> list[SpecialPoint]:
+        """Folds just within the range at which branches from beyond turn back between two cycles beyond."""
+        low, high = self.limits.coordinate_range
+        coordinate = PARAMETERS[self.name].coordinate
+        folds = (fold for region in self.regions for fold in region.folds)
+        return [fold for fold in folds if low < coordinate(fold.parameter_value) < high]
+
     def follow_through(self, starts: Iterable[SpecialPoint]) -> None:
         """Follows the branches through the special points `starts` that lie on no branch so far, and the
         branches of asymmetric cycles from symmetry breakings on these branches."""
@@ -119,15 +152,21 @@ class BranchSearch:
                 entry = region.entry_after(passage) if region.index == passage.index else None
                 if entry is not None:
                     self._follow_entering(entry, region, passage)
+            self._follow_from_breakings_beyond()
             self.follow_from_symmetry_breakings()
+
+    def _follow_from_breakings_beyond(self) -> None:
+        """Follows the branches of asymmetric cycles that enter the range from symmetry breakings beyond."""
+        for region in self.regions:
+            for entry in region.entries_from_symmetry_breakings():
+                self._follow_entering(entry, region)
 
     def _passages_to_follow(self) -> Iterator[RangePassage]:
         return (place for place in self._passages() if place not in self.followed_passages)
 
     def _passages(self) -> Iterator[RangePassage]:
         """Places at which the branches so far leave or enter the range."""
-        ends = (place for curve in self.curves for place in (curve.start_passage, curve.end_passage))
-        return (place for place in ends if place is not None)
+        return (place for curve in self.curves for place in _passages_of(curve))
 
     def _follow_entering(
         self, entry: RangePassage, region: RegionBeyond, left_at: RangePassage | None = None
@@ -142,8 +181,11 @@ class BranchSearch:
         if limits.max_cycles < 1:
             region.stop_at(region.range_end)
             return
+        limits = replace(limits, breakings=symmetry_breakings_in([c.special_points for c in self.curves]))
         with solve_part(f"branch {len(self.curves) + 1}, from beyond the range"):
-            self.curves.append(follow_from_range_end(entry, limits))
+            curve = follow_from_range_end(entry, limits)
+        self.followed_breakings += filter(None, [curve.end_breaking])
+        self.curves.append(curve)
         self.followed_passages.append(entry)
 
     def _follow_detached(self, start: SpecialPoint) -> None:
@@ -165,15 +207,21 @@ class BranchSearch:
         limits = replace(self._limits_left(), breakings=breakings)
         if limits.max_cycles < 1:
             raise Unsolvable("the branches of the rod have the maximum number of cycles; shorten the range")
-        curve = follow_detached_branch(start, self.name, limits)
+        curve = branch_through(start, self.name, limits, self._is_known)
+        if curve is not None:
+            self.followed_breakings += filter(None, [curve.start_breaking, curve.end_breaking])
+            self.curves.append(curve)
+
+    def _is_known(self, curve: BranchCurve) -> bool:
+        """Whether a branch has a special point of a branch that was followed before."""
         # At an end of the range two branches may agree within tolerances; elsewhere they do not.
         inner_points = (point for point in curve.special_points if point.kind != SpecialKind.end)
-        if any(lies_on_any(point, self.curves) for point in inner_points):
-            return
-        if not lies_on_any(start, [curve]):
-            raise Unsolvable("the branch found does not pass this point")
-        self.followed_breakings += filter(None, [curve.start_breaking, curve.end_breaking])
-        self.curves.append(curve)
+        return any(lies_on_any(point, self.curves) for point in inner_points)
+
+
+def _passages_of(curve: BranchCurve) -> list[RangePassage]:
+    """Places at which a branch enters or leaves the range."""
+    return [place for place in (curve.start_passage, curve.end_passage) if place is not None]
 
 
 _WORDS = {SpecialKind.fold: "fold", SpecialKind.torus: "torus point"}

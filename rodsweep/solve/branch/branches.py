@@ -117,10 +117,9 @@ def _solve_branches_or_raise(
         end_reasons = end_reasons[::-1]
     accuracy = accuracy_near_hopf_points(hopfs, request.accuracy)
     limits = BranchLimits(hopfs, ends, end_reasons, accuracy, request.cycles, workspace, unit, keeps_omega)
-    search = BranchSearch(limits, request.along)
-    search.follow_within_range()
-    search.follow_into_range(regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin))
-    search.follow_through(starts)
+    regions = regions_beyond(path, limits, BRANCH_SETTINGS.crushing_margin)
+    search = BranchSearch(limits, request.along, regions)
+    search.follow_all(starts)
     status, message = _status_and_message(crossings, search.curves, failures + search.failures, request)
     return BranchesOfRod(
         status=status,

@@ -6,7 +6,7 @@ rods. The branch is followed in one direction from a cycle just before this poin
 and then, unless it is closed, from the same cycle in the other direction.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,7 +25,7 @@ from .branch_continuation import follow_from_cycle
 from .branch_curve import BranchCurve
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import first_measured_cycle
-from .special.special_point import SpecialPoint
+from .special.special_point import SpecialKind, SpecialPoint
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
 from .start.first_cycle import ALONG_DEFLECTION
@@ -42,6 +42,12 @@ class DetachedBranchSettings:
     """Largest difference between the first cycle and its prediction on the tangent, divided by the length of
     this step. If the difference is larger, the branch turns by about a right angle on this step, and the
     cycle may lie beyond another fold."""
+    accuracy_ratio: float = 0.01
+    """Ratio of a relative accuracy to the one before, if no branch through the point was found with the one
+    before: a mesh displaces a small closed branch, or a fold near an end of the range, by about the accuracy.
+    """
+    min_accuracy: float = 1e-10
+    """Smallest relative accuracy tried; special points are located to 1e-9."""
 
 
 DETACHED_BRANCH_SETTINGS = DetachedBranchSettings()
@@ -57,6 +63,36 @@ def follow_detached_branch(start: SpecialPoint, name: str, limits: BranchLimits)
     if not start.orbit.is_symmetric:
         limits = replace(limits, accuracy=min(limits.accuracy, ASYMMETRIC_START_SETTINGS.max_accuracy))
     return follow_in_both_directions(_first_cycle(start.orbit, name, limits), limits)
+
+
+def branch_through(
+    start: SpecialPoint, name: str, limits: BranchLimits, is_known: Callable[[BranchCurve], bool]
+) -> BranchCurve | None:
+    """The branch of `follow_detached_branch` that passes `start` and is complete, solved to a higher accuracy
+    if necessary; an incomplete one if no accuracy gives a complete one. None for a branch with `is_known`.
+    Raises Unsolvable if no branch is found, or if the branch found does not pass `start`."""
+    must_pass_start = limits.locates_special_points or start.kind == SpecialKind.fold
+    incomplete: BranchCurve | None = None
+    reason: Unsolvable | None = None
+    accuracy = limits.accuracy
+    while accuracy == limits.accuracy or accuracy >= DETACHED_BRANCH_SETTINGS.min_accuracy:
+        try:
+            curve = follow_detached_branch(start, name, replace(limits, accuracy=accuracy))
+        except WorkLimitReached:
+            raise
+        except Unsolvable as error:
+            reason = reason or error
+        else:
+            if is_known(curve):
+                return None
+            if not must_pass_start or lies_on_any(start, [curve]):
+                if curve.complete or curve.list_full:
+                    return curve
+                incomplete = incomplete or curve
+        accuracy *= DETACHED_BRANCH_SETTINGS.accuracy_ratio
+    if incomplete is None:
+        raise reason or Unsolvable("the branch found does not pass this point")
+    return incomplete
 
 
 def follow_in_both_directions(first_cycle: BranchCycle, limits: BranchLimits) -> BranchCurve:

@@ -14,6 +14,7 @@ from .branch_end_reason import BranchEndReason
 from .branch_end_settings import BRANCH_END_SETTINGS
 from .branch_limits import BranchLimits
 from .branch_record import branch_end_point
+from .range_end_near_hopf import end_at_range_end_near_hopf, is_accurate_at_range_end
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.hopf_point import HopfBranchStart, hopf_as_special_point
 from .symmetry_breaking import reaches_symmetric_cycle, symmetry_breaking_between
@@ -45,43 +46,61 @@ def end_at_mirror_image(
 
 
 def _end_at_hopf(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:
-    """The end of a branch at a Hopf point between two cycles (a failure if no known Hopf point is near), or
-    `start` with half the step, if `start` is too large for an extrapolation. Raises Unsolvable."""
+    """The end of a branch at a Hopf point between two cycles, or at the end of the range before it (a failure
+    if no known Hopf point is near), or `start` with half the step, if `start` is too large for an
+    extrapolation. Raises Unsolvable."""
     half_length = arc_length_between(start, end) / 2
     if start.cycle.measures.tip_y_max > BRANCH_END_SETTINGS.max_last_amplitude:
         if half_length < ARC_STEP_CONTROL.min_length:
             raise Unsolvable("two cycles of opposite sign follow each other at the shortest allowed step")
         return replace(start, next_arc_length=half_length)
-    # Near a Hopf point parameter and period are quadratic in the deflection.
-    tangent = start.tangent
-    # From d to 0 the parabola p = p0 + k d^2 changes by half as much as its tangent at d.
-    length = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
-    coordinate = start.parameter_coordinate - length * tangent[-1]
-    period = start.orbit.period - length * tangent[-2]
-    rounding = max(BRANCH_END_SETTINGS.parameter_tolerance, limits.accuracy)
+    can_halve = half_length >= ARC_STEP_CONTROL.min_length
     for number, hopf in enumerate(limits.hopfs):
-        tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(
-            start.parameter_coordinate - hopf.parameter_coordinate
-        ) + rounding * abs(hopf.parameter_coordinate)
-        period_tolerance = BRANCH_END_SETTINGS.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
-        period_tolerance += BRANCH_END_SETTINGS.period_tolerance * hopf.period
-        if (
-            abs(coordinate - hopf.parameter_coordinate) <= tolerance
-            and abs(period - hopf.period) <= period_tolerance
-        ):
-            if _has_fold_ahead(start, hopf) and half_length >= ARC_STEP_CONTROL.min_length:
+        if _shrinks_to(start, hopf, limits.accuracy):
+            if _has_fold_ahead(start, hopf) and can_halve:
                 return replace(start, next_arc_length=half_length)
             return BranchEnd(hopf_as_special_point(hopf), complete=True, end_hopf=number)
+    for hopf in limits.hopfs_beyond:
+        if _shrinks_to(start, hopf, limits.accuracy):
+            end_before_hopf = end_at_range_end_near_hopf(start, hopf, limits)
+            is_final = _is_smallest(start) or is_accurate_at_range_end(end_before_hopf, limits.accuracy)
+            if can_halve and (_has_fold_ahead(start, hopf) or not is_final):
+                return replace(start, next_arc_length=half_length)
+            if end_before_hopf is not None:
+                return end_before_hopf
     reason = "the cycles shrink to zero amplitude, but no Hopf point is known there"
     return BranchEnd(branch_end_point(start, BranchEndReason.no_cycle_found, reason), complete=False)
+
+
+def _shrinks_to(start: BranchCycle, hopf: HopfBranchStart, accuracy: float) -> bool:
+    """Whether the parabola through the cycle `start` ends at the Hopf point `hopf`. accuracy: relative
+    accuracy of the branch."""
+    # Near a Hopf point parameter and period are quadratic in the deflection. From d to 0 the parabola
+    # p = p0 + k d^2 changes by half as much as its tangent at d.
+    length = deflection_of(start.orbit) / (2 * start.unit_tangent[0] * start.scale.deflection_unit)
+    coordinate = start.parameter_coordinate - length * start.tangent[-1]
+    period = start.orbit.period - length * start.tangent[-2]
+    settings = BRANCH_END_SETTINGS
+    tolerance = settings.extrapolation_tolerance * abs(start.parameter_coordinate - hopf.parameter_coordinate)
+    tolerance += max(settings.parameter_tolerance, accuracy) * abs(hopf.parameter_coordinate)
+    period_tolerance = settings.extrapolation_tolerance * abs(start.orbit.period - hopf.period)
+    period_tolerance += settings.period_tolerance * hopf.period
+    return (
+        abs(coordinate - hopf.parameter_coordinate) <= tolerance
+        and abs(period - hopf.period) <= period_tolerance
+    )
 
 
 def _has_fold_ahead(start: BranchCycle, hopf: HopfBranchStart) -> bool:
     """Whether a branch has a fold between the cycle `start` and the Hopf point `hopf` where it ends: the
     parameter at `start` moves in the direction in which, by the normal form, it leaves the Hopf point. False
     for a cycle of the smallest amplitude, before which no fold is sought."""
-    is_small = start.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
-    return not is_small and start.parameter_rate * hopf.direction > 0
+    return not _is_smallest(start) and start.parameter_rate * hopf.direction > 0
+
+
+def _is_smallest(cycle: BranchCycle) -> bool:
+    """Whether a cycle is so small that no smaller cycle is solved before a Hopf point."""
+    return cycle.cycle.measures.tip_y_max <= BRANCH_START_SETTINGS.min_amplitude_before_fold
 
 
 def _end_at_breaking(start: BranchCycle, end: BranchCycle, limits: BranchLimits) -> BranchCycle | BranchEnd:

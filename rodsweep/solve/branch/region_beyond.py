@@ -3,50 +3,30 @@ stored.
 
 A branch may leave the range, turn back at a fold beyond its end, and enter the range again; and the branch of
 a Hopf point beyond the end may enter the range. Both are followed up to the place where they enter the range.
-Of special points in the region only folds are located. A fold changes the number of multipliers outside the
-unit circle by one: a branch that moves away from the range is followed only if it has one, and may come back
-stable.
+Folds and symmetry breakings in the region are located, and branches of asymmetric cycles are followed too. A
+fold changes the number of multipliers outside the unit circle by one: a branch that moves away from the range
+is followed only if it has one, and may come back stable.
 """
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from math import isnan
 
 from ...determinant.parameter_path import ParameterPath
 from ...solve_progress import solve_part
-from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
 from ..point_outcome import FAILURES
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, cycle_at_length
-from .branch_continuation import follow_from_cycle, index_of_passed_range_end
+from .beyond_range_settings import BEYOND_RANGE_SETTINGS
+from .branch_continuation import follow_asymmetric_branch, follow_from_cycle, index_of_passed_range_end
 from .branch_curve import BranchCurve, RangePassage, unstable_count_bounds
 from .branch_limits import BranchLimits
 from .branch_request import WORK_UNIT
-from .detached_branch import follow_detached_branch, lies_on_any, turned_back
+from .detached_branch import branch_through, lies_on_any, turned_back
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.first_cycle import first_cycle
-from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points, hopf_branch_start
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BeyondRangeSettings:
-    """Settings for the continuation of branches beyond the range."""
-
-    relative_extent: float = 0.5
-    """Branches are followed up to (1 + this number) times the largest coordinate of the range and down to its
-    smallest coordinate divided by (1 + this number); along F down to 0, because there is no cycle without
-    force."""
-    max_cycles: int = 200
-    """Maximum number of cycles on all branches beyond one end of the range."""
-    work_ratio: float = 1.0
-    """Limit of the work beyond one end of the range, divided by the work on the branches within the range."""
-    min_work_limit: float = 100.0
-    """Smallest limit of the work beyond one end of the range, in `WORK_UNIT`: some seconds, ten times the
-    work on a usual branch. A range without a Hopf point has no branches of its own."""
-
-
-BEYOND_RANGE_SETTINGS = BeyondRangeSettings()
+from .start.hopf_point import HopfBranchStart, accuracy_near_hopf_points
+from .symmetry_breaking import SymmetryBreaking, symmetry_breakings_in
 
 
 @dataclass(slots=True, eq=False)
@@ -68,15 +48,22 @@ class RegionBeyond:
     found passes this coordinate."""
     folds: list[SpecialPoint] = field(default_factory=list)
     """Located folds of the branches followed in the region."""
+    breakings: list[SymmetryBreaking] = field(default_factory=list)
+    """Located symmetry breakings of the branches followed in the region."""
+    _followed_breakings: list[SymmetryBreaking] = field(default_factory=list)
     _ended_hopfs: set[int] = field(default_factory=set)
     """Indices of the Hopf points of the region at which a followed branch ends."""
 
     def __post_init__(self) -> None:
         self.followed_to = self.limits.coordinate_range[self.index]
+        self.remaining_work = 0.0
+        self.range_limits = replace(self.range_limits, hopfs_beyond=self.limits.hopfs)
+
+    def begin(self) -> None:
+        """Sets the limit of the work in the region, after the branches within the range are followed."""
         settings = BEYOND_RANGE_SETTINGS
         work_limit = settings.work_ratio * self.limits.workspace.work
         self.remaining_work = max(work_limit, WORK_UNIT * settings.min_work_limit)
-        self._add_hopf_points()
 
     @property
     def range_end(self) -> float:
@@ -91,6 +78,9 @@ class RegionBeyond:
     def entry_after(self, passage: RangePassage) -> RangePassage | None:
         """The place where a branch that leaves the range at `passage` enters it again; None if the branch
         ends, leaves the region at its other end, or cannot come back stable."""
+        if passage.hopf is not None:
+            self._ended_hopfs |= {i for i, hopf in enumerate(self.limits.hopfs) if hopf is passage.hopf}
+            return None
         min_count, max_count = unstable_count_bounds(passage.cycle)
         if not min_count <= 1 <= max_count:
             return None
@@ -110,6 +100,25 @@ class RegionBeyond:
             entry = None
             with solve_part(f"branch from the Hopf point at {place}"), self._limited_work():
                 entry = self._entry_from_hopf_point(number, hopf)
+            if entry is not None:
+                yield entry
+
+    def entries_from_symmetry_breakings(self) -> Iterator[RangePassage]:
+        """Yields the places where branches of asymmetric cycles, from symmetry breakings of the region, enter
+        the range. Symmetry breakings at which a followed branch begins or ends are omitted."""
+        if self.breakings and not self._followed_breakings:
+            work_limit = WORK_UNIT * BEYOND_RANGE_SETTINGS.min_asymmetric_work_limit
+            self.remaining_work = max(self.remaining_work, work_limit)
+        while unfollowed := [item for item in self.breakings if item not in self._followed_breakings]:
+            breaking = unfollowed[0]
+            self._followed_breakings.append(breaking)
+            place = self.path.text_at(self.path.coordinate(breaking.special_point.parameter_value))
+            entry = None
+            with solve_part(f"branch from the symmetry breaking at {place}"), self._limited_work():
+                limits = replace(self.limits, breakings=self.breakings)
+                index = self.breakings.index(breaking)
+                curve = follow_asymmetric_branch(index, self.path.name, limits)
+                entry = self._entry_of(curve)
             if entry is not None:
                 yield entry
 
@@ -154,21 +163,32 @@ class RegionBeyond:
         if passage is None or passage.index != self.index:
             self.stop_at(hopf.parameter_coordinate)
             return None
-        return replace(passage, cycle=turned_back(passage.cycle))
+        return replace(passage, cycle=turned_back(passage.cycle) if passage.hopf is None else first)
 
     def _entry(self, curve: BranchCurve, first_cycle: BranchCycle, accuracy: float) -> RangePassage | None:
         """Follows the branch `curve` from its first cycle `first_cycle` in the region; returns the place
         where it enters the range, or None."""
-        curve = follow_from_cycle(curve, first_cycle, replace(self.limits, accuracy=accuracy))
+        limits = replace(self.limits, accuracy=accuracy, breakings=self.breakings)
+        return self._entry_of(follow_from_cycle(curve, first_cycle, limits))
+
+    def _entry_of(self, curve: BranchCurve) -> RangePassage | None:
+        """The place where the branch `curve`, followed to its end in the region, enters the range, or
+        None."""
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
-        self._add_folds(curve)
+        self._add_special_points(curve)
         if curve.end_hopf >= 0:
             self._ended_hopfs.add(curve.end_hopf)
-        if not curve.complete:
+        if curve.end_breaking is not None:
+            self._followed_breakings.append(curve.end_breaking)
+        if not curve.complete or not curve.points:
             # The part of the branch that is not followed begins at its last cycle.
-            self.stop_at(self.path.coordinate(curve.points[-1].parameter_value))
+            self.stop_at(self.path.coordinate(curve.special_points[-1].parameter_value))
+            return None
         passage = curve.end_passage
-        return None if passage is None or passage.index == self.index else replace(passage, index=self.index)
+        # A branch that ends at a Hopf point just within the range is followed from this point.
+        if passage is None or passage.index == self.index or passage.hopf is not None:
+            return None
+        return replace(passage, index=self.index)
 
     def entries_through(self, start: SpecialPoint) -> list[RangePassage]:
         """The places where the branch through the special point `start` in the region enters the range.
@@ -178,29 +198,42 @@ class RegionBeyond:
         initial_work = workspace.work
         try:
             with workspace.further_limit(self.remaining_work):
-                curve = follow_detached_branch(start, self.path.name, self.limits)
+                curve = branch_through(start, self.path.name, self.limits, self._is_known)
         finally:
             self.remaining_work -= workspace.work - initial_work
-        if any(lies_on_any(fold, [curve]) for fold in self.folds):
+        if curve is None:
             return []
-        if start.kind == SpecialKind.fold and not lies_on_any(start, [curve]):
-            raise Unsolvable("the branch found does not pass this point")
         if not curve.complete:
             raise Unsolvable("the branch is not followed to its ends")
         self.limits = replace(self.limits, max_cycles=self.limits.max_cycles - len(curve.points))
-        self._add_folds(curve)
+        self._add_special_points(curve)
         passages = (curve.start_passage, curve.end_passage)
-        return [replace(p, index=self.index) for p in passages if p is not None and p.index != self.index]
+        return [
+            replace(passage, index=self.index)
+            for passage in passages
+            if passage is not None and passage.index != self.index and passage.hopf is None
+        ]
+
+    def _is_known(self, curve: BranchCurve) -> bool:
+        """Whether a branch has a fold of a branch that was followed before in the region."""
+        return any(lies_on_any(fold, [curve]) for fold in self.folds)
 
     def has(self, start: SpecialPoint) -> bool:
         """Whether the special point `start` lies in the region, beyond the end of the range."""
         low, high = self.limits.coordinate_range
         return low < self.path.coordinate(start.parameter_value) < high
 
-    def _add_folds(self, curve: BranchCurve) -> None:
+    def _add_special_points(self, curve: BranchCurve) -> None:
         # The last special point of a closed branch is its first one, located again.
-        points = curve.special_points[: -1 if curve.closed else None]
-        self.folds += [point for point in points if point.kind == SpecialKind.fold and not point.message]
+        points = [
+            point for point in curve.special_points[: -1 if curve.closed else None] if not point.message
+        ]
+        self.folds += [point for point in points if point.kind == SpecialKind.fold]
+        self.breakings += [
+            item
+            for item in symmetry_breakings_in([points])
+            if not any(item.special_point.is_same_as(other.special_point) for other in self.breakings)
+        ]
 
     @contextmanager
     def _limited_work(self) -> Iterator[None]:
@@ -215,34 +248,3 @@ class RegionBeyond:
             self.stop_at(self.range_end)
         finally:
             self.remaining_work -= workspace.work - initial_work
-
-    def _add_hopf_points(self) -> None:
-        """Finds the Hopf points of the region and their normal forms."""
-        low, high = sorted(map(self.path.parameter.value, self.limits.coordinate_range))
-        try:
-            search = find_axis_crossings(self.path, low, high, certify=False)
-        except FAILURES:
-            self.stop_at(self.range_end)
-            return
-        self._stop_where_search_is_incomplete(search)
-        hopfs = []
-        for crossing in search.thresholds:
-            others = (hopf.crossing for hopf in self.range_limits.hopfs)  # the Hopf points within the range
-            if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in others):
-                continue
-            try:
-                unit = self.limits.min_coordinate_unit
-                hopfs.append(hopf_branch_start(self.path, crossing, self.limits.keeps_omega, unit))
-            except FAILURES:
-                self.stop_at(self.path.coordinate(crossing.value))
-        self.limits = replace(self.limits, hopfs=hopfs)
-
-    def _stop_where_search_is_incomplete(self, search: ThresholdSearchResult) -> None:
-        """Moves `followed_to` to the place beyond which `search` may lack Hopf points."""
-        if search.ended_early:
-            # The search begins at the smallest coordinate.
-            end = max(map(self.path.coordinate, search.searched_interval))
-            self.stop_at(end if self.index == 1 else self.range_end)
-        if not isnan(search.open_range[0]):
-            unsearched = [self.path.coordinate(value) for value in search.open_range]
-            self.stop_at(min(unsearched) if self.index == 1 else max(unsearched))

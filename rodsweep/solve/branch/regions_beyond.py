@@ -1,14 +1,19 @@
 """The two regions beyond the ends of a range in which branches are followed."""
 
 from dataclasses import replace
+from math import isnan
 
 from ...determinant.parameter_path import ParameterPath
 from ...discretization.stress.form import has_small_rotational_drag
 from ...model.crushing import uncrushed_interval
 from ...model.parameters import PARAMETERS
+from ..changes.thresholds_along_path import ThresholdSearchResult, find_axis_crossings
+from ..point_outcome import FAILURES
+from .beyond_range_settings import BEYOND_RANGE_SETTINGS
 from .branch_end_reason import BranchEndReason
 from .branch_limits import BranchLimits
-from .region_beyond import BEYOND_RANGE_SETTINGS, RegionBeyond
+from .region_beyond import RegionBeyond
+from .start.hopf_point import HopfBranchStart, hopf_branch_start
 
 
 def regions_beyond(path: ParameterPath, limits: BranchLimits, margin: float) -> list[RegionBeyond]:
@@ -37,13 +42,56 @@ def _region(path: ParameterPath, index: int, limits: BranchLimits, margin: float
         return None
     region_limits = replace(
         limits,
-        hopfs=(),
+        hopfs_beyond=limits.hopfs,
         coordinate_range=(end, far_end) if index == 1 else (far_end, end),
         end_reasons=(BranchEndReason.range_end, BranchEndReason.range_end),
         max_cycles=BEYOND_RANGE_SETTINGS.max_cycles,
         locates_special_points=False,
     )
-    return RegionBeyond(path, index, limits, region_limits)
+    hopfs, lost_at = _hopf_points(path, index, region_limits)
+    region = RegionBeyond(path, index, limits, replace(region_limits, hopfs=hopfs))
+    for coordinate in lost_at:
+        region.stop_at(coordinate)
+    return region
+
+
+def _hopf_points(
+    path: ParameterPath, index: int, limits: BranchLimits
+) -> tuple[list[HopfBranchStart], list[float]]:
+    """Returns (Hopf points in the region of `limits`, coordinates beyond which Hopf points may be missing).
+    index: as in `RegionBeyond`; the Hopf points within the range are `limits.hopfs_beyond`."""
+    low, high = sorted(map(path.parameter.value, limits.coordinate_range))
+    try:
+        search = find_axis_crossings(path, low, high, certify=False)
+    except FAILURES:
+        return [], [limits.coordinate_range[1 - index]]
+    hopfs = []
+    lost_at = _ends_of_search(path, index, limits, search)
+    for crossing in search.thresholds:
+        others = (hopf.crossing for hopf in limits.hopfs_beyond)
+        if any(abs(crossing.value - other.value) <= crossing.error + other.error for other in others):
+            continue
+        try:
+            hopfs.append(hopf_branch_start(path, crossing, limits.keeps_omega, limits.min_coordinate_unit))
+        except FAILURES:
+            lost_at.append(path.coordinate(crossing.value))
+    return hopfs, lost_at
+
+
+def _ends_of_search(
+    path: ParameterPath, index: int, limits: BranchLimits, search: ThresholdSearchResult
+) -> list[float]:
+    """Coordinates beyond which the result `search` may lack Hopf points; other arguments as in
+    `_hopf_points`."""
+    ends = []
+    if search.ended_early:
+        # The search begins at the smallest coordinate.
+        end = max(map(path.coordinate, search.searched_interval))
+        ends.append(end if index == 1 else limits.coordinate_range[1])
+    if not isnan(search.open_range[0]):
+        unsearched = [path.coordinate(value) for value in search.open_range]
+        ends.append(min(unsearched) if index == 1 else max(unsearched))
+    return ends
 
 
 def _far_end(end: float, index: int, name: str) -> float:

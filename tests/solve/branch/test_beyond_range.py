@@ -119,6 +119,87 @@ def test_a_branch_enters_the_range_from_a_fold_beyond_it_without_a_hopf_point():
     assert crossing.parameter == pytest.approx(same.parameter_value, rel=1e-7)
 
 
+@pytest.mark.long
+@pytest.mark.parametrize("distance", [1e-7, 1e-6, 1e-5])
+def test_a_range_may_begin_just_beyond_a_hopf_point(distance):
+    """The cycles grow with the square root of the distance from the Hopf point at F = 67.386984288, which a
+    mesh displaces by more than the distance of the range from it."""
+    rod = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
+    (whole,) = followed(rod, 60.0, 75.0).curves
+    hopf = whole.special_points[0]
+    (part,) = followed(rod, hopf.parameter_value + 0.01, 75.0).curves
+    amplitude = part.special_points[0].tip_y_max / 0.1  # over the square root of 0.01
+    found = followed(rod, hopf.parameter_value + distance, 75.0)
+    (curve,) = found.curves
+    start, end = curve.special_points
+    assert (kinds(curve), found.followed_range) == (["end", "end"], (0.0, 112.5))
+    assert start.parameter_value == hopf.parameter_value + distance
+    assert start.tip_y_max / distance**0.5 == pytest.approx(amplitude, rel=3e-3)
+    assert start.tip_y_max_error < 1e-2
+    assert start.period == pytest.approx(hopf.period, rel=1e-6)
+    assert [interval.stability for interval in stability_intervals(curve)] == [1]
+    assert at_force(curve, 72.0) == pytest.approx(at_force(whole, 72.0), rel=1e-3)
+    # The same from the other side: the branch from the Hopf point leaves the range at once.
+    (same,) = followed(rod, 60.0, hopf.parameter_value + 2 * distance).curves
+    assert kinds(same) == ["hopf", "end"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("distance", "start"), [(-1e-6, "end"), (1e-6, "hopf")])
+def test_a_range_may_end_just_before_a_hopf_point_or_behind_it(distance, start):
+    """The branch of the rubber rod leaves its Hopf point at F = 108.306 downwards and comes back stable."""
+    hopf = followed(RUBBER, 88.04, 110.0).crossings[0].value
+    found = followed(RUBBER, 88.04, hopf + distance)
+    first, back = found.curves
+    assert [kinds(curve) for curve in (first, back)] == [[start, "end"], ["end", "end"]]
+    assert [i.stability for curve in (first, back) for i in stability_intervals(curve)] == [0, 1]
+    assert found.followed_range == (0.0, pytest.approx(1.5 * (hopf + distance)))
+
+
+@pytest.mark.long
+def test_cycles_without_symmetry_enter_the_range_from_a_symmetry_breaking_beyond():
+    """The symmetry breaks at F = 19.9028051; the branch turns at a fold at F = 19.7130206 and has tip y =
+    1.3554 at F = 20, on the branches from F = 0 on."""
+    found = followed(Rod(F=0.0, k1=30.0, k2=0.5, gamma3=0.1), 20.0, 20.2)
+    (lopsided,) = [curve for curve in found.curves if curve.special_points[0].tip_y_max > 1.35]
+    assert kinds(lopsided) == ["end", "end"]
+    assert lopsided.special_points[0].tip_y_max == pytest.approx(1.3554, abs=1e-4)
+    assert lopsided.special_points[0].period == pytest.approx(0.103005, abs=1e-6)
+    measures = lopsided.points[0].measures
+    assert abs(measures.tip_y_min) < 0.99 * measures.tip_y_max
+    assert [interval.stability for interval in stability_intervals(lopsided)] == [1]
+    assert found.followed_range[0] == 0.0
+
+
+@pytest.mark.long
+def test_a_branch_that_enters_the_range_by_less_than_the_accuracy_is_found():
+    """The branch from the Hopf point at F = 85.569 turns back at F = 85.6055767, 8e-8 of it within the
+    range."""
+    rod = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
+    whole = next(curve for curve in followed(rod, 75.0, 86.0).curves if "fold" in kinds(curve))
+    fold = next(point for point in whole.special_points if point.kind == SpecialKind.fold)
+    widths = {}
+    for distance in (6.7e-6, 1e-3):
+        found = followed(rod, fold.parameter_value - distance, 86.0)
+        (curve,) = found.curves
+        assert kinds(curve) == ["end", "fold", "end"]
+        assert curve.special_points[1].is_same_as(fold)
+        assert not any(point.is_same_as(fold) for point in found.folds_beyond)
+        first, _, last = curve.special_points
+        widths[distance] = abs(first.tip_y_max - last.tip_y_max) / distance**0.5
+    # Near a fold the two cycles differ by the square root of the distance from it.
+    assert widths[6.7e-6] == pytest.approx(widths[1e-3], rel=0.02)
+    assert followed(rod, fold.parameter_value + 1e-6, 86.0).curves == ()
+
+
+@pytest.mark.long
+def test_a_branch_that_enters_the_range_by_less_than_any_mesh_resolves_is_a_failure():
+    rod = Rod(F=0.0, k1=150.0, k2=1e4, gamma3=1e-4)
+    found = solve_branches(rod, BranchRequest("F", 85.6055767348 - 1e-8, 86.0, ACCURACY, False, 500, 50))
+    assert found.status == BranchStatus.stopped
+    assert "no branch is followed through the fold at F = 85.6055767" in found.message
+
+
 def test_a_branch_that_is_lost_beyond_the_range_leaves_the_row_undecided():
     request = BranchRequest("F", 88.04, 137.56, ACCURACY, False, 500, 50)
     (fold,) = solve_branches(RUBBER, request).folds_beyond

@@ -12,6 +12,11 @@ import pytest
 import rodsweep as rs
 from rodsweep.determinant.parameter_plane import PlaneAxis
 from rodsweep.model.rod import Rod
+from rodsweep.solve.branch.branch_end_reason import BranchEndReason
+from rodsweep.solve.branch.branch_limits import BranchLimits
+from rodsweep.solve.branch.branch_request import BranchRequest
+from rodsweep.solve.branch.branch_search import BranchSearch
+from rodsweep.solve.branch.branches import solve_branches
 from rodsweep.solve.branch.coexistence import row_branches, special_points_of
 from rodsweep.solve.branch.special import parameter_roles, row_extremum
 from rodsweep.solve.branch.special.curve_problem import SpecialCurveProblem
@@ -20,6 +25,7 @@ from rodsweep.solve.branch.special.parameter_roles import ParameterRoles
 from rodsweep.solve.branch.special.row_crossing import RowCrossing
 from rodsweep.solve.branch.special.special_curves import CurveEndReason
 from rodsweep.solve.branch.special.special_point import RowSpecialPoint, SpecialKind
+from rodsweep.solve.branch.status import BranchStatus
 from rodsweep.solve.changes.diagram.rows import RowRequest
 from rodsweep.solve.orbit.matrix.workspace import NewtonWorkspace
 from rodsweep.solve.unsolvable import Unsolvable
@@ -127,6 +133,67 @@ def test_a_curve_begins_near_an_extremum_in_both_directions(points):
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("distance", [2e-4, 1e-4, 1e-5])
+def test_a_tiny_closed_branch_is_followed(points, distance):
+    """Its extent grows with the square root of the distance of its row from the smallest one, which a mesh
+    displaces by more than this distance."""
+    index = points.index(extrema_of(points)[0])
+    row = points[index].row_parameter + distance
+    problem = SpecialCurveProblem(SpecialKind.fold, *AXES, NewtonWorkspace(), 1.0)
+    ends = points[index - 1 : index + 1], points[index : index + 2]
+    crossings = [problem.point_on_row(*pair, AXES[1].coordinate(row)) for pair in ends]
+    starts = [RowCrossing.from_solved_point(0, SpecialKind.fold, c, 1e-4).special_point for c in crossings]
+    found = row_branches(replace(ROD, k1=row), REQUEST, 64, starts=starts)
+    (curve,) = found.curves
+    assert (found.status, curve.closed) == (BranchStatus.ok, True)
+    low, high = sorted(fold.parameter_value for fold in special_points_of(found))
+    # k1 = 133.0155 has folds at F = 78.339 and 79.679, from the curve and from its branch.
+    assert (high - low) / distance**0.5 == pytest.approx(42.1, rel=5e-3)
+    assert (low + high) / 2 == pytest.approx(SMALLEST[0], abs=3 * distance**0.5 * 0.1)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("row", "kinds", "heights"),
+    [
+        (134.165, ["hopf", "fold", "hopf"], ()),
+        (134.1725, ["hopf", "fold", "hopf"], ()),
+        (134.1735, ["hopf", "end"], (0.18574, 0.14259)),
+        (134.18, ["hopf", "end"], (0.18587, 0.14249)),
+    ],
+)
+def test_no_step_leads_from_one_branch_to_another_that_nearly_touches_it(row, kinds, heights):
+    """At k1 = 134.172932 two branches touch at F = 118.458; the larger cycles are stable."""
+    rod = replace(ROD, k1=row)
+    found = solve_branches(rod, BranchRequest("F", 50.0, 130.0, 1e-4, False, 500, 64))
+    assert (found.status, found.message) == (BranchStatus.ok, "")
+    assert all([point.kind.name for point in curve.special_points] == kinds for curve in found.curves)
+    if heights:
+        ends = [curve.special_points[-1].tip_y_max for curve in found.curves]
+        assert ends == pytest.approx(heights, abs=1e-4)
+        assert [curve.points[-1].unstable_count for curve in found.curves] == [0, 1]
+        return
+    (fold,) = [point for point in special_points_of(found) if point.kind == SpecialKind.fold]
+    # The same fold on the branch along k1.
+    along = BranchRequest("k1", 133.9, 134.3, 1e-6, False, 500, 64)
+    across = solve_branches(replace(rod, F=fold.parameter_value), along, starts=[fold])
+    (same,) = [point for point in special_points_of(across) if point.kind == SpecialKind.fold]
+    assert same.parameter_value == pytest.approx(row, abs=1e-7)
+
+
+@pytest.mark.long
+def test_two_branches_with_one_cycle_at_the_end_of_the_range_are_a_failure():
+    found = solve_branches(replace(ROD, k1=134.18), BranchRequest("F", 120.0, 130.0, 1e-4, False, 500, 64))
+    first, second = found.curves
+    limits = BranchLimits([], (120.0, 130.0), (BranchEndReason.range_end,) * 2, 1e-4, 500, NewtonWorkspace())
+    for curves, count in (([first, second], 0), ([first, second, first], 2)):
+        search = BranchSearch(limits, "F", curves=curves)
+        search._add_failures_at_range_ends()
+        assert len(search.failures) == count
+    assert search.failures[-1] == "branches 1 and 3 have the same cycle at F = 130: two branches nearly touch"
+
+
+@pytest.mark.long
 def test_a_row_near_an_extremum_is_crossed_twice(fold):
     stored = RowSpecialPoint(
         row_index=0,
@@ -158,6 +225,8 @@ def test_an_extremum_that_is_not_located_is_left_out(fold, points, monkeypatch):
     extremum = extrema_of(points)[0]
     kept = [point for point in points if point is not extremum]
     assert [point.parameter for point in others] == [point.parameter for point in kept]
+    (marked,) = [i for i, point in enumerate(others) if np.isnan(point.row_extremum_error)]
+    assert others[marked - 1].parameter > extremum.parameter > others[marked].parameter
 
 
 @pytest.mark.long

@@ -513,8 +513,22 @@ def test_a_closed_motion_without_a_cycle_near_ends_and_says_so(monkeypatch):
     assert "but Newton's method finds no cycle near this motion on finer meshes" in c.message
 
 
-def test_a_motion_that_is_slow_near_a_fold_is_said_to_be():
-    """The branch of these cycles folds at F = 85.60558; within 800 returns the motion reaches its cycle."""
+def test_a_slow_motion_near_a_fold_reaches_the_cycle_by_its_amplitude_equation():
+    """The branch of these cycles folds at F = 85.60558. The motion needs 800 returns from above, and
+    thousands from below; a cycle with a multiplier of 0.99789 is its limit."""
+    rod = Rod(F=85.6, k1=150.0, k2=1e4, gamma3=1e-4)
+    for amplitude in (0.06, 0.1):
+        request = CycleRequest(
+            amplitude=amplitude, harmonics=8, samples=0, shapes=0, nodes=0, most_periods=400, accuracy=1e-5
+        )
+        found = solve_cycle(rod, request)
+        assert found.status == CycleStatus.cycle
+        assert found.measures.tip_y_max == pytest.approx(0.0426912583, rel=1e-5)
+
+
+def test_a_motion_that_is_slow_near_a_fold_is_said_to_be(monkeypatch):
+    """Without the amplitude equation the motion above is not settled within 320 returns."""
+    monkeypatch.setattr(transient_integration.AmplitudeEquation, "factor_to_slow_limit", lambda *_: None)
     rod = Rod(F=85.6, k1=150.0, k2=1e4, gamma3=1e-4)
     request = CycleRequest(
         amplitude=0.06, harmonics=8, samples=0, shapes=0, nodes=0, most_periods=320, accuracy=1e-5

@@ -14,10 +14,16 @@ from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import least_stretch_of_orbit
 from ...orbit.newton import relative_change
 from ...orbit.orbit_mesh import mesh_of
+from ...unsolvable import Unsolvable, WorkLimitReached
 from ..bordered.matrix import BorderedMatrix
 from .augmented.fold_and_torus_functions import pair_nearest_unit_circle
 from .curve_ends import END_BY_MARGIN, END_SETTINGS, ROW_EDGE_MARGINS
-from .curve_prediction import length_before_crushing, predicted_orbit, weighted_sum
+from .curve_prediction import (
+    length_before_crushing,
+    orbit_with_parameters,
+    predicted_orbit,
+    weighted_sum,
+)
 from .curve_start import first_point_of_curve
 from .cycle_family import CycleFamily
 from .parameter_roles import ParameterRoles
@@ -207,7 +213,12 @@ class SpecialCurveProblem:
         fraction = (row - inner.row_coordinate) / length if length else 0.0
         if self.roles.need_exchange_between(inner, outer):
             near_point = self._point_near_row(inner, outer, row)
-            return self.family(near_point).corrected_point(near_point.orbit, row, ALONG_BRANCH)
+            try:
+                return self.family(near_point).corrected_point(near_point.orbit, row, ALONG_BRANCH)
+            except WorkLimitReached:
+                raise
+            except Unsolvable:
+                return near_point  # the matrix of the correction is nearly singular beside an extremum
         start, _ = weighted_sum(self.roles, (inner, outer), (1 - fraction, fraction), mesh_of(outer.orbit))
         return self.family(outer).corrected_point(start, row, ALONG_BRANCH, outer.normal_derivatives)
 
@@ -220,7 +231,9 @@ class SpecialCurveProblem:
             return self.roles.in_plane(point).row_coordinate - row
 
         point = self.zero_between(ends[0], ends[1], distance, (distance(ends[0]), distance(ends[1])))
-        return self.roles.in_plane(point)
+        value = self.row_axis.value(row)
+        orbit = orbit_with_parameters(point.orbit, {self.row_axis.name: value})
+        return replace(self.roles.in_plane(point), orbit=orbit, row_coordinate=row, row_parameter=value)
 
     def _reason_for_loss(self, last: SolvedPoint) -> CurveEndReason:
         """Reason why a curve was lost beyond its last point: `resonance`, or `not_followed` if unknown."""

@@ -11,6 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ....arrays import Array
+from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle, arc_length_between
 from .locating import kind_at_minus_one, special_point_between
@@ -43,14 +45,24 @@ def special_kinds_between(start: BranchCycle, end: BranchCycle) -> tuple[list[Sp
     return kinds, len(kinds) <= 1 and abs(change - len(kinds)) <= tolerance
 
 
+def fold_and_breaking_between(start: BranchCycle, end: BranchCycle) -> list[SpecialKind]:
+    """Kinds of the special points between two cycles at which further branches may begin or a branch turns
+    back: fold, and symmetry breaking."""
+    kinds = [SpecialKind.fold] if start.parameter_rate * end.parameter_rate < 0 else []
+    if start.orbit.is_symmetric and (_count_beyond_minus_one(start) - _count_beyond_minus_one(end)) % 2:
+        kinds.append(SpecialKind.symmetry_breaking)
+    return kinds
+
+
 def _count_beyond_minus_one(point: BranchCycle) -> int:
     """Number of real multipliers of a cycle, over the solved time interval, that are less than -1."""
+    return int((_real_multipliers(point) < -1).sum())
+
+
+def _real_multipliers(point: BranchCycle) -> Array:
+    """The real multipliers of a cycle over the solved time interval, (multipliers,)."""
     h = point.multipliers_over_solved_part
-    return int(
-        (
-            (h.real < -1) & (np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h))
-        ).sum()
-    )
+    return h.real[np.abs(h.imag) <= SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)]
 
 
 def _has_multiplier_near_one(point: BranchCycle) -> bool:
@@ -64,6 +76,32 @@ def _has_multiplier_near_one(point: BranchCycle) -> bool:
 def _has_complex_pair(point: BranchCycle) -> bool:
     h = point.multipliers_over_solved_part
     return bool((np.abs(h.imag) > SPECIAL_POINT_SETTINGS.real_multiplier_tolerance * np.abs(h)).any())
+
+
+def lie_on_one_branch(start: BranchCycle, end: BranchCycle) -> bool:
+    """Whether two successive cycles can lie on one smooth branch; False if the step leads to another branch,
+    which nearly touches the first one.
+
+    Along a branch the derivative of the parameter, divided by the product of 1 - m over the nontrivial
+    multipliers m, is finite and not 0: both vanish at a fold. Its sign changes only at a cycle where two
+    branches meet. True if the sign is uncertain, because a multiplier is 1 within its error.
+    """
+    if any(map(_may_be_on_either_side_of_one, (start, end))):
+        return True
+    has_fold = start.parameter_rate * end.parameter_rate < 0
+    change = _count_beyond_one(start) - _count_beyond_one(end)
+    return change % 2 == int(has_fold)
+
+
+def _may_be_on_either_side_of_one(point: BranchCycle) -> bool:
+    """Whether a nontrivial multiplier of the cycle cannot be told from the trivial one on this mesh."""
+    error = REFINEMENT_SETTINGS.multiplier_error_factor * point.cycle.trivial_multiplier_error
+    return bool((np.abs(point.multipliers_over_solved_part - 1) <= error).any())
+
+
+def _count_beyond_one(point: BranchCycle) -> int:
+    """Number of real multipliers of a cycle, over the solved time interval, that are larger than 1."""
+    return int((_real_multipliers(point) > 1).sum())
 
 
 def special_points_between(

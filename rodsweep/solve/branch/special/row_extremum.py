@@ -3,7 +3,7 @@ or two branches exchange their parts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import sqrt
+from math import nan, sqrt
 from typing import TYPE_CHECKING
 
 from ...point_outcome import FAILURES
@@ -37,7 +37,7 @@ class _SlopedPoint:
 def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """The points of a curve, in order, with the parameter along a row as the branch parameter, and further
     points at the extrema of the row parameter. points: points with errors and any roles of the parameters.
-    An extremum that cannot be located is omitted."""
+    An extremum that cannot be located is omitted; the point after it has a `row_extremum_error` of NaN."""
     roles = problem.roles
     sloped = {}
     for i, point in enumerate(points):
@@ -45,16 +45,18 @@ def with_row_extrema(problem: "SpecialCurveProblem", points: Sequence[SolvedPoin
         if any(map(roles.are_exchanged_at, points[max(i - 1, 0) : i + 2])):
             exchanged = roles.with_roles(point, exchanged=True)
             sloped[i] = _SlopedPoint(exchanged, roles.axis_slope_at(exchanged, problem.workspace))
-    result = []
+    result: list[SolvedPoint] = []
+    extremum_error = 0.0
     for i, point in enumerate(points):
         has_plane_error = not roles.are_exchanged_at(point)
         error = point.error if has_plane_error else _error_along_row(problem, sloped, i)
-        result.append(replace(roles.in_plane(point), error=error))
+        result.append(replace(roles.in_plane(point), error=error, row_extremum_error=extremum_error))
+        extremum_error = 0.0
         if i in sloped and i + 1 in sloped and sloped[i].slope * sloped[i + 1].slope < 0:
             try:
                 result.append(_located_extremum(problem, sloped[i], sloped[i + 1]))
             except FAILURES:
-                continue
+                extremum_error = nan
     return result
 
 

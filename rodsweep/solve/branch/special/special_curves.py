@@ -95,7 +95,8 @@ class CurvePoint:
 
     parameter_value: value of the parameter along a row, with the absolute error `error`. row_value: value of
     the row parameter. row_coordinate: from 0 to 1. period: in tau2. tip_y_max: largest tip y, in L.
-    row_extremum_error: absolute error of `row_value` where it is extremal along the curve, 0 elsewhere.
+    row_extremum_error: absolute error of `row_value` where it is extremal along the curve, NaN at the point
+    after an extremum that could not be located, 0 elsewhere.
     """
 
     parameter_value: float

@@ -96,6 +96,15 @@ class HopfBranchStart:
         change = -c.real * amplitude**2 / self.growth_slope.real
         return change, self.crossing.frequency + self.growth_slope.imag * change + c.imag * amplitude**2
 
+    def period_and_amplitude_at(self, coordinate: float) -> tuple[float, float]:
+        """(period in tau2, largest tip y in L), by the normal form, of the cycle at the parameter coordinate
+        `coordinate` on the side of the Hopf point where the cycles exist; amplitude 0 on the other side."""
+        c = self.coefficients.landau
+        change = coordinate - self.parameter_coordinate
+        squared = max(-self.growth_slope.real * change / c.real, 0.0)
+        frequency = self.crossing.frequency + self.growth_slope.imag * change + c.imag * squared
+        return 2 * np.pi / frequency, squared**0.5
+
 
 def hopf_branch_start(
     path: ParameterPath, crossing: Threshold, keeps_omega: bool = False, min_coordinate_unit: float = 0.0

@@ -5,9 +5,11 @@ a cycle has the amplitude a* = sqrt(g0/c). The coefficient c is measured from a 
 a^2 exceeds the error of the integrator. For a limiting rod, such as a rod with k1 = inf, a nearby rod is
 integrated; the measured growth is corrected by the difference of the two linear growth rates. A slowly
 growing motion is scaled to the amplitude a*, or scaled up step by step if its growth increases with the
-amplitude (c < 0). A slowly decaying motion is scaled down until the motion decays at the linear rate.
+amplitude (c < 0). A slowly decaying motion is scaled down until the motion decays at the linear rate. For a
+slow motion that approaches a cycle near a fold, the term -d a^4 is added.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isnan, nan
 
@@ -34,6 +36,8 @@ class AmplitudeEquationSettings:
     inverse. The factor is close enough to 1 not to miss a cycle."""
     max_jump_factor: float = 4.0
     """Largest factor by which a state is scaled in one jump; the smallest factor is the inverse."""
+    min_returns_for_limit: int = 10
+    """Smallest number of returns for the coefficients of |z|^2 and |z|^4 in the growth of a slow motion."""
     linear_tolerance: float = 0.05
     """A decaying motion ends at the straight rod if its decay rate and period differ by less than this
     fraction from the decay rate and the period of the leading mode."""
@@ -149,6 +153,33 @@ class AmplitudeEquation:
         else:
             return None
         return factor if abs(factor - 1) >= AMPLITUDE_EQUATION_SETTINGS.min_factor_change else None
+
+    def factor_to_slow_limit(self, returns: Sequence[tuple[float, Array]]) -> float | None:
+        """Factor from the last state to the stable cycle that a slow motion approaches, by the amplitude
+        equation g = g0 - c |z|^2 - d |z|^4 with both coefficients from all returns; None if the motion is
+        not slow or has no such limit. Near a fold of a branch the motion takes thousands of returns.
+
+        returns: time and bending moments, (nodes,), of each of the last returns.
+        """
+        if len(returns) < AMPLITUDE_EQUATION_SETTINGS.min_returns_for_limit:
+            return None
+        times, states = (np.array(column) for column in zip(*returns, strict=True))
+        if not self.is_slow_mode(times, states):
+            return None
+        sizes = np.linalg.norm(states, axis=1)
+        linear = self.linear_growth_rate * np.diff(times)
+        growth = np.diff(np.log(sizes)) + self.growth_excess * np.diff(times)
+        squares = sizes[:-1] * sizes[1:]
+        slope, offset = np.polyfit(squares, (growth - linear) / squares, 1)
+        roots = np.roots([slope, offset, linear[-1]])
+        limits = [
+            float(root.real)
+            for root in roots
+            if root.imag == 0 and root.real > 0 and offset + 2 * slope * root.real < 0
+        ]
+        factors = [float(np.sqrt(limit) / sizes[-1]) for limit in limits]
+        most = AMPLITUDE_EQUATION_SETTINGS.max_jump_factor
+        return next((factor for factor in factors if 1 / most < factor < most), None)
 
     def _has_period_of_mode(self, times: Array) -> bool:
         """Whether the last return took as long as a period of the leading mode, within `linear_tolerance`.

@@ -25,3 +25,10 @@ def no_period_text(return_count: int, work: str, last_returns: Sequence[tuple[fl
         f"{text}, but the last returns differ by a relative {distance:.1e} only: the motion changes slowly, "
         "as near a fold of a branch of cycles, which the task `branch` follows"
     )
+
+
+def decayed_text(return_count: int, is_unstable: bool) -> str:
+    """Message on a motion whose deflection has decayed without an end at the straight rod. return_count:
+    number of returns of the tip. is_unstable: whether the straight rod is unstable."""
+    reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
+    return f"the deflection has decayed after {return_count} returns, but {reason}"

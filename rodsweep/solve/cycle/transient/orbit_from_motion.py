@@ -85,3 +85,10 @@ def collocation_states(system: ExplicitSystem, form: StressForm, z: Array) -> Ar
             write_balance(state, velocity, G, system.nodal_rod, system.mesh.matrices)
             V[:, k] = velocity
     return form.layout.state(S, V)
+
+
+def scaled_state(system: ExplicitSystem, z: Array, factor: float) -> Array:
+    """The state z, (unknowns,), with the deflection multiplied by `factor`."""
+    scaled = factor * z
+    system.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
+    return scaled

@@ -24,11 +24,11 @@ from ..accuracy.refined_cycle import RefinedCycle
 from ..accuracy.refinement import refined_cycle
 from ..cycle_outcome import CycleRequest
 from ..status import CycleStatus
-from ..straight_rod import StraightRodStability, straight_rod_stability
+from ..straight_rod import StraightRodStability, integrated_growth_rate
 from .amplitude_equation import AmplitudeEquation
 from .motion_mesh import integrable_rod
-from .no_period import no_period_text
-from .orbit_from_motion import orbit_from_motion
+from .no_period import decayed_text, no_period_text
+from .orbit_from_motion import orbit_from_motion, scaled_state
 from .returns import RETURN_SETTINGS, repetition, return_limit, run_failure, section_crossings, tip_angle_row
 from .schemes import schemes_for_growth
 from .shape_trace import ShapeTrace
@@ -71,9 +71,8 @@ class TransientIntegration:
             rate * period, request.transient > 0
         )
         self.max_steps = steps * max(request.most_periods, TRANSIENT_SETTINGS.min_returns_for_max_steps)
-        self.amplitude_equation = AmplitudeEquation(
-            period, rate, rate - self._system_growth_rate(rate), noise
-        )
+        excess = rate - integrated_growth_rate(form.rod, self.system.rod, straight, rate)
+        self.amplitude_equation = AmplitudeEquation(period, rate, excess, noise)
         self.step = period / TRANSIENT_SETTINGS.first_steps_per_period
         """First time step of the next run, in tau2."""
         self.past_returns: deque[tuple[float, Array]] = deque(maxlen=TRANSIENT_SETTINGS.max_stored_returns)
@@ -104,7 +103,7 @@ class TransientIntegration:
             z = run.states[-1]
             times, states = section_crossings(self.system, run)
             self._record_returns(run, times, states)
-            # An unstable rod is excluded, because rounding errors hide the growth of so small a motion.
+            # Rounding errors hide the growth of so small a motion of an unstable rod.
             if self.straight.stable is not False and np.linalg.norm(z) < RETURN_SETTINGS.straight_norm:
                 return self._result(CycleStatus.straight, "the motion has decayed to rounding error")
             if self.straight.stable is False and not self._bends_visibly(z):
@@ -123,17 +122,29 @@ class TransientIntegration:
             jumps = not is_first and self.jump_count < TRANSIENT_SETTINGS.max_jumps
             factor = self.amplitude_equation.factor_to_cycle(times, states) if jumps else None
             if factor is not None:
-                if self.record and not self.record.is_full:
-                    continue  # a motion with a stored path has no jumps
-                scaled = factor * z
-                self.system.layout.stress_field(scaled, "n1")[...] *= factor  # quadratic in the deflection
-                z = self._state_after_jump(scaled)
+                if not self.record or self.record.is_full:  # a motion with a stored path has no jumps
+                    z = self._state_after_jump(scaled_state(self.system, z, factor))
                 continue
             decays = self.amplitude_equation.decays_faster(times, states)
             cycle = None if decays else self._cycle_from_returns(run)
             if cycle is not None:
                 return self._result(*cycle.verdict(self.accuracy), cycle)
+        if (cycle := self._cycle_at_slow_limit(z)) is not None:
+            return self._result(*cycle.verdict(self.accuracy), cycle)
         return self._result(CycleStatus.not_settled, self._not_settled_text(z))
+
+    def _cycle_at_slow_limit(self, z: Array) -> RefinedCycle | None:
+        """The stable cycle that a slow motion, now at the state z, (unknowns,), approaches; None if none."""
+        factor = self.amplitude_equation.factor_to_slow_limit(self.past_returns)
+        if factor is None or self.record or self.unsolved_message:
+            return None
+        start = scaled_state(self.system, z, factor)
+        start = relax_fast_components(self.system, start, self.leading_mode.period)
+        run = self._run_of_returns(start, False)
+        times, _ = section_crossings(self.system, run)
+        if len(times) < 2 or run_failure(self.system, run, self.returns):
+            return None
+        return self._cycle_near(run, float(times[-1] - times[-2]), 1)
 
     def _record_returns(self, run: Trajectory, times: Array, states: Array) -> None:
         """Counts the returns and time steps of a run, and records times and bending moments of the returns.
@@ -158,21 +169,12 @@ class TransientIntegration:
         if self._bends_visibly(z):
             limit_text = f", at the maximum of {self.steps} time steps" * (self.steps >= self.max_steps)
             return no_period_text(self.returns, limit_text, self.past_returns)
-        is_unstable = self.straight.stable is False
-        reason = "the straight rod is unstable" if is_unstable else "the stretch of the rod has not relaxed"
-        return f"the deflection has decayed after {self.returns} returns, but {reason}"
+        return decayed_text(self.returns, self.straight.stable is False)
 
     def _bends_visibly(self, z: Array) -> bool:
         """Whether the bending and shear components of the state z, (unknowns,), exceed rounding errors."""
         size = np.linalg.norm(self.system.layout.transverse_unknowns(z))
         return bool(size >= RETURN_SETTINGS.straight_norm)
-
-    def _system_growth_rate(self, rate: float) -> float:
-        """Linear growth rate of the integrated rod, in 1/tau2, from its exact spectrum; `rate`, of the rod in
-        `form`, if both are equal or the spectrum is unknown. A stiff matrix would give errors of 1e-4."""
-        if self.system.rod == self.form.rod:
-            return rate
-        return straight_rod_stability(self.system.rod, np.array([self.straight.w])).growth_rate(rate)
 
     def _state_after_fast_decay(self, z: Array) -> Array:
         """The state, (unknowns,), after the decay of the fast components of the start z, (unknowns,). A
