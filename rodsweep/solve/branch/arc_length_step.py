@@ -17,17 +17,17 @@ from ..cycle.accuracy.refined_cycle import RefinedCycle
 from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
-    newton_tolerance,
 )
 from ..cycle.cycles_along_parameter import interpolated_change
 from ..orbit.matrix.workspace import NewtonWorkspace
 from ..orbit.newton import ConvergedOrbit, largest_multiplier_difference, relative_change
 from ..orbit.orbit import Orbit
-from ..orbit.orbit_mesh import mesh_of
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of
 from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.matrix import BorderedMatrix, bordered_matrix_of
+from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
-from .branch_errors import BranchCalibration, BranchDerivatives
+from .branch_errors import BranchCalibration, BranchDerivatives, branch_newton_tolerance
+from .branch_tangent import branch_derivatives, tangent_at
 
 ARC_STEP_CONTROL = StepControl(
     first_length=0.02,
@@ -69,6 +69,8 @@ class BranchCycle:
     arc_since_measured: float = 0.0
     """Arc length of the branch since the last cycle with measured errors; 0 if `steps_since_measured` is
     0."""
+    next_mesh: OrbitMesh | None = None
+    """The mesh of the next cycle; None for the mesh of this cycle."""
     previous: PreviousCycle | None = None
     """The previous cycle of the branch; None for the first cycle."""
 
@@ -112,7 +114,7 @@ class BranchCycle:
         """Nontrivial multipliers over the solved time interval, (rank - 1,). Asymmetric cycle: eigenvalues of
         the map over the period. Symmetric cycle: eigenvalues of the map over half a period, composed with the
         reflection."""
-        values = bordered_matrix_of(self.cycle.converged_orbit).multipliers_over_solved_part
+        values = self.cycle.converged_orbit.matrix.multipliers_over_solved_part
         return np.delete(values, int(np.argmin(np.abs(values - 1))))
 
     def arc_length_condition(self, length: float) -> BorderCondition:
@@ -126,6 +128,11 @@ class BranchCycle:
         if self.previous is not None:
             change = length ** np.arange(1, 4) @ self._cubic_coefficients(self.previous)
         return moved_orbit(self.orbit, self.scale.parameter_name, change)
+
+    def predicted_on_next_mesh(self, length: float) -> Orbit:
+        """The orbit of `predicted_orbit` on the mesh of the next cycle; raises Unsolvable."""
+        predicted = self.predicted_orbit(length)
+        return self.next_mesh.interpolated_orbit(predicted) if self.next_mesh else predicted
 
     def _cubic_coefficients(self, previous: PreviousCycle) -> Array:
         """Coefficients, (3, N + 1), of the predicting cubic: factors of the arc length, of its square and of
@@ -151,27 +158,6 @@ class BranchCycle:
         return np.array([self.tangent, 3 * A - 2 * B, (A - B) * (2 / step)])
 
 
-def branch_derivatives(solved: ConvergedOrbit, scale: ArcLengthScale, tangent: Array) -> BranchDerivatives:
-    """Scale and unit tangent of a branch at the cycle `solved`. scale: scale at another cycle of the branch.
-    tangent: tangent of any length, (N + 1,). In the result `parameter_second_derivative` and
-    `multiplier_rate` are 0, to be set by the caller."""
-    own_scale = ArcLengthScale.at_orbit(
-        solved.orbit, scale.parameter_name, scale.min_deflection_unit, scale.min_coordinate_unit
-    )
-    derivative = own_scale.directional_derivative(solved.orbit, tangent)
-    unit = float(np.linalg.norm(derivative))
-    return BranchDerivatives(own_scale, tangent / unit, derivative / unit, 0.0, 0.0)
-
-
-def tangent_at(orbit: Orbit, scale: ArcLengthScale, side: Array, matrix: BorderedMatrix) -> Array:
-    """Tangent of the branch at an orbit, (N + 1,), from the orbit's bordered matrix. scale: units of the
-    components. side: direction in components (deflection, log period, parameter), (3,); the tangent makes an
-    acute angle with `side`."""
-    tangent = matrix.branch_tangent(side)
-    # A null vector has no sign; the branch must not turn back.
-    return tangent if scale.directional_derivative(orbit, tangent) @ side > 0 else -tangent
-
-
 def next_cycle(start: BranchCycle, accuracy: float) -> BranchCycle:
     """The next cycle of a branch after `start`, to a relative accuracy; raises Unsolvable if the shortest
     step fails."""
@@ -192,18 +178,19 @@ def cycle_at_length(start: BranchCycle, length: float, accuracy: float) -> Branc
 
 def _step_of_length(start: BranchCycle, accuracy: float, length: float) -> StepResult[BranchCycle]:
     """The cycle at the arc length `length` from `start`, to a relative accuracy, with the prediction error
-    and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch an
-    allowed prediction error is replaced by `target_error`."""
+    and the cosine of the angle between the tangents; raises Unsolvable. On the first step of a branch, and on
+    the first step on another mesh, an allowed prediction error is replaced by `target_error`."""
     condition = start.arc_length_condition(length)
-    predicted = start.predicted_orbit(length)
-    tolerance = newton_tolerance(accuracy)
+    predicted = start.predicted_on_next_mesh(length)
+    tolerance = branch_newton_tolerance(accuracy)
     solved = condition.solve_cycle(predicted, tolerance, start.workspace, allowed_matrix_distance(accuracy))
     prediction_error = relative_change(predicted, solved.orbit.values - predicted.values)
-    if start.previous is None and prediction_error <= ARC_STEP_CONTROL.max_error:
-        prediction_error = (
-            ARC_STEP_CONTROL.target_error
-        )  # the error of the tangent predictor does not predict the error of the cubic
-    tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved))
+    is_unknown = start.previous is None or start.next_mesh is not None
+    if is_unknown and prediction_error <= ARC_STEP_CONTROL.max_error:
+        # The error of the tangent predictor does not predict the error of the cubic, and the error on another
+        # mesh contains the difference between the meshes.
+        prediction_error = ARC_STEP_CONTROL.target_error
+    tangent = tangent_at(solved.orbit, start.scale, start.unit_tangent, linearisation_of(solved))
     cosine = float(
         start.scale.directional_derivative(solved.orbit, tangent) @ start.unit_tangent
     )  # both have unit length

@@ -18,7 +18,12 @@ from ..orbit.orbit_mesh import mesh_of
 from ..orbit.path_differences import path_differences
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.scale import ALONG_PARAMETER
-from .branch_errors import BRANCH_ERROR_SETTINGS, BranchCalibration, BranchDerivatives
+from .branch_errors import (
+    BRANCH_ERROR_SETTINGS,
+    BranchCalibration,
+    BranchDerivatives,
+    branch_newton_tolerance,
+)
 
 
 def measured_branch_calibration(
@@ -43,7 +48,7 @@ def measured_branch_calibration(
         fine_orbit = condition.solve_on_mesh(
             target,
             solved,
-            BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy,
+            branch_newton_tolerance(accuracy),
             FINER_MESH_SETTINGS.max_matrix_distance,
         )
         part[:] = _differences_between_meshes(rough, multipliers, fine_orbit, derivatives)

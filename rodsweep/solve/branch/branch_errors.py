@@ -20,6 +20,7 @@ from ..cycle.accuracy.calibration import Calibration
 from ..cycle.accuracy.calibration_settings import CALIBRATION_SETTINGS
 from ..cycle.accuracy.cheapest_mesh import cheapest_mesh
 from ..cycle.accuracy.cycle_errors import CYCLE_ERROR_SETTINGS, CycleErrors
+from ..cycle.accuracy.refinement import newton_tolerance
 from ..orbit.orbit_mesh import OrbitMesh
 from ..orbit.path_differences import EXTREMUM_INDEX, PATH_INDEX, PERIOD_INDEX, Y_INDEX
 from .bordered.scale import ArcLengthScale
@@ -42,9 +43,13 @@ class BranchErrorSettings:
     """Safety factor on interpolated errors."""
     min_error: float = 1e-16
     """Lower limit of an error before its logarithm is interpolated; smaller errors are rounding errors."""
-    newton_tolerance_ratio: float = 0.01
-    """Tolerance of Newton's method on the two finer meshes of an error measurement, divided by the
-    accuracy."""
+    newton_tolerance_ratio: float = 1e-4
+    """Tolerance of Newton's method for a cycle of a branch, also on the two finer meshes of an error
+    measurement, divided by the accuracy. Near a fold or a Hopf point this tolerance over the derivative of
+    the parameter is an error at equal parameter, and with 0.01 measured errors were mostly of this kind."""
+    min_newton_tolerance: float = 1e-11
+    """Lower limit of this tolerance, unless a single cycle of the same accuracy has a smaller one: cycles of
+    strongly unstable branches have larger rounding errors."""
     min_parameter_rate_near_zero: float = 0.1
     """Close to the parameter coordinate 0, cycles on finer meshes are solved at an equal parameter, not at an
     equal arc length, if the modulus of the derivative of the scaled parameter coordinate with respect to arc
@@ -54,6 +59,14 @@ class BranchErrorSettings:
 
 
 BRANCH_ERROR_SETTINGS = BranchErrorSettings()
+
+
+def branch_newton_tolerance(accuracy: float) -> float:
+    """Relative tolerance of Newton's method for a cycle of a branch of a given relative accuracy."""
+    tolerance = max(
+        BRANCH_ERROR_SETTINGS.newton_tolerance_ratio * accuracy, BRANCH_ERROR_SETTINGS.min_newton_tolerance
+    )
+    return min(tolerance, newton_tolerance(accuracy))
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,6 +166,14 @@ class BranchCalibration:
         for part, parameter_error in zip(parts, self.parameter_errors, strict=True):
             part[numbers] = parameter_error
         return replace(self.at_equal_parameter, space_errors=parts[0], time_errors=parts[1])
+
+    def grown(self, growth: Array) -> "BranchCalibration":
+        """The calibration with all errors in space and in time multiplied by `growth`, (2,)."""
+        own = self.at_equal_parameter
+        calibration = replace(
+            own, space_errors=growth[0] * own.space_errors, time_errors=growth[1] * own.time_errors
+        )
+        return replace(self, at_equal_parameter=calibration, parameter_errors=growth * self.parameter_errors)
 
     def interpolate(
         self, other: "BranchCalibration", fraction: float, sensitivity: float

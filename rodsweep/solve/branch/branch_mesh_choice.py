@@ -4,53 +4,26 @@ Errors are measured at about every third cycle (`branch_errors`) and interpolate
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from ...arrays import Array
 from ..cycle.accuracy.refinement import (
     allowed_matrix_distance,
     cycle_with_calibrated_errors,
-    newton_tolerance,
 )
 from ..orbit.mesh_choice import finer_mesh, regraded
 from ..orbit.newton import ConvergedOrbit, multipliers_and_trivial_error
 from ..orbit.orbit_mesh import OrbitMesh, mesh_limit_error, mesh_of
 from ..unsolvable import MeshLimitReached
-from .arc_length_step import ARC_STEP_CONTROL, BranchCycle, branch_derivatives, tangent_at
+from .arc_length_step import ARC_STEP_CONTROL, BranchCycle
 from .bordered.condition import BorderCondition
-from .bordered.matrix import bordered_matrix_of
+from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ArcLengthScale
 from .branch_error_measurement import measured_branch_calibration, relative_tip_y_sensitivity
-from .branch_errors import BranchCalibration
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BranchMeshSettings:
-    """Settings for the choice of meshes on a branch, and of the cycles whose errors are measured."""
-
-    max_meshes: int = 8
-    """Maximum number of meshes tried for one cycle."""
-    max_cheaper_cost_ratio: float = 0.5
-    """A sufficient mesh is replaced by a cheaper mesh only if the ratio of the new cost to the current cost
-    is at most this number."""
-    planned_error_ratio: float = 0.5
-    """Error for which a mesh is chosen, divided by the accuracy; below 1, so that the mesh suffices for the
-    next cycles too."""
-    min_parameter_rate_ratio: float = 0.7
-    """Errors are interpolated at a cycle only if |d(parameter)/ds|, s: arc length, is at least this number
-    times the smaller of the two values at the measured cycles. Near a fold the derivative tends to 0, and
-    errors measured away from the fold are no bound."""
-    max_tail_growth: float = 2.0
-    """Errors are measured, not interpolated, if the coefficient tails predict that the errors have grown by
-    more than this factor since each of the two measured cycles."""
-    max_steps_between_measurements: int = 3
-    """Maximum number of steps between two cycles with measured errors."""
-    max_growth_since_measurement: float = 4.0
-    """Errors are measured again if the coefficient tails predict that the errors have grown by more than this
-    factor since the last measurement."""
-
-
-BRANCH_MESH_SETTINGS = BranchMeshSettings()
+from .branch_errors import BranchCalibration, branch_newton_tolerance
+from .branch_mesh_ahead import expected_error_growth, mesh_ahead
+from .branch_mesh_settings import BRANCH_MESH_SETTINGS
+from .branch_tangent import branch_derivatives, tangent_at
 
 
 def first_measured_cycle(
@@ -64,7 +37,7 @@ def first_measured_cycle(
     multipliers are quadratic in this arc length.
     """
     derivatives = branch_derivatives(
-        solved, scale, tangent_at(solved.orbit, scale, side, bordered_matrix_of(solved))
+        solved, scale, tangent_at(solved.orbit, scale, side, linearisation_of(solved))
     )
     multipliers = multipliers_and_trivial_error(solved)[0]
     trivial_error = abs(multipliers[0] - 1) if len(multipliers) else 0.0
@@ -124,27 +97,19 @@ def with_calibration(point: BranchCycle, calibration: BranchCalibration, accurac
 def solve_on_sufficient_mesh(
     point: BranchCycle, accuracy: float, condition: BorderCondition | None = None
 ) -> BranchCycle:
-    """The cycle `point` with measured errors within the relative accuracy, on a mesh chosen for this
-    accuracy; raises Unsolvable if no allowed mesh suffices, or if no cycle is found on a mesh. A sufficient
-    mesh is replaced only by a much cheaper mesh. condition: equation that defines the same cycle on every
-    mesh; by default the condition that its arc length is unchanged."""
+    """The cycle `point` with measured errors within the relative accuracy, on a finer mesh if its own does
+    not suffice; raises Unsolvable if no allowed mesh suffices, or if no cycle is found on a mesh. condition:
+    equation that defines the same cycle on every mesh; by default the condition that its arc length is
+    unchanged."""
     condition = condition or point.arc_length_condition(0.0)
-    finest = False
     for _ in range(BRANCH_MESH_SETTINGS.max_meshes):
         if point.steps_since_measured:
             point = with_measured_errors(point, accuracy)
         calibration = point.calibration
-        is_accurate = calibration.largest_weighted_error(accuracy) <= accuracy
-        cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
-        target = regraded(cheapest, point.orbit)
-        # A sufficient mesh is replaced only by a much cheaper mesh, and never after an insufficient mesh.
-        if is_accurate and (
-            finest or target.cost > BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * calibration.mesh.cost
-        ):
+        if calibration.largest_weighted_error(accuracy) <= accuracy:
             return point
-        if not is_accurate:
-            finest = True
-            target = finer_mesh(calibration.mesh, target)
+        cheapest = calibration.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+        target = finer_mesh(calibration.mesh, regraded(cheapest, point.orbit))
         if not target.is_allowed:
             raise mesh_limit_error()
         point = solved_on_mesh(point, target, condition, accuracy)
@@ -160,9 +125,12 @@ def solved_on_mesh(
     calibration of `point`. Raises Unsolvable. condition: equation that defines the same cycle on every mesh.
     """
     solved = condition.solve_on_mesh(
-        mesh, point.cycle.converged_orbit, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
+        mesh,
+        point.cycle.converged_orbit,
+        branch_newton_tolerance(accuracy),
+        allowed_matrix_distance(accuracy),
     )
-    tangent = tangent_at(solved.orbit, point.scale, point.unit_tangent, bordered_matrix_of(solved))
+    tangent = tangent_at(solved.orbit, point.scale, point.unit_tangent, linearisation_of(solved))
     old_derivatives = point.derivatives
     derivatives = replace(
         branch_derivatives(solved, point.scale, tangent),
@@ -195,8 +163,10 @@ def with_errors_within_accuracy(
         _with_interpolated_errors(measured, point, end, point.arc_since_measured / total_length, accuracy)
         for point in between
     ]
+    growth = expected_error_growth(measured, points)
     # Only after the interpolation, because the interpolated errors belong to the old mesh.
     end = solve_on_sufficient_mesh(end, accuracy, condition)
+    end = replace(end, next_mesh=mesh_ahead(end, growth, accuracy))
     solved_again = [
         point
         if point.calibration.largest_weighted_error(accuracy) <= accuracy
@@ -207,25 +177,32 @@ def with_errors_within_accuracy(
 
 
 def _cycle_on_mesh_of(end: BranchCycle, point: BranchCycle, accuracy: float) -> BranchCycle:
-    """The cycle `point` solved again on the mesh of the later cycle `end`, with the errors of `end`, and on a
-    sufficient mesh if these errors are too large; raises Unsolvable."""
+    """The cycle `point`, whose estimated errors exceed the accuracy, solved again on the mesh of the later
+    cycle `end`, with the errors of `end`; on a mesh chosen by its own measured errors if `end` has the same
+    mesh, or if the errors of `end` are too large; raises Unsolvable."""
+    if mesh_of(end.orbit) == mesh_of(point.orbit):
+        return solve_on_sufficient_mesh(replace(point, steps_since_measured=1), accuracy)
     solved = solved_on_mesh(point, mesh_of(end.orbit), point.arc_length_condition(0.0), accuracy)
-    # With share 1 the errors are the errors of `end`, because the cycle now has the mesh of `end`.
-    solved = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
-    return solve_on_sufficient_mesh(solved, accuracy)
+    # With the fraction 1 the errors are those of `end`, because the cycle now has the mesh of `end`.
+    estimated = _with_interpolated_errors(end, solved, end, 1.0, accuracy)
+    is_accurate = estimated.calibration.largest_weighted_error(accuracy) <= accuracy
+    return estimated if is_accurate else solve_on_sufficient_mesh(solved, accuracy)
 
 
 def _with_interpolated_errors(
     start: BranchCycle, point: BranchCycle, end: BranchCycle, fraction: float, accuracy: float
 ) -> BranchCycle:
-    """The cycle `point` with errors interpolated between the measured cycles `start` and `end`, all on the
-    same mesh; raises Unsolvable.
+    """The cycle `point` with errors interpolated between the measured cycles `start` and `end`, the latter on
+    the same mesh; raises Unsolvable.
 
     fraction: fraction of the arc length from `start` to `end` at which `point` lies. accuracy: relative
-    accuracy of the cycles. The errors of `point` are measured instead if its coefficient tails are much
-    larger than at `start` and `end`, or if the parameter changes more slowly than at `start` and `end`, as
-    near a fold: the errors at `start` and `end` are then no bound.
+    accuracy of the cycles. If `start` has another mesh, the errors of `end` are used. The errors of `point`
+    are measured instead if its coefficient tails are much larger than at `start` and `end`, or if the
+    parameter changes more slowly than at `start` and `end`, as near a fold: the errors at `start` and `end`
+    are then no bound.
     """
+    if mesh_of(start.orbit) != mesh_of(point.orbit):
+        start, fraction = end, 1.0
     ends = (start, end)
     is_slow = abs(point.parameter_rate) < BRANCH_MESH_SETTINGS.min_parameter_rate_ratio * min(
         abs(measured.parameter_rate) for measured in ends

@@ -12,19 +12,21 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...arrays import Array
-from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import allowed_matrix_distance
 from ..orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ..orbit.newton import relative_change
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
-from .arc_length_step import BranchCycle, tangent_at
+from .arc_length_step import BranchCycle
 from .bordered.condition import BorderCondition, moved_orbit
 from .bordered.matrix import BorderedMatrix
 from .bordered.scale import ArcLengthScale, deflection_of
 from .branch_continuation import follow_from_cycle
 from .branch_curve import BranchCurve
+from .branch_errors import branch_newton_tolerance
 from .branch_limits import BranchLimits
 from .branch_mesh_choice import first_measured_cycle
+from .branch_tangent import tangent_at
 from .special.special_point import SpecialKind, SpecialPoint
 from .start.branch_start_settings import BRANCH_START_SETTINGS
 from .start.first_asymmetric_cycle import ASYMMETRIC_START_SETTINGS
@@ -159,7 +161,7 @@ def _cycle_on_other_side(tangent: _Tangent, distance: float, limits: BranchLimit
     condition = BorderCondition.at_arc_length(tangent.scale, tangent.side, tangent.orbit, -distance)
     predicted = moved_orbit(tangent.orbit, tangent.scale.parameter_name, -distance * tangent.change)
     solved_orbit = condition.solve_cycle(
-        predicted, newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
+        predicted, branch_newton_tolerance(accuracy), limits.workspace, allowed_matrix_distance(accuracy)
     )
     step = relative_change(tangent.orbit, distance * tangent.change[:-1])
     prediction_error = relative_change(predicted, solved_orbit.orbit.values - predicted.values)

@@ -6,7 +6,7 @@ from numpy.polynomial import Polynomial
 
 from ...model.parameters import PARAMETERS
 from ..continuation.curve import zero_along_step
-from ..cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ..cycle.accuracy.refinement import allowed_matrix_distance
 from ..orbit.orbit import Orbit
 from ..unsolvable import Unsolvable, WorkLimitReached
 from .arc_length_step import (
@@ -14,12 +14,13 @@ from .arc_length_step import (
     arc_length_between,
     branch_cycle_with_calibrated_errors,
     cycle_at_length,
-    tangent_at,
 )
 from .bordered.condition import BorderCondition, moved_orbit
-from .bordered.matrix import bordered_matrix_of
+from .bordered.corrected_linearisation import linearisation_of
 from .bordered.scale import ALONG_PARAMETER
 from .branch_end_settings import BRANCH_END_SETTINGS
+from .branch_errors import branch_newton_tolerance
+from .branch_tangent import tangent_at
 from .special.branch_segment import BranchSegment
 
 
@@ -148,9 +149,7 @@ def _solved_at_range_end(
     """The cycle near the orbit `predicted`, at about the arc length `length` from `start`, that fulfils the
     condition `range_end`; raises Unsolvable."""
     solved_orbit = range_end.solve_cycle(
-        predicted, newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
+        predicted, branch_newton_tolerance(accuracy), start.workspace, allowed_matrix_distance(accuracy)
     )
-    tangent = tangent_at(
-        solved_orbit.orbit, start.scale, start.unit_tangent, bordered_matrix_of(solved_orbit)
-    )
+    tangent = tangent_at(solved_orbit.orbit, start.scale, start.unit_tangent, linearisation_of(solved_orbit))
     return branch_cycle_with_calibrated_errors(start, solved_orbit, tangent, length, length, accuracy)

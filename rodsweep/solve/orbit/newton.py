@@ -41,8 +41,11 @@ class NewtonMatrix(Protocol):
     """Newton's matrix of an orbit with a method for the Floquet multipliers. tangent: derivative of the orbit
     values with respect to a parameter coordinate, (N,), or None. workspace: memory of the matrix."""
 
-    tangent: Array | None
-    workspace: NewtonWorkspace
+    @property
+    def tangent(self) -> Array | None: ...
+
+    @property
+    def workspace(self) -> NewtonWorkspace: ...
 
     @property
     def multipliers_over_solved_part(self) -> Complex:

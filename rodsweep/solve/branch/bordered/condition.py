@@ -17,6 +17,7 @@ from ...orbit.newton import ORBIT_NEWTON_SETTINGS, ConvergedOrbit, relative_chan
 from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh
 from ...unsolvable import Unsolvable
+from .corrected_linearisation import CORRECTION_SETTINGS, corrected_linearisation
 from .matrix import BorderedMatrix
 from .scale import ArcLengthScale
 
@@ -70,13 +71,14 @@ class BorderCondition:
             is_converged = (
                 change * min(rate, 1.0) <= tolerance and rate <= ORBIT_NEWTON_SETTINGS.new_matrix_ratio
             )
-            if (is_converged or change <= tolerance) and distance <= max_matrix_distance:
-                return ConvergedOrbit(orbit, matrix, distance)
-            if (
-                is_converged
-                or change <= tolerance
-                or (distance > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio)
-            ):
+            if is_converged or change <= tolerance:
+                solved = self._with_matrix_error(orbit, matrix, distance, max_matrix_distance)
+                if solved is not None:
+                    return solved
+                needs_matrix = True
+            else:
+                needs_matrix = distance > change and rate > ORBIT_NEWTON_SETTINGS.new_matrix_ratio
+            if needs_matrix:
                 matrix = BorderedMatrix(orbit, self.scale, workspace)
                 distance = 0.0
                 step = matrix.step(self.border, self.residual(orbit))
@@ -87,6 +89,19 @@ class BorderCondition:
         raise Unsolvable(
             f"Newton's method for the cycle does not converge: its last relative step is {change:.0e}"
         )
+
+    def _with_matrix_error(
+        self, orbit: Orbit, matrix: BorderedMatrix, distance: float, max_error: float
+    ) -> ConvergedOrbit | None:
+        """The solved `orbit` with tangent and multipliers of a relative error of at most `max_error`: those
+        of its last matrix, or corrected ones; None if the corrections do not converge. distance: relative
+        distance between the orbit and the orbit at which `matrix` was assembled."""
+        if distance <= max_error:
+            return ConvergedOrbit(orbit, matrix, distance)
+        if distance > CORRECTION_SETTINGS.max_matrix_distance:
+            return None
+        corrected = corrected_linearisation(matrix, orbit, self.border, max_error)
+        return None if corrected is None else ConvergedOrbit(orbit, corrected, corrected.error)
 
     def solve_on_mesh(
         self, mesh: OrbitMesh, solved: ConvergedOrbit, tolerance: float, max_matrix_distance: float = np.inf

@@ -21,7 +21,6 @@ from ...orbit.matrix.right_sides import write_right_sides
 from ...orbit.matrix.shooting_intervals import shooting_intervals_of
 from ...orbit.matrix.substitution import substitute_stages
 from ...orbit.matrix.workspace import FactorStorage, NewtonWorkspace
-from ...orbit.newton import ConvergedOrbit
 from ...orbit.orbit import Orbit
 from .scale import ArcLengthScale, deflection_functional
 
@@ -146,6 +145,11 @@ class BorderedMatrix:
         return np.hstack([starts, stages, np.zeros((len(starts), 2))])
 
     @property
+    def has_several_shooting_intervals(self) -> bool:
+        """Whether the orbit is so unstable that its matrix has more than one shooting interval."""
+        return len(self._shooting_intervals.flow_maps) > 1
+
+    @property
     def propagator(self) -> Array:
         """Propagator P, (n, n), of the linearised motion over the solved time interval."""
         return self._memory.propagator
@@ -231,11 +235,3 @@ class BorderedMatrix:
         factors = self._memory.factors
         out = self._shooting_intervals.stage_increments(factors, starts, columns, self.orbit.orbit_equations)
         return np.concatenate([increments[:n], out.ravel(), increments[-2:]])
-
-
-def bordered_matrix_of(solved: ConvergedOrbit) -> BorderedMatrix:
-    """The bordered matrix of an orbit that was solved with the parameter as an unknown; raises TypeError if
-    the parameter was fixed."""
-    if not isinstance(solved.matrix, BorderedMatrix):
-        raise TypeError("the orbit has no bordered matrix: it was solved without the parameter as an unknown")
-    return solved.matrix

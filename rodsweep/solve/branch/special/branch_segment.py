@@ -6,7 +6,7 @@ from ...orbit.orbit import Orbit
 from ...orbit.orbit_mesh import OrbitMesh, mesh_of
 from ..arc_length_step import BranchCycle, arc_length_between
 from ..bordered.condition import moved_orbit
-from ..bordered.matrix import bordered_matrix_of
+from ..bordered.corrected_linearisation import bordered_matrix_of
 from .augmented.fold_and_torus_functions import FoldFunction, correct_until_converged
 from .special_point import SPECIAL_POINT_SETTINGS
 

@@ -1,9 +1,8 @@
 """Location of special points on a branch: zeros of test functions of arc length.
 
-Each value of a test function requires the solution of a cycle. The zero is bracketed on the mesh of the
-branch, then found by the secant method on finer meshes. The difference between the zeros on the last two
-meshes gives the error. A cycle needs only one matrix factorisation, because its test function is corrected
-with the factors of the last matrix (`augmented`).
+Each value of a test function requires a cycle. The zero is bracketed on the mesh of the branch, then found by
+the secant method on finer meshes. The difference between the zeros on the last two meshes gives the error. A
+cycle needs one matrix only: the factors of the last matrix correct its test function (`augmented`).
 """
 
 from dataclasses import replace
@@ -21,7 +20,8 @@ from ...orbit.orbit_mesh import mesh_limit_error, mesh_of
 from ...unsolvable import Unsolvable, WorkLimitReached
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import moved_orbit
-from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
+from ..bordered.corrected_linearisation import bordered_matrix_of
+from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale
 from .augmented.fold_and_torus_functions import TorusFunction, correct_until_converged
 from .branch_segment import BranchSegment

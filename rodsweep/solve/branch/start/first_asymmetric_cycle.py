@@ -11,7 +11,7 @@ from math import sqrt
 import numpy as np
 
 from ....arrays import Array
-from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ...cycle.accuracy.refinement import allowed_matrix_distance
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...orbit.matrix.workspace import NewtonWorkspace
 from ...orbit.measures import CycleMotion
@@ -19,12 +19,15 @@ from ...orbit.mesh_choice import cheapest_stage_count, mesh_from_tails
 from ...orbit.newton import relative_change
 from ...orbit.orbit import Orbit
 from ...unsolvable import Unsolvable
-from ..arc_length_step import BranchCycle, branch_derivatives, tangent_at
+from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition, moved_orbit
-from ..bordered.matrix import BorderedMatrix, bordered_matrix_of
+from ..bordered.corrected_linearisation import linearisation_of
+from ..bordered.matrix import BorderedMatrix
 from ..bordered.scale import ArcLengthScale, deflection_of
 from ..branch_end_settings import BRANCH_END_SETTINGS
+from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
+from ..branch_tangent import branch_derivatives, tangent_at
 from ..symmetry_breaking import SymmetryBreaking, asymmetry, extended_to_whole_period
 from .first_cycle import ALONG_DEFLECTION
 
@@ -143,7 +146,7 @@ class _AsymmetricCycles:
             self.predicted_orbit(distance), ASYMMETRIC_START_SETTINGS.rate_tolerance, self.matrix.workspace
         )
         scale = self.matrix.scale
-        tangent = tangent_at(solved.orbit, scale, self._border(distance), bordered_matrix_of(solved))
+        tangent = tangent_at(solved.orbit, scale, self._border(distance), linearisation_of(solved))
         return branch_derivatives(solved, scale, tangent).parameter_rate
 
     def first_cycle(self, distance: float) -> BranchCycle:
@@ -158,7 +161,7 @@ class _AsymmetricCycles:
         mesh_accuracy = max(self.accuracy, REFINEMENT_SETTINGS.min_first_mesh_accuracy)
         mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(self.accuracy))
         first = condition.solve_on_mesh(
-            mesh, solved, newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
+            mesh, solved, branch_newton_tolerance(self.accuracy), allowed_matrix_distance(self.accuracy)
         )
         scale = self.matrix.scale
         arc_from_start = abs(self._deflection_change(distance)) / scale.deflection_unit

@@ -8,7 +8,7 @@ parameter is unknown; this system is regular at the Hopf point too.
 import numpy as np
 
 from ....discretization.stress.form import StressForm
-from ...cycle.accuracy.refinement import allowed_matrix_distance, newton_tolerance
+from ...cycle.accuracy.refinement import allowed_matrix_distance
 from ...cycle.accuracy.refinement_settings import REFINEMENT_SETTINGS
 from ...cycle.hopf_start import orbit_of_amplitude
 from ...orbit.matrix.workspace import NewtonWorkspace
@@ -18,6 +18,7 @@ from ...unsolvable import Unsolvable
 from ..arc_length_step import BranchCycle
 from ..bordered.condition import BorderCondition
 from ..bordered.scale import ArcLengthScale, deflection_of
+from ..branch_errors import branch_newton_tolerance
 from ..branch_mesh_choice import first_measured_cycle
 from .branch_start_settings import BRANCH_START_SETTINGS
 from .hopf_point import HopfBranchStart
@@ -103,7 +104,7 @@ def _cycle_of_amplitude(
         raise Unsolvable("Newton's method converged far from the cycle that the normal form predicts")
     mesh = mesh_from_tails(near_orbit, mesh_accuracy, cheapest_stage_count(accuracy))
     first = condition.solve_on_mesh(
-        mesh, rough_orbit, newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
+        mesh, rough_orbit, branch_newton_tolerance(accuracy), allowed_matrix_distance(accuracy)
     )
     arc_from_start = abs(deflection_of(first.orbit)) / scale.deflection_unit
     return first_measured_cycle(first, scale, border, arc_from_start, accuracy)

@@ -75,6 +75,23 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
 
     negligible: limit of the norm of a neglected column, divided by the largest column norm of A.
     """
+    Q, R = low_rank_factors(A, negligible)
+    rank, n = Q.shape
+    small = np.zeros((rank, rank))
+    for a in range(rank):
+        for b in range(rank):
+            total = 0.0
+            for j in range(n):
+                # A = Q R has the nonzero eigenvalues of R Q, a matrix of the size of the rank.
+                total += R[a, j] * Q[b, j]
+            small[a, b] = total
+    return small
+
+
+@compiled_for_vectors
+def low_rank_factors(A: Array, negligible: float) -> tuple[Array, Array]:
+    """Returns (q, r): vectors, (rank, n) each, with A = sum over i of q_i r_i^T, (n, n), after small columns
+    are neglected. negligible: as in `compressed_matrix`."""
     n = len(A)
     columns = A.T.copy()
     norms = np.empty(n)
@@ -102,15 +119,7 @@ def compressed_matrix(A: Array, negligible: float) -> Array:
         r[p] = size
         norms[p] = 0.0
         rank += 1
-    small = np.zeros((rank, rank))
-    for a in range(rank):
-        for b in range(rank):
-            total = 0.0
-            for j in range(n):
-                # A = Q R has the nonzero eigenvalues of R Q, a matrix of the size of the rank.
-                total += R[a, j] * Q[b, j]
-            small[a, b] = total
-    return small
+    return Q[:rank], R[:rank]
 
 
 @compiled_for_vectors

@@ -6,15 +6,14 @@ correction uses the residual at the cycle itself and the matrix factors of the n
 further matrix is factorised.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from .....arrays import Array
-from ....orbit.matrix.linearisation import closing_residual
-from ....orbit.matrix.phase import phase_right_side, write_phase_row
 from ....orbit.orbit import Orbit
 from ....unsolvable import Unsolvable
+from ...bordered.corrected_tangent import corrected_tangent
 from ...bordered.matrix import BorderedMatrix
 from ...bordered.scale import deflection_of
 from ..special_point import SPECIAL_POINT_SETTINGS
@@ -85,25 +84,9 @@ class FoldFunction:
 
     def correct_vectors(self, orbit: Orbit) -> None:
         """Corrects the tangent at an orbit by one step of iterative refinement of its linear equation."""
-        matrix = self.matrix
         tangent = self.null_vectors
-        p = orbit.orbit_equations
-        change = replace(orbit, values=tangent[:-1])
-        columns, ends = matrix.residual_variations(orbit, tangent[None])
-        row = np.empty(len(orbit.start_state))
-        write_phase_row(orbit.start_state, p.rod, p.node_matrices, row)
-        parameter_derivative = orbit.form.parameter_derivative(matrix.scale.parameter_name)
-        phase_derivative = phase_right_side(orbit.start_state, parameter_derivative, p.rod, p.node_matrices)
-        matching_sides = matrix.matching_right_sides(closing_residual(change.all_states, p), columns, ends)
-        phase_side = phase_derivative * tangent[-1] - row @ change.start_state
-        right_side = np.array(
-            [
-                *matching_sides,
-                phase_side,
-                1 - self.border @ matrix.scale.directional_derivative(orbit, tangent),
-            ]
-        )
-        self.null_vectors = tangent + matrix.solve(self.border, right_side, columns[:, :, 0], 1.0)
+        residuals = self.matrix.residual_variations(orbit, tangent[None])
+        self.null_vectors = corrected_tangent(self.matrix, orbit, self.border, tangent, residuals)
 
 
 class TorusFunction:

@@ -1,0 +1,48 @@
+"""Mesh for the next cycles of a branch, from the errors that are expected there.
+
+A mesh that is chosen before a cycle is solved costs nothing; a cycle whose errors turn out too large is
+solved again. Errors grow along a branch about as fast as over the steps before.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...arrays import Array
+from ..cycle.accuracy.error_indicators import error_growth_factors, tails_and_size
+from ..orbit.mesh_choice import finer_mesh, regraded
+from ..orbit.orbit_mesh import OrbitMesh, mesh_of
+from .arc_length_step import BranchCycle
+from .branch_mesh_settings import BRANCH_MESH_SETTINGS
+
+
+def expected_error_growth(measured: BranchCycle, points: Sequence[BranchCycle]) -> Array:
+    """Expected growth factors of the errors in space and in time, (2,), from the last cycle of `points` to
+    the next measured cycle, by the growth of the coefficient tails over the last steps. measured, points: as
+    in `with_errors_within_accuracy`."""
+    end = points[-1]
+    # Tails are compared on one mesh.
+    known = next(point for point in (measured, *points) if mesh_of(point.orbit) == mesh_of(end.orbit))
+    length = end.arc_since_measured - known.arc_since_measured
+    if not length > 0:
+        return np.ones(2)
+    shape = np.array([1.0, 1.0, 0.0])
+    tails = [tails_and_size(point.orbit) * shape + (0.0, 0.0, 1.0) for point in (known, end)]
+    steps = BRANCH_MESH_SETTINGS.max_steps_between_measurements
+    growth: Array = error_growth_factors(*tails) ** (steps * end.next_arc_length / length)
+    return np.minimum(growth, BRANCH_MESH_SETTINGS.max_planned_growth)
+
+
+def mesh_ahead(end: BranchCycle, growth: Array, accuracy: float) -> OrbitMesh | None:
+    """The mesh for the next cycles of the branch after `end`, whose errors were measured; None if its own
+    mesh is expected to suffice up to the next measured cycle. growth: expected growth factors of the errors
+    up to there, (2,)."""
+    mesh = end.calibration.mesh
+    expected = end.calibration.grown(growth)
+    cheapest = expected.cheapest_mesh(BRANCH_MESH_SETTINGS.planned_error_ratio * accuracy)
+    if expected.largest_weighted_error(accuracy) > accuracy:
+        target = regraded(finer_mesh(mesh, cheapest), end.orbit)
+        return target if target.is_allowed else None
+    # A sufficient mesh is replaced only by a much cheaper mesh.
+    target = regraded(cheapest, end.orbit)
+    return target if target.cost <= BRANCH_MESH_SETTINGS.max_cheaper_cost_ratio * mesh.cost else None
